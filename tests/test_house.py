@@ -30,7 +30,7 @@ FLOORS = [
     ["projection"],
     ["languages"],
     ["session"],
-    ["chronicle", "ros_tools", "testing"],
+    ["chronicle", "ros_tools", "testing", "robot"],
     ["view", "repl"],
     ["cli", "pytest_plugin", "coverage_plugin", "__init__"],
 ]

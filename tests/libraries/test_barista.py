@@ -14,7 +14,6 @@ from pathlib import Path
 import pytest
 from systems import takes_long
 
-from cramhy_runtime.ground.packages import find_package
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.streams.streams import StringOutputStream
@@ -216,8 +215,6 @@ class TestThreads:
 
     @pytest.fixture
     def threads(self, barista):
-        if find_package("SB-THREAD") is None:
-            pytest.skip("there is no package SB-THREAD yet")
         barista.session.load("barista-threads")
         return barista
 

@@ -138,6 +138,7 @@ def test_a_definition_that_depends_on_a_system(write, run):
 
 
 def test_the_central_registry_and_load_asd(write, run, tmp_path, monkeypatch):
+    write("hidden/CATKIN_IGNORE", "")
     write("hidden/build/registered.asd", '(defsystem "registered" :components ((:file "x")))')
     write("hidden/build/x.lisp", logging(":registered"))
     assert run("(asdf:find-system :registered nil)") == "NIL"

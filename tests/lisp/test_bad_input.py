@@ -71,6 +71,11 @@ ERRORS = {  # form: a part of the report
     "#99999999999999999999(1)": "too large",
     "#200A()": "too large",
     "(make-string 100000000000000)": "Heap exhausted",
+    "(make-string 10000000000)": "Heap exhausted: 10000000000 elements would take 9 GB",
+    "(make-array 10000000000)": "Heap exhausted",
+    "(make-array '(100000 100000))": "Heap exhausted",
+    "(make-list 10000000000)": "Heap exhausted",
+    "(make-sequence 'vector 10000000000)": "Heap exhausted",
     "(ash 1 100000000000000)": "Heap exhausted",
 }
 ANSWERS = {

@@ -16,7 +16,6 @@ TIN_ROBOT = Path(__file__).parent / "tin_robot.lisp"
 @pytest.fixture
 def lisp(session):
     """A function: the printed values of the last form of a text, in a package of its own; a condition is ``CLASS: its text``. White space is one blank."""
-    session.evaluate_text('(when (find-package "ROBOT-TESTS") (delete-package "ROBOT-TESTS"))', "<test>")  # each test meets its names anew
     session.package = ensure_package("ROBOT-TESTS", use=[COMMON_LISP])
 
     def values(text):

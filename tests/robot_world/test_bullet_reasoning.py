@@ -65,7 +65,7 @@ def ask(session):
         ("(all '(btr:contact ?w bottle-1 ?x ?link) '?link)", '("table_area_main")'),
         ("(all '(btr:supported-by ?w ?x :kitchen ?link) '?x)", "(BOTTLE-1 CUP)"),
         ("(all '(btr:supported-by ?w :kitchen ?x) '?x)", "NIL"),
-        ("(all '(btr:object-type ?w ?x ?type) '?type)", "(:BOTTLE :CUP)"),
+        ("(all '(btr:object-type ?w cup ?type) '?type)", "(:CUP CRAM-BULLET-REASONING:ITEM)"),
         ("(all '(btr:item-type ?w ?x :cup) '?x)", "(CUP)"),
         ("(all '(btr:object ?w ?x) '?x)", "(:KITCHEN PR2 BOTTLE-1 CUP)"),
         ("(and (prolog:prolog '(btr:object ?w cup)) t)", "T"),

@@ -48,7 +48,8 @@ PACKAGES = {
         "joint-lower-limit joint-upper-limit joint-type joint-axis joint-origin joint-parent-link joint-child-link get-joint-lower-limit "
         "get-joint-upper-limit get-joint-type get-joint-axis get-joint-origin get-joint-parent get-joint-child reachability-designator "
         "visibility-designator designator-reach-pose trajectory-desig? constraints-desig? reachability-designator-p "
-        "visibility-designator-p current-robot-symbol current-robot-package current-robot-name symbol-to-prolog-rule compute-iks",
+        "visibility-designator-p current-robot-symbol current-robot-package current-robot-name symbol-to-prolog-rule compute-iks "
+        "robot-description-file tcp-in-ee-pose gripper-meter-to-joint-multiplier",  # the last two of a later CRAM, the file of ours
     ),
     "cram-object-interfaces": (
         "obj-int",

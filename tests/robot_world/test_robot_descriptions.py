@@ -4,11 +4,14 @@ import json
 
 import pytest
 
+from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, find_package_or_error
+
 
 @pytest.fixture
-def pr2(lisp):
+def pr2(session, lisp):
     lisp("(asdf:load-system :cram-pr2-description)")
-    assert lisp("(use-package :cram-robot-interfaces)") == "T"
+    interfaces = find_package_or_error("CRAM-ROBOT-INTERFACES")
+    session.package = ensure_package("ROBOT-DESCRIPTION-TESTS", use=[COMMON_LISP, interfaces])  # where nobody else has an ARM
     return lisp
 
 
@@ -24,7 +27,7 @@ UNKNOWN = (
     "robot robot-base-frame robot-odom-frame robot-torso-link-joint arm required-arms available-arms arm-joints arm-links arm-base-joints "
     "arm-base-links arm-tool-joints hand-links end-effector-link robot-tool-frame gripper-joint gripper-link robot-arms-parking-joint-states "
     "robot-arms-carrying-joint-states end-effector-parking-pose robot-pre-grasp-joint-states planning-group "
-    "standard-to-particular-gripper-transform camera-frame camera-minimal-height camera-maximal-height robot-pan-tilt-links "
+    "standard-to-particular-gripper-transform tcp-in-ee-pose gripper-meter-to-joint-multiplier camera-frame camera-minimal-height camera-maximal-height robot-pan-tilt-links "
     "robot-pan-tilt-joints robot-neck-parking-joint-states robot-neck-looking-joint-states trajectory-point joint-lower-limit joint-type"
 )
 

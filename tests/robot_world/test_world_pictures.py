@@ -14,6 +14,7 @@ pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
 
 from cramhy_runtime.robot_world import shown  # noqa: E402
 from cramhy_runtime.robot_world.descriptions import Frame, Shape  # noqa: E402
+from cramhy_runtime.robot_world.meshes import cone_shape, points_shape  # noqa: E402
 from cramhy_runtime.robot_world.pictures import drawing, movies, stills, views  # noqa: E402
 from cramhy_runtime.robot_world.placements import placement  # noqa: E402
 from cramhy_runtime.robot_world.vision import seen  # noqa: E402
@@ -40,17 +41,19 @@ def empty():
             Shape("cylinder", (0.2, 0.4), Frame((0, 0, 0), (0.5**0.5, 0.0, 0.5**0.5, 0.0))),
             np.pi * (0.2 / 2.8) ** 2,
         ),  # its end is seen, a disc
+        (cone_shape(0.2, 0.4), 0.0095),
+        (points_shape([(x, y, z) for x in (-0.2, 0.2) for y in (-0.2, 0.2) for z in (-0.2, 0.2)]), (0.4 / 2.8) ** 2),
     ],
 )
 def test_each_kind_of_shape_is_as_large_and_as_far_as_it_is(empty, shape, area):
     empty.add_item("it", (shape,), placement((0, 0, 1)), colour=RED)
     drawn = drawing.draw(empty, AHEAD, 201, 201)
     here = drawn.shown == 0
-    assert drawn.depths[here].min() == pytest.approx(2.8, abs=1e-3)
+    assert drawn.depths[here].min() == pytest.approx(2.8, abs=6e-3)
     focal = 201 / 2 / np.tan(views.OPENING / 2)  # pixels that 1 m fills 1 m ahead
     assert here.sum() == pytest.approx(area * focal**2, rel=0.05)
     rows, columns = np.nonzero(here)
-    assert (rows.mean(), columns.mean()) == pytest.approx((100, 100), abs=0.5)
+    assert (rows.min() + rows.max(), columns.mean()) == pytest.approx((200, 100), abs=1.5)
     assert (drawn.colours[here][:, 0] > 0.2).all() and (drawn.colours[here][:, 1:] == 0).all()
 
 

@@ -1,4 +1,7 @@
-"""No result on the slides depends on luck: both lectures with many seeds, twice, and on both back ends.
+"""No result on the slides depends on luck, but for one: both lectures with many seeds, twice, and on both back ends.
+
+That one is the plan with two motions for one process module, side by side: which request comes first is a choice of the seed. On the slides,
+and without a seed, it is the goal.
 
 ``make test`` takes a few seeds, ``make soak`` (CRAMHY_SOAK=1) fifty. What is compared is defined in ``typed_lectures.visible``: order of
 what each process module says, warnings and their place, values. Poses may differ in the last digits, since a seed decides in
@@ -54,15 +57,41 @@ def test_the_run_without_a_seed_shows_what_the_slides_show(unseeded):
     assert abs(x - 9) < 0.2 and abs(y - 9) < 0.2
 
 
+def side_by_side(told):
+    """What the plan with two motions for one process module showed."""
+    return next(entries for typed, entries, _ in told if "(angle 8)" in typed)
+
+
+def without_order(told):
+    """The same without that plan's order, in which the later motion may have to wait."""
+    return [
+        (typed, sorted(entry for entry in entries if lectures.speaker(entry) != "WARNING") if "(angle 8)" in typed else entries, value)
+        for typed, entries, value in told
+    ]
+
+
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_seed_changes_nothing_that_the_slides_show(seed, seeded, unseeded):
-    assert lectures.visible(seeded[seed]) == lectures.visible(unseeded)
+    told = lectures.visible(seeded[seed])
+    assert without_order(told) == without_order(lectures.visible(unseeded))
+    assert [lectures.speaker(entry) for entry in side_by_side(told)].count("WARNING") <= 1
+
+
+def test_either_motion_comes_first_with_some_seed(seeded):
+    firsts = {"GOAL" if "GOAL" in side_by_side(lectures.visible(transcript))[0] else "ANGLE" for transcript in seeded.values()}
+    assert firsts == {"GOAL", "ANGLE"}
 
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_turtle_ends_where_it_ends_without_a_seed(seed, seeded, unseeded):
-    for pose, expected in zip(lectures.poses(seeded[seed]), lectures.poses(unseeded), strict=True):
-        assert pose == pytest.approx(expected, abs=TOLERANCE)
+    found, expected = lectures.poses(seeded[seed]), lectures.poses(unseeded)
+    told = lectures.visible(seeded[seed])
+    alike = len(found)
+    if side_by_side(told)[0] != side_by_side(lectures.visible(unseeded))[0]:
+        alike = len(lectures.poses(seeded[seed].partition("(angle 8)")[0]))
+        assert found[-1][:2] == pytest.approx(expected[-1][:2], abs=0.2)
+    for pose, other in zip(found[:alike], expected[:alike], strict=True):
+        assert pose == pytest.approx(other, abs=TOLERANCE)
 
 
 def test_the_same_seed_gives_the_same_bytes_on_both_back_ends(seeded):

@@ -21,7 +21,7 @@ from mypy.types import AnyType, TypeOfAny, get_proper_type
 
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src"
-ROOMS = ["kernel", "cpl", "prolog", "designators", "process_modules", "ros", "turtlesim", "testing", "transforms", "tf"]
+ROOMS = ["kernel", "cpl", "prolog", "designators", "process_modules", "ros", "turtlesim", "testing", "transforms", "tf", "robot"]
 BY_MODULES = {"ros", "turtlesim", "transforms", "tf"}  # whose users import the modules; the other rooms export what is public
 
 OPTIONS = """--strict --python-version 3.11 --platform linux --ignore-missing-imports --no-error-summary --hide-error-context

@@ -18,23 +18,23 @@ CONS = 80
 """Bytes of an element of a list, with the place in the vector of which the list is made."""
 _ALWAYS = 1 << 27
 """Bytes that are never asked about."""
-_WITHOUT_KNOWLEDGE = 8 << 30
-"""What we take for the memory of a machine that does not tell."""
+_LARGEST = 4 << 30
+"""Bytes that no object takes: filling more stops everything else for seconds. All of SBCL's heap has 8 GB."""
 
 
 @functools.cache
 def most() -> int:
-    """The bytes that one object may take: three quarters of the memory of this machine, or of the container that the process is in."""
+    """The bytes that one object may take: three quarters of the memory of this machine or container, and no more than `_LARGEST`."""
     try:
         found = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     except (AttributeError, ValueError, OSError):
-        found = _WITHOUT_KNOWLEDGE
+        found = 2 * _LARGEST  # it does not tell
     try:
         with open("/sys/fs/cgroup/memory.max", encoding="ascii") as limit:
             found = min(found, int(limit.read()))
     except (OSError, ValueError):
         pass  # it is not in a container with a limit
-    return found * 3 // 4
+    return min(found * 3 // 4, _LARGEST)
 
 
 def check_room(count: int, each: int = POINTER) -> None:
@@ -43,5 +43,5 @@ def check_room(count: int, each: int = POINTER) -> None:
         gigabytes = max(count * each >> 30, 1)
         error(
             types.StorageCondition(f"Heap exhausted: {count} elements would take {gigabytes} GB."),
-            hint=f"One object can take {max(most() >> 30, 1)} GB here, three quarters of the memory that there is. Is the number right?",
+            hint=f"One object can take {max(most() >> 30, 1)} GB here. Is the number right?",
         )

@@ -12,7 +12,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import cos, inf, sin
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from .mesh_files import Mesh
 
 Three = tuple[float, float, float]
 Four = tuple[float, float, float, float]
@@ -42,14 +45,16 @@ class Frame:
 class Shape:
     """What a link, or an object, is made of.
 
-    kind: ``"box"``, ``"cylinder"`` (along z), ``"sphere"`` or ``"mesh"``. size: of a box its three lengths, of a cylinder radius and
-    length, of a sphere its radius, of a mesh its scale along x, y and z. mesh: the file or ``package://`` address of a mesh.
+    kind: ``"box"``, ``"cylinder"`` (along z), ``"sphere"``, ``"mesh"`` or ``"plane"`` (across z, without end). size: of a box its three
+    lengths, of a cylinder radius and length, of a sphere its radius, of a mesh its scale along x, y and z, of a plane nothing. mesh: the
+    file or ``package://`` address of a mesh. body: the mesh itself, where it is known.
     """
 
-    kind: Literal["box", "cylinder", "sphere", "mesh"]
+    kind: Literal["box", "cylinder", "sphere", "mesh", "plane"]
     size: tuple[float, ...]
     frame: Frame = Frame()
     mesh: str = ""
+    body: Mesh | None = None
 
 
 @dataclass(frozen=True, slots=True)

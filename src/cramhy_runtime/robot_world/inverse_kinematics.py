@@ -10,6 +10,7 @@ Source: S. R. Buss, Introduction to Inverse Kinematics with Jacobian Transpose, 
 from __future__ import annotations
 
 from math import inf, pi
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,12 +18,17 @@ from .descriptions import Description, Joint
 from .mujoco_parts import mujoco
 from .skeleton import Skeleton
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
 PRECISION = 1e-4
 """How far from the goal an answer may be: metres and radians together."""
 POSTURES = 12
 """From how many postures a solution is looked for."""
 _MOST_STEPS = 40
 _LARGEST_STEP = 0.7  # of a joint, radians or metres
+_REMEMBERED = 5_000  # questions
+_DIFFERENT = 0.05  # of one of the joints
 _HOPELESS = (12, 0.3)  # after so many steps an error beyond this will not go away
 
 
@@ -41,8 +47,9 @@ class Reach:
         self.joints = self.skeleton.joints
         self._model, self._data, self._tip = self.skeleton.model, self.skeleton.data, self.skeleton.links[tip]
         self._jacobian, self._error = np.zeros((6, len(self.joints))), np.zeros(6)
-        self._inverse, self._turn = np.zeros(4), np.zeros(4)
+        self._inverse, self._turn, self._solution = np.zeros(4), np.zeros(4), np.zeros(6)
         self._postures = self._drawn()
+        self._answers: dict[tuple[bytes, bytes], tuple[list[np.ndarray], Iterator[np.ndarray]]] = {}
         self._shoulder, self._length = self._measured(chain)
 
     def _measured(self, chain: list[Joint]) -> tuple[np.ndarray, float]:
@@ -67,37 +74,64 @@ class Reach:
         position: of the tip in the frame of the root, metres. rotation: quaternion (w, x, y, z). first: the posture to begin with, by
         default all joints at 0.
         """
+        return next(self.solutions(position, rotation, first), None)
+
+    def solutions(self, position: np.ndarray, rotation: np.ndarray, first: np.ndarray | None = None) -> Iterator[np.ndarray]:
+        """As `solve`: the answers that the postures lead to, one after another; the same may come again."""
         if np.linalg.norm(position - self._shoulder) > self._length + PRECISION:
-            return None
+            return
         start = np.zeros(len(self.joints)) if first is None else np.asarray(first, float)
         for posture in (start, *self._postures):
             found = self._descend(position, rotation, np.clip(posture, self.skeleton.lower, self.skeleton.upper))
             if found is not None:
-                return found
-        return None
+                yield found
+
+    def recall(self, position: np.ndarray, rotation: np.ndarray, number: int = 0) -> np.ndarray | None:
+        """The answer of that number, counted from 0, of those that differ; ``None`` when there are not so many.
+
+        Answers are remembered, for a plan asks twice: before it moves, and when it moves.
+        """
+        question = (position.tobytes(), rotation.tobytes())
+        if question not in self._answers:
+            if len(self._answers) >= _REMEMBERED:
+                self._answers.clear()
+            self._answers[question] = [], self.solutions(position, rotation)
+        known, more = self._answers[question]
+        while len(known) <= number:
+            found = next(more, None)
+            if found is None:
+                return None
+            if all(np.abs(found - other).max() > _DIFFERENT for other in known):
+                known.append(found)
+        return known[number]
 
     def _descend(self, position: np.ndarray, rotation: np.ndarray, joints: np.ndarray) -> np.ndarray | None:
         model, data, tip, error, jacobian = self._model, self._data, self._tip, self._error, self._jacobian
         lower, upper = self.skeleton.lower, self.skeleton.upper
+        kinematics, centres, jacobian_of = mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_jacBody
+        places, turns, moves, turning, qpos = data.xpos[tip], data.xquat[tip], jacobian[:3], jacobian[3:], data.qpos
+        turn, solution, inverse, columns = error[3:], self._solution, self._inverse, jacobian.T
         for step in range(_MOST_STEPS):
-            data.qpos[:] = joints
-            mujoco.mj_kinematics(model, data)
-            mujoco.mj_comPos(model, data)
-            error[:3] = position - data.xpos[tip]
-            mujoco.mju_negQuat(self._inverse, data.xquat[tip])
-            mujoco.mju_mulQuat(self._turn, rotation, self._inverse)
-            mujoco.mju_quat2Vel(error[3:], self._turn, 1.0)
-            size = error @ error
+            qpos[:] = joints
+            kinematics(model, data)
+            np.subtract(position, places, error[:3])
+            mujoco.mju_negQuat(inverse, turns)
+            mujoco.mju_mulQuat(self._turn, rotation, inverse)
+            mujoco.mju_quat2Vel(turn, self._turn, 1.0)
+            size = float(error @ error)
             if size < PRECISION * PRECISION:
                 return joints
             if step == _HOPELESS[0] and size > _HOPELESS[1]:
                 return None
-            mujoco.mj_jacBody(model, data, jacobian[:3], jacobian[3:], tip)
-            product = jacobian @ jacobian.T
+            centres(model, data)
+            jacobian_of(model, data, moves, turning, tip)
+            product = jacobian @ columns
             product.flat[::7] += 1e-3 * size + 1e-6
-            change = jacobian.T @ np.linalg.solve(product, error)
-            largest = np.abs(change).max()
+            mujoco.mju_cholFactor(product, 0.0)
+            mujoco.mju_cholSolve(solution, product, error)
+            change = columns @ solution
+            largest = max(float(change.max()), -float(change.min()))
             if largest > _LARGEST_STEP:
                 change *= _LARGEST_STEP / largest
-            joints = np.clip(joints + change, lower, upper)
+            joints = np.minimum(np.maximum(joints + change, lower), upper)
         return None

@@ -14,6 +14,16 @@ from .descriptions import Description, Frame, Shape
 from .urdf import read_text
 
 DATA = Path(__file__).parent / "data"
+_TUTORIAL = "blue_metal_plate.stl bottle.dae buttermilk.dae cup.dae fork_plastic.dae knife_plastic.dae red_metal_plate.stl"
+PACKAGES = {
+    "cram_bullet_reasoning": "mug.stl plate.stl mondamin.stl pot.stl bowl.stl fork.stl knife.stl spatula.stl cap.stl glasses.stl glove.stl "
+    "shoe.stl gripper.stl axes.stl",
+    "cram_bullet_world_tutorial": _TUTORIAL,
+    "cram_pick_place_tutorial": f"{_TUTORIAL} cube.stl",
+    "cram_pr2_pick_place_demo": "blue_metal_plate.stl bottle.dae bowl.stl breakfast_cereal.stl buttermilk.dae cereal.dae cube.stl cup.dae "
+    "fork.dae knife.dae milk.stl red_metal_plate.stl spoon.stl tray-base.stl tray.stl",
+}
+"""The files of meshes in packages of the original of which the models here are."""
 
 
 class UnknownObject(KeyError):

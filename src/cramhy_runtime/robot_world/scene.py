@@ -30,6 +30,9 @@ _STANDING, _ITEM = 1, 2  # kinds in MuJoCo's masks of collisions
 _AT_REST = 0.02  # metres and radians a second; cylinders that stand tremble below it
 _REST_STEPS = 50
 _DEEP = 5e-3  # metres
+_BELOW_ALL = -1000.0  # metres
+_MOST_LIFTS = 200
+_TOGETHER = 10  # steps that are computed in one call
 
 
 class Part:
@@ -49,7 +52,11 @@ class Scene:
         self.things, self.held = list(things), held
         spec = mujoco.MjSpec()
         spec.option.timestep = STEP
-        spec.worldbody.add_geom(name=FLOOR, type=mujoco.mjtGeom.mjGEOM_PLANE, size=[20, 20, 1], contype=_STANDING, conaffinity=_ITEM)
+        # who puts planes into a world says where its floor is
+        height = _BELOW_ALL if any(shape.kind == "plane" for thing in self.things for shape in thing.all_shapes()) else 0.0
+        spec.worldbody.add_geom(
+            name=FLOOR, type=mujoco.mjtGeom.mjGEOM_PLANE, size=[20, 20, 1], pos=[0, 0, height], contype=_STANDING, conaffinity=_ITEM
+        )
         self.parts = list(self._add_parts(spec))
         self.model = spec.compile()
         self.data = mujoco.MjData(self.model)
@@ -71,7 +78,7 @@ class Scene:
             body.add_freejoint()
         masks = {"contype": _ITEM, "conaffinity": _ITEM | _STANDING} if free else {"contype": _STANDING, "conaffinity": _ITEM}
         for shape in shapes:
-            add_shape(body, shape, rgba=part.thing.colour, mass=mass / len(shapes), friction=[0.9, 0.01, 0.001], **masks)
+            add_shape(body, shape, spec, rgba=part.thing.colour, mass=mass / len(shapes), friction=[0.9, 0.01, 0.001], **masks)
         return part
 
     def _find_parts(self) -> None:
@@ -85,7 +92,21 @@ class Scene:
             self._part_of_geom[part.geoms.start : part.geoms.stop] = number
         numbers = {id(thing): number for number, thing in enumerate(self.things)}
         self._thing_of_geom = np.array([-1 if part < 0 else numbers[id(self.parts[part].thing)] for part in self._part_of_geom])
-        self._half = np.array([_half_size(model.geom_type[geom], model.geom_size[geom]) for geom in range(model.ngeom)])
+        self._planes = model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE
+        self._middle = np.where(self._planes[:, None], 0.0, model.geom_aabb[:, :3])
+        self._half = np.where(self._planes[:, None], 0.0, model.geom_aabb[:, 3:])
+        standing = [part.body for part in self.parts if isinstance(part.thing, Machine) and part.thing.fixed]
+        self._fixed = np.isin(model.geom_bodyid, standing) | self._planes
+        self._machines, self._items = [], []
+        for thing in self.things:
+            parts = [part for part in self.parts if part.thing is thing]
+            mocaps = [int(model.body_mocapid[part.body]) for part in parts]
+            if isinstance(thing, Machine):
+                self._machines.append((thing, np.array(mocaps, int), np.array([thing.skeleton.links[part.link] for part in parts], int)))
+            else:
+                joint = model.body_jntadr[parts[0].body]
+                self._items.append((thing, mocaps[0], -1 if mocaps[0] >= 0 else int(model.jnt_qposadr[joint])))
+        self._free = [part for part in self.parts if model.body_mocapid[part.body] < 0]
 
     # ----------------------------------------------------------------------------------------------------------------- places
 
@@ -93,31 +114,35 @@ class Scene:
         """Take over where the things are now."""
         model, data = self.model, self.data
         data.qvel[:] = 0
-        for part in self.parts:
-            placement = _placement(part)
-            mocap = model.body_mocapid[part.body]
-            if mocap >= 0:
-                data.mocap_pos[mocap], data.mocap_quat[mocap] = placement
+        for machine, mocaps, links in self._machines:
+            places, turns = machine.links()
+            data.mocap_pos[mocaps], data.mocap_quat[mocaps] = places[links], turns[links]
+        for item, mocap, start in self._items:
+            if start < 0:
+                data.mocap_pos[mocap], data.mocap_quat[mocap] = item.placement
             else:
-                start = model.jnt_qposadr[model.body_jntadr[part.body]]
-                data.qpos[start : start + 3], data.qpos[start + 3 : start + 7] = placement
+                data.qpos[start : start + 3], data.qpos[start + 3 : start + 7] = item.placement
         mujoco.mj_kinematics(model, data)
 
     def boxes(self) -> tuple[np.ndarray, np.ndarray]:
         """(lowest, highest corners) of the boxes along the axes around all geoms, n x 3 each."""
-        turned = np.abs(self.data.geom_xmat.reshape(-1, 3, 3))
-        reach = np.einsum("gij,gj->gi", turned, self._half)
-        return self.data.geom_xpos - reach, self.data.geom_xpos + reach
+        turned = self.data.geom_xmat.reshape(-1, 3, 3)
+        middle = self.data.geom_xpos + np.einsum("gij,gj->gi", turned, self._middle)
+        reach = np.einsum("gij,gj->gi", np.abs(turned), self._half)
+        return middle - reach, middle + reach
 
     def around(self, place: np.ndarray) -> np.ndarray:
         """The numbers of the geoms in which a place lies; cylinders and spheres count as the boxes around them."""
         turned = self.data.geom_xmat.reshape(-1, 3, 3)
         local = np.einsum("gji,gj->gi", turned, place - self.data.geom_xpos)
-        return np.flatnonzero((np.abs(local) <= self._half).all(axis=1))
+        return np.flatnonzero((np.abs(local - self._middle) <= self._half).all(axis=1))
 
     def bounds(self, thing: Item | Machine, link: str | None = None) -> tuple[np.ndarray, np.ndarray]:
         """The corners of the box along the axes around a thing, or around one of its links."""
         geoms = [geom for part in self.parts if part.thing is thing and link in (None, part.link) for geom in part.geoms]
+        if not geoms:
+            place = thing.placement.position if link is None else thing.link(link).position
+            return place.copy(), place.copy()
         lowest, highest = self.boxes()
         return lowest[geoms].min(axis=0), highest[geoms].max(axis=0)
 
@@ -127,20 +152,32 @@ class Scene:
         """The pairs of parts of different things that touch; ``None`` stands for the floor. of: only those of this thing, which then comes
         first.
 
-        Two machines that nothing moves, as furniture on its floor, touch where they were built so.
+        What is fixed, furniture and planes, does not touch each other.
         """
         lowest, highest = self.boxes()
         mine = np.flatnonzero(self._part_of_geom >= 0) if of is None else self._geoms_of(of)
+        near = self._near(lowest, highest, mine, TOUCHING)
+        near &= self._thing_of_geom[mine, None] != self._thing_of_geom
+        near &= ~(self._fixed[mine, None] & self._fixed)
         found: dict[tuple[int, int], None] = {}
-        for geom in mine:
-            near = ((lowest <= highest[geom] + TOUCHING) & (highest >= lowest[geom] - TOUCHING)).all(axis=1)
-            near &= self._thing_of_geom != self._thing_of_geom[geom]
-            near[0] = lowest[geom][2] <= TOUCHING  # the floor
-            for other in np.flatnonzero(near):
-                pair = (self._part_of_geom[geom], self._part_of_geom[other])
-                if (pair not in found and (of is not None or pair[::-1] not in found)) and self._touch(geom, other):
-                    found[pair] = None
+        for row, other in zip(*map(np.ndarray.tolist, np.nonzero(near)), strict=True):
+            geom = mine[row]
+            pair = (self._part_of_geom[geom], self._part_of_geom[other])
+            if (pair not in found and (of is not None or pair[::-1] not in found)) and self._touch(geom, other):
+                found[pair] = None
         return [(self.parts[one], None if other < 0 else self.parts[other]) for one, other in found]
+
+    def _near(self, lowest: np.ndarray, highest: np.ndarray, mine: np.ndarray, distance: float) -> np.ndarray:
+        """Which geoms are so near to those of the numbers ``mine``, by the boxes around all: a row of truth values for each of ``mine``."""
+        low, high = lowest[mine] - distance, highest[mine] + distance
+        near = np.ones((len(mine), len(lowest)), bool)
+        for axis in range(3):
+            near &= (lowest[:, axis] <= high[:, axis, None]) & (highest[:, axis] >= low[:, axis, None])
+        for plane in np.flatnonzero(self._planes):
+            normal = self.data.geom_xmat[plane].reshape(3, 3)[:, 2]
+            corners = np.where(normal > 0, lowest[mine], highest[mine])
+            near[:, plane] = (corners - self.data.geom_xpos[plane]) @ normal <= distance
+        return near
 
     def _geoms_of(self, thing: Item | Machine) -> np.ndarray:
         return np.array([geom for part in self.parts if part.thing is thing for geom in part.geoms], int)
@@ -151,55 +188,65 @@ class Scene:
     # ------------------------------------------------------------------------------------------------------------------ falls
 
     def settle(self, seconds: float) -> float:
-        """Let the free items fall for so long, or until all are at rest; the seconds that it took. The things have moved then.
-
-        An item that is inside of something that stands is lifted out of it first.
-        """
-        free = [part for part in self.parts if self.model.body_mocapid[part.body] < 0]
+        """Let the free items fall for so long, or until all are at rest; the seconds that it took. The things have moved then."""
+        free, model, data = self._free, self.model, self.data
         if not free:
             return 0.0
-        for part in free:
-            self._lift(part)
-        steps, resting = max(1, round(seconds / STEP)), 0
-        for step in range(1, steps + 1):
-            mujoco.mj_step(self.model, self.data)
-            resting = resting + 1 if np.abs(self.data.qvel).max() < _AT_REST else 0
-            if resting >= _REST_STEPS:
-                break
-            if not step & 31:
-                checkpoint()
+        steps, done, resting, step = max(1, round(seconds / STEP)), 0, 0, mujoco.mj_step
+        velocities = data.qvel
+        while done < steps and resting < _REST_STEPS:
+            count = min(_TOGETHER, steps - done)
+            step(model, data, count)
+            done += count
+            resting = resting + count if max(velocities.max(), -velocities.min()) < _AT_REST else 0
+            checkpoint()
         for part in free:
             start = self.model.jnt_qposadr[self.model.body_jntadr[part.body]]
             now = self.data.qpos[start : start + 7].copy()
             part.thing.placement = Placement(now[:3], now[3:])
-        return step * STEP
+        return done * STEP
 
-    def _lift(self, part: Part) -> None:
-        """Raise a free item that is inside of something that stands, to where it is no more."""
+    def free_all(self) -> list[tuple[Item, Item | Machine | None]]:
+        """Lift the free items out of what stands and they are inside of; the items that cannot be freed, each with what it is in.
+
+        ``None`` is the floor.
+        """
+        stuck = [(part.thing, self._thing_of_geom[geom]) for part in self._free if (geom := self._lift(part)) is not None]
+        return [(item, None if number < 0 else self.things[number]) for item, number in stuck]
+
+    def _lift(self, part: Part) -> int | None:
+        """Raise a free item that is inside of something that stands to where it is no more; a geom that it cannot get out of."""
         start = self.model.jnt_qposadr[self.model.body_jntadr[part.body]]
-        for _ in range(200):
-            if not any(self._depth(geom) > _DEEP for geom in part.geoms):
-                return
+        first, lifted = self._blocker(part), False
+        blocker = first
+        before = self.data.qpos[start + 2]
+        for _ in range(_MOST_LIFTS):
+            if blocker is None:
+                return None
+            lifted = True
             self.data.qpos[start + 2] += _DEEP
             mujoco.mj_kinematics(self.model, self.data)
+            blocker = self._blocker(part)
+        if lifted:
+            self.data.qpos[start + 2] = before
+            mujoco.mj_kinematics(self.model, self.data)
+        return first
 
-    def _depth(self, geom: int) -> float:
-        """How deep a geom is inside of what stands."""
+    def _blocker(self, part: Part) -> int | None:
+        """A geom that stands and that an item is inside of."""
+        for geom in part.geoms:
+            depth, other = self._depth(geom)
+            if depth > _DEEP:
+                return other
+        return None
+
+    def _depth(self, geom: int) -> tuple[float, int]:
+        """(how deep a geom is inside of what stands, the geom that this is)."""
         lowest, highest = self.boxes()
-        near = ((lowest <= highest[geom]) & (highest >= lowest[geom])).all(axis=1) & (self.model.geom_contype == _STANDING)
-        near[0] = True
-        distances = [mujoco.mj_geomDistance(self.model, self.data, int(geom), int(other), 0.0, None) for other in np.flatnonzero(near)]
-        return -min(distances, default=0.0)
-
-
-def _placement(part: Part) -> Placement:
-    return part.thing.placement if part.link is None else part.thing.link(part.link)
-
-
-def _half_size(kind: int, size: np.ndarray) -> np.ndarray:
-    """Half the lengths of the box around a geom, in its own frame."""
-    if kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
-        return np.array([size[0], size[0], size[1]])
-    if kind == mujoco.mjtGeom.mjGEOM_SPHERE:
-        return np.array([size[0]] * 3)
-    return np.zeros(3) if kind == mujoco.mjtGeom.mjGEOM_PLANE else np.array(size)
+        near = self._near(lowest, highest, np.array([geom]), 0.0)[0]
+        numbers = np.flatnonzero(near & ((self.model.geom_contype == _STANDING) | self._planes))
+        distances = [mujoco.mj_geomDistance(self.model, self.data, geom, int(other), 0.0, None) for other in numbers]
+        if not distances:
+            return 0.0, 0
+        deepest = int(np.argmin(distances))
+        return -distances[deepest], int(numbers[deepest])

@@ -10,16 +10,16 @@ Source: bullet-world.md 5.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import atan2
+from itertools import islice
 from typing import TYPE_CHECKING
 
-from .inverse_kinematics import Reach
-from .placements import Placement, placement
+from .placements import Placement
+from .reaching import pan_and_tilt, solver_of
 from .things import Item, Machine
 from .vision import seen
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Mapping, Sequence
+    from collections.abc import Hashable, Iterator, Mapping, Sequence
 
     import numpy as np
 
@@ -28,21 +28,24 @@ if TYPE_CHECKING:
 VISIBLE = 0.9
 """Which part of an item's picture must be seen."""
 TORSO_STEP = 0.01  # metres
+_COARSE = 6  # torso steps: between heights that are tried first
+_POSTURES = 16  # how many are tried
+_POSTURES_AT_HEIGHT = 3
 
 
 @dataclass(frozen=True)
 class ArmParts:
     """The parts of an arm.
 
-    joints: from the shoulder to the wrist. base: the link that carries the shoulder. tip: the link behind which the gripper is. tool: how
-    far the tool point is ahead of the tip, along its x, in metres. fingers: the joints that open the gripper. hand: the links that touch
+    joints: from the shoulder to the wrist. base: the link that carries the shoulder. tip: the link behind which the gripper is. tool: where
+    the tool point is in the frame of the tip. fingers: the joints that open the gripper. hand: the links that touch
     what it grips. open: the position of the fingers when it is open; factor: their position for each metre of opening.
     """
 
     joints: tuple[str, ...]
     base: str
     tip: str
-    tool: float
+    tool: Placement
     fingers: tuple[str, ...]
     hand: tuple[str, ...]
     open: float
@@ -95,8 +98,6 @@ class NothingGripped(MotionError):
 class SimulatedRobot:
     """The robot ``name`` of ``world``, with its parts."""
 
-    _reaches: dict[tuple[int, str, str], Reach] = {}
-
     def __init__(self, world: World, name: Hashable, parts: RobotParts) -> None:
         self.world, self.name, self.parts = world, name, parts
 
@@ -133,18 +134,8 @@ class SimulatedRobot:
 
     def pan_and_tilt(self, place: np.ndarray) -> tuple[float, float]:
         """Positions of the two joints of the neck, with which the head looks at a place in the world."""
-        joints, target = self.machine.description.joints, placement(place)
-        above_pan = joints[self.parts.pan]
-        x, y, _ = ((self.machine.link(above_pan.parent) @ _frame(above_pan)).inverse() @ target).position
-        pan = atan2(y, x)
-        above_tilt = joints[self.parts.tilt]
-        x, _, z = ((self._turned_neck(pan) @ _frame(above_tilt)).inverse() @ target).position
-        return pan, atan2(-z, x)
-
-    def _turned_neck(self, pan: float) -> Placement:
-        ahead = self.machine.copy()
-        ahead.bend({self.parts.pan: pan})
-        return ahead.link(ahead.description.joints[self.parts.tilt].parent)
+        joints = self.machine.description.joints
+        return pan_and_tilt(self.machine, joints[self.parts.pan], joints[self.parts.tilt], place)
 
     def _go(self, joints: Mapping[str, float]) -> None:
         limits = self.machine.description.joints
@@ -175,36 +166,73 @@ class SimulatedRobot:
     def move_tools(self, goals: Mapping[Hashable, Placement]) -> None:
         """Bring the tool points of arms to poses in the frame of the base.
 
-        The torso stays where it is if the arms can reach from there, else it goes to the highest place from which they can. Errors:
-        `OutOfReach`; then nothing has moved.
+        The torso stays where it is if the arms can reach from there, else it goes to the highest place from which they can: every sixth
+        step is tried first, then those above the first that will do. Where the arms, but for the hands, would touch something, other
+        postures are tried, some at each of these heights; if none is better, the first is taken. Errors: `OutOfReach`; then nothing has
+        moved.
         """
-        torso = self.machine.description.joints[self.parts.torso]
-        heights = [self.machine.joint(self.parts.torso), *_steps(torso.upper, torso.lower)]
-        failed = None
-        for height in heights:
-            found: dict[str, float] = {}
-            for arm, goal in goals.items():
-                answer = self.reach(arm, goal, height)
-                if answer is None:
-                    failed = arm
-                    break
-                found |= answer
-            else:
-                self.world.bend(self.name, {self.parts.torso: height, **found})
+        first = None
+        for posture in islice(self._postures(goals), _POSTURES):
+            first = first or posture
+            self.world.bend(self.name, posture)
+            if not self._arms_touch():
                 return
-        raise OutOfReach(failed, len(heights))
+        if first is None:
+            heights = self._heights()
+            arms = (arm for arm, goal in goals.items() if self.reach(arm, goal, heights[-1]) is None)
+            raise OutOfReach(next(arms, next(iter(goals))), len(heights) // _COARSE + 3)
+        self.world.bend(self.name, first)
 
-    def reach(self, arm: Hashable, goal: Placement, torso: float) -> dict[str, float] | None:
-        """Positions of an arm's joints that bring its tool point to a pose in the frame of the base; ``None`` when there are none."""
+    def _heights(self) -> list[float]:
+        """From the highest place of the torso to the lowest, step by step."""
+        limits = self.machine.description.joints[self.parts.torso]
+        count = int((limits.upper - limits.lower) / TORSO_STEP + 1e-9)
+        return [limits.upper - TORSO_STEP * step for step in range(count + 1)]
+
+    def _postures(self, goals: Mapping[Hashable, Placement]) -> Iterator[dict[str, float]]:
+        """Postures in which all arms are at their goals, in the order in which they are tried."""
+        found = False
+        for posture in self._postures_at(goals, self.machine.joint(self.parts.torso)):
+            found = True
+            yield posture
+        heights = self._heights()
+        for number in sorted({*range(0, len(heights), _COARSE), len(heights) - 1}):
+            here = self._postures_at(goals, heights[number])
+            posture = next(here, None)
+            if posture is not None:
+                if not found:
+                    above = (next(self._postures_at(goals, height), None) for height in heights[max(number - _COARSE + 1, 0) : number])
+                    yield next(filter(None, above), posture)
+                found = True
+                yield posture
+                yield from here
+
+    def _postures_at(self, goals: Mapping[Hashable, Placement], torso: float) -> Iterator[dict[str, float]]:
+        """Postures of the arms, and of the torso at this height; none when one of the arms does not reach its goal."""
+        for number in range(_POSTURES_AT_HEIGHT):
+            answers = [self.reach(arm, goal, torso, number) for arm, goal in goals.items()]
+            if None in answers:
+                return
+            yield {self.parts.torso: torso, **{joint: value for answer in answers for joint, value in answer.items()}}
+
+    def _arms_touch(self) -> bool:
+        """Whether anything but a hand touches something that is not held."""
+        hands = {link for arm in self.parts.arms.values() for link in arm.hand}
+        held = self.machine.holds
+        touching = (other for own, other in self.world.contacts(self.name) if own.link not in hands)
+        return any(other is not None and other.thing.name not in held for other in touching)
+
+    def reach(self, arm: Hashable, goal: Placement, torso: float, number: int = 0) -> dict[str, float] | None:
+        """Positions of an arm's joints that bring its tool point to a pose in the frame of the base; ``None`` when there are none.
+
+        number: of several answers, the one of this number, counted from 0.
+        """
         parts, machine = self.parts.arms[arm], self.machine
-        key = (id(machine.skeleton), parts.base, parts.tip)
-        solver = self._reaches.get(key)
-        if solver is None:
-            solver = self._reaches[key] = Reach(machine.description, parts.base, parts.tip)
-        tip = goal @ placement((-parts.tool, 0.0, 0.0))
+        solver = solver_of(machine.description, parts.base, parts.tip)
+        tip = goal @ parts.tool.inverse()
         position, rotation = machine.skeleton.pose(machine.skeleton.positions({self.parts.torso: torso}), parts.base)
         wanted = Placement(position, rotation).inverse() @ tip
-        answer = solver.solve(wanted.position, wanted.rotation)
+        answer = solver.recall(wanted.position, wanted.rotation, number)
         return None if answer is None else dict(zip(solver.joints, map(float, answer), strict=True))
 
     # ----------------------------------------------------------------------------------------------------------------- grippers
@@ -230,12 +258,3 @@ class SimulatedRobot:
 
     def set_fingers(self, arm: Hashable, position: float) -> None:
         self.world.bend(self.name, dict.fromkeys(self.parts.arms[arm].fingers, position))
-
-
-def _frame(joint) -> Placement:
-    return placement(joint.frame.position, joint.frame.rotation)
-
-
-def _steps(highest: float, lowest: float) -> list[float]:
-    count = int((highest - lowest) / TORSO_STEP + 1e-9)
-    return [highest - TORSO_STEP * step for step in range(count + 1)]

@@ -54,6 +54,10 @@ class Item(Thing):
     def copy(self) -> Item:
         return replace(self)
 
+    def all_shapes(self) -> list[Shape]:
+        """What it is made of."""
+        return list(self.shapes)
+
 
 @dataclass
 class Grip:
@@ -70,7 +74,8 @@ class Machine(Thing):
     """A robot, or furniture.
 
     name: what the world knows it by. skeleton: computes where its links are. placement: where its root is in the world. joints: their
-    positions, in the order of ``skeleton.joints``. holds: the grips of each item that it holds.
+    positions, in the order of ``skeleton.joints``. holds: the grips of each item that it holds. fixed: it is furniture, which does not
+    touch the floor that it stands on, nor other furniture.
     """
 
     name: Hashable
@@ -79,6 +84,7 @@ class Machine(Thing):
     joints: np.ndarray
     colour: Colour = (0.8, 0.8, 0.8, 1.0)
     holds: dict[Hashable, list[Grip]] = field(default_factory=dict)
+    fixed: bool = False
     _links: tuple[np.ndarray, np.ndarray] | None = None
 
     @property
@@ -87,6 +93,10 @@ class Machine(Thing):
 
     def copy(self) -> Machine:
         return replace(self, holds={item: list(grips) for item, grips in self.holds.items()})
+
+    def all_shapes(self) -> list[Shape]:
+        """What all its links are made of."""
+        return [shape for link in self.description.links.values() for shape in link.shapes]
 
     def stand(self, placement: Placement) -> None:
         """Put the root there."""

@@ -11,29 +11,12 @@ from __future__ import annotations
 
 from math import asin, atan2, copysign, inf, isfinite, pi
 from pathlib import Path
-from xml.parsers import expat
 from xml.sax.saxutils import quoteattr
 
 from .descriptions import UNTURNED, Description, DescriptionError, Four, Frame, Joint, Link, Shape, Three, turned
+from .xml_elements import Element, parsed
 
-MOST_ELEMENTS = 200_000
 _KINDS = {"fixed", "revolute", "continuous", "prismatic"}
-
-
-class _Element:
-    """An XML element: its name, attributes, elements inside, and line."""
-
-    __slots__ = ("name", "attributes", "inside", "line")
-
-    def __init__(self, name: str, attributes: dict[str, str], line: int) -> None:
-        self.name, self.attributes, self.line = name, attributes, line
-        self.inside: list[_Element] = []
-
-    def all(self, name: str) -> list[_Element]:
-        return [each for each in self.inside if each.name == name]
-
-    def first(self, name: str) -> _Element | None:
-        return next((each for each in self.inside if each.name == name), None)
 
 
 def read_file(path: str | Path) -> Description:
@@ -44,35 +27,7 @@ def read_file(path: str | Path) -> Description:
 
 def read_text(text: str | bytes, file: str = "") -> Description:
     """The description in the text of a URDF file; ``file`` is its name in errors. Errors: `DescriptionError`."""
-    return _Reading(file).description(_parsed(text, file))
-
-
-def _parsed(text: str | bytes, file: str) -> _Element:
-    """The root element of an XML text."""
-    parser, stack, roots, count = expat.ParserCreate(), [], [], 0
-
-    def start(name: str, attributes: dict[str, str]) -> None:
-        nonlocal count
-        count += 1
-        element = _Element(name, attributes, parser.CurrentLineNumber)
-        if count > MOST_ELEMENTS:
-            raise DescriptionError(f"it has more than {MOST_ELEMENTS} elements.", file, element.line, name)
-        (stack[-1].inside if stack else roots).append(element)
-        stack.append(element)
-
-    def refused(*arguments: object) -> None:
-        raise DescriptionError("entities of its own are not read: they can make a small file huge.", file, parser.CurrentLineNumber)
-
-    parser.StartElementHandler = start
-    parser.EndElementHandler = lambda name: stack.pop()
-    parser.EntityDeclHandler = refused
-    try:
-        parser.Parse(text, True)
-    except expat.ExpatError as problem:
-        within = stack[-1].name if stack else ""
-        reason = f"this is no XML: {expat.ErrorString(problem.code)}, column {problem.offset + 1}."
-        raise DescriptionError(reason, file, problem.lineno, within) from None
-    return roots[0]
+    return _Reading(file).description(parsed(text, file))
 
 
 class _Reading:
@@ -81,10 +36,10 @@ class _Reading:
     def __init__(self, file: str) -> None:
         self.file = file
 
-    def wrong(self, element: _Element, reason: str) -> DescriptionError:
+    def wrong(self, element: Element, reason: str) -> DescriptionError:
         return DescriptionError(reason, self.file, element.line, element.name)
 
-    def description(self, root: _Element) -> Description:
+    def description(self, root: Element) -> Description:
         if root.name != "robot":
             raise self.wrong(root, "a URDF file has <robot> around all. Is it a xacro file? Then expand it first: xacro FILE > robot.urdf")
         links: dict[str, Link] = {}
@@ -100,12 +55,12 @@ class _Reading:
         except DescriptionError as problem:
             raise self.wrong(root, problem.reason) from None
 
-    def put(self, found: dict, element: _Element, thing: Link | Joint) -> None:
+    def put(self, found: dict, element: Element, thing: Link | Joint) -> None:
         if thing.name in found:
             raise self.wrong(element, f"there are two of the name {thing.name}.")
         found[thing.name] = thing
 
-    def link(self, element: _Element) -> Link:
+    def link(self, element: Element) -> Link:
         shapes = element.all("collision") or element.all("visual")
         mass = (inertial := element.first("inertial")) and inertial.first("mass")
         return Link(
@@ -114,7 +69,7 @@ class _Reading:
             self.number(mass, "value", least=0.0) if mass is not None else 0.0,
         )
 
-    def shape(self, element: _Element) -> Shape:
+    def shape(self, element: Element) -> Shape:
         geometry = element.first("geometry")
         inner = geometry.inside[0] if geometry and geometry.inside else None
         if inner is None:
@@ -131,7 +86,7 @@ class _Reading:
             return Shape("mesh", scale, frame, self.text(inner, "filename"))
         raise self.wrong(inner, f"<{inner.name}> is no shape; there are <box>, <cylinder>, <sphere> and <mesh>.")
 
-    def joint(self, element: _Element, links: dict[str, Link]) -> Joint:
+    def joint(self, element: Element, links: dict[str, Link]) -> Joint:
         name, kind = self.name(element), self.text(element, "type")
         if kind not in _KINDS:
             known = ", ".join(sorted(_KINDS))
@@ -154,14 +109,14 @@ class _Reading:
         mimic = element.first("mimic")
         return Joint(name, kind, *ends, self.frame(element), axis, mimic=self.text(mimic, "joint") if mimic else "", **bounds)
 
-    def axis(self, element: _Element) -> Three:
+    def axis(self, element: Element) -> Three:
         x, y, z = self.numbers(element, "xyz", 3)
         length = (x * x + y * y + z * z) ** 0.5
         if not length:
             raise self.wrong(element, "an axis of length 0 points nowhere.")
         return (x / length, y / length, z / length)
 
-    def frame(self, element: _Element) -> Frame:
+    def frame(self, element: Element) -> Frame:
         origin = element.first("origin")
         if origin is None:
             return Frame()
@@ -169,21 +124,21 @@ class _Reading:
         angles = self.numbers(origin, "rpy", 3) if "rpy" in origin.attributes else (0.0, 0.0, 0.0)
         return Frame(position, turned(*angles))
 
-    def text(self, element: _Element, attribute: str) -> str:
+    def text(self, element: Element, attribute: str) -> str:
         value = element.attributes.get(attribute, "").strip()
         if not value:
             raise self.wrong(element, f'the attribute {attribute}="..." is missing.')
         return value
 
-    def name(self, element: _Element) -> str:
+    def name(self, element: Element) -> str:
         return self.text(element, "name")
 
-    def number(self, element: _Element, attribute: str, *, least: float = -inf, default: float | None = None) -> float:
+    def number(self, element: Element, attribute: str, *, least: float = -inf, default: float | None = None) -> float:
         if default is not None and attribute not in element.attributes:
             return default
         return self.numbers(element, attribute, 1, least=least)[0]
 
-    def numbers(self, element: _Element, attribute: str, count: int, *, least: float = -inf) -> tuple:
+    def numbers(self, element: Element, attribute: str, count: int, *, least: float = -inf) -> tuple:
         words = self.text(element, attribute).split()
         try:
             values = tuple(float(word) for word in words)

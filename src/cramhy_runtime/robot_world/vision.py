@@ -96,6 +96,9 @@ def _distances_alone(scene: Scene, camera: Placement, rays: np.ndarray, item: It
             for geom in part.geoms:
                 place, turn = scene.data.geom_xpos[geom], scene.data.geom_xmat[geom]
                 size, kind = scene.model.geom_size[geom], scene.model.geom_type[geom]
-                met = np.array([mujoco.mju_rayGeom(place, turn, size, camera.position, ray, kind) for ray in rays])
+                if kind == mujoco.mjtGeom.mjGEOM_MESH:
+                    met = np.array([mujoco.mj_rayMesh(scene.model, scene.data, geom, camera.position, ray) for ray in rays])
+                else:
+                    met = np.array([mujoco.mju_rayGeom(place, turn, size, camera.position, ray, kind) for ray in rays])
                 nearest = np.where((met >= 0) & (met < nearest), met, nearest)
     return nearest

@@ -17,6 +17,8 @@ from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import list_from
 
 from . import shown
+from .mesh_files import MeshError
+from .meshes import mesh_of
 from .placements import Placement, placement
 from .scene import FLOOR, Part, Scene
 from .skeleton import Skeleton, skeleton_of
@@ -44,6 +46,8 @@ class World:
 
     def __init__(self) -> None:
         self.things: dict[Hashable, Thing] = {}
+        self.ignored: list[tuple[Hashable, Hashable]] = []  # pairs of names whose contacts do not count
+        self.stuck: list[tuple[Item, Thing | None]] = []  # items that the last `simulate` could not free, and what they are in
         self._scene: Scene | None = None
         self._placed = False
 
@@ -63,15 +67,30 @@ class World:
         return self._add(Item(name, tuple(shapes), at or placement(), mass, colour, tuple(types)))
 
     def add_machine(
-        self, name: Hashable, description: Description | Skeleton, at: Placement | None = None, joints: Mapping[str, float] | None = None
+        self,
+        name: Hashable,
+        description: Description | Skeleton,
+        at: Placement | None = None,
+        joints: Mapping[str, float] | None = None,
+        *,
+        fixed: bool = False,
     ) -> Machine:
-        """Add a robot, or furniture, with the given positions of its joints, the others 0. Errors: `WorldError`, when the name is taken."""
+        """Add a robot, or furniture, with the given positions of its joints, the others 0. See `Machine` for ``fixed``.
+
+        Errors: `WorldError`, when the name is taken.
+        """
         skeleton = description if isinstance(description, Skeleton) else skeleton_of(description)
-        return self._add(Machine(name, skeleton, at or placement(), skeleton.positions(joints or {})))
+        return self._add(Machine(name, skeleton, at or placement(), skeleton.positions(joints or {}), fixed=fixed))
 
     def _add(self, thing: T) -> T:
         if thing.name in self.things or thing.name == FLOOR:
             error(WorldError("there is a thing named ~S already.", thing.name))
+        for shape in thing.all_shapes():
+            if shape.kind == "mesh":
+                try:
+                    mesh_of(shape)
+                except MeshError as problem:
+                    error(WorldError("the mesh of ~S cannot be read: ~A", thing.name, str(problem)))
         self.things[thing.name] = thing
         thing.world = self
         self._scene = None
@@ -200,8 +219,20 @@ class World:
         return self.scene.bounds(self.thing(name), link)
 
     def simulate(self, seconds: float) -> float:
-        """Let free items fall for so long, or until all are at rest; the seconds that it took."""
-        took = self.scene.settle(seconds)
+        """Let free items fall for so long, or until all are at rest; the seconds that it took.
+
+        An item that is inside of something that stands is lifted out of it first. One that cannot be, as in a wall, stays where it is;
+        `stuck` tells of it.
+        """
+        self.stuck = self.scene.free_all()
+        if not self.stuck:
+            took = self.scene.settle(seconds)
+        else:
+            held = {item for machine in self.machines() for item in machine.holds}
+            scene = Scene(self.things.values(), frozenset(held | {item.name for item, _ in self.stuck}))
+            scene.place()
+            scene.free_all()
+            took = scene.settle(seconds)
         self._placed = False
         shown.changed(self)
         return took
@@ -215,6 +246,7 @@ class World:
     def copy(self) -> World:
         """A world with the same things at the same places, which goes its own way."""
         new = World()
+        new.ignored = list(self.ignored)
         for name, thing in self.things.items():
             new.things[name] = copied = thing.copy()
             copied.world = new

@@ -43,3 +43,7 @@
 (defmethod cram-occasions-events:on-event btr-note-name ((event cpoe:object-perceived-event))
   (let ((designator (cpoe:event-object-designator event)))
     (setf (gethash (desig:first-desig designator) *names*) (desig:desig-prop-value designator :name))))
+
+(defmethod cram-occasions-events:on-event btr-note-motion ((event cpoe:robot-state-changed))
+  (btr:timeline-advance btr:*current-timeline*
+                        (btr:make-event btr:*current-bullet-world* `(location-change ,(btr:get-robot-name)))))

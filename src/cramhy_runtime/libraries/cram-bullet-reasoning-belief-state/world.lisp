@@ -11,24 +11,32 @@
 (defvar *names* (make-hash-table :test 'eq)
   "Designators, and the names of the objects that they were found to be.")
 
-(defun parameter-text (parameter model)
-  "The text of a ROS parameter; that of MODEL, which comes with cramhy, where there is none."
+(defun parameter-text (parameter file)
+  "The text of a ROS parameter; that of FILE, where there is none."
   (or (ignore-errors (roslisp:get-param parameter nil))
-      (robot-world:description-text model)))
+      (robot-world:description-text file)))
+
+(defun robot-file ()
+  "The URDF file that the robot's description names; that of the PR2, where it names none."
+  (let ((solution (cut:lazy-car (prolog '(and (cram-robot-interfaces:robot ?robot)
+                                              (cram-robot-interfaces:robot-description-file ?robot ?file))))))
+    (if solution (cut:var-value '?file solution) "pr2.urdf")))
 
 (defun robot-urdf ()
   (or *robot-urdf*
-      (setf *robot-urdf* (robot-world:read-description (substitute #\Space #\\ (parameter-text *robot-parameter* :pr2)) *robot-parameter*))))
+      (setf *robot-urdf* (robot-world:read-description (substitute #\Space #\\ (parameter-text *robot-parameter* (robot-file))) *robot-parameter*))))
 
 (defun kitchen-urdf ()
   (or *kitchen-urdf*
-      (setf *kitchen-urdf* (robot-world:read-description (parameter-text *kitchen-parameter* :kitchen) *kitchen-parameter*))))
+      (setf *kitchen-urdf* (robot-world:read-description (parameter-text *kitchen-parameter* "kitchen.urdf") *kitchen-parameter*))))
 
 (defun setup-world-database ()
   "Fill the current world with the kitchen and the robot, whose arms are parked."
   (let ((world btr:*current-bullet-world*)
         (robot (btr:get-robot-name)))
-    (btr:add-object world :urdf :kitchen '((0 0 0) (0 0 0 1)) :urdf (kitchen-urdf))
+    (btr:add-object world :static-plane :floor '((0 0 0) (0 0 0 1)) :normal '(0 0 1) :constant 0)
+    (btr:add-object world :urdf :kitchen '((0 0 0) (0 0 0 1))
+                    :urdf (kitchen-urdf) :collision-group :static-filter :collision-mask '(:default-filter :character-filter) :compound t)
     (if (null robot)
         (warn "ROBOT was not defined. Have you loaded a robot package?")
         (let ((machine (btr:add-object world :urdf robot '((0 0 0) (0 0 0 1)) :urdf (robot-urdf))))

@@ -54,8 +54,8 @@
   (remove-object *current-bullet-world* name))
 
 (defun kill-all-objects ()
-  "Take all objects out of the world; robot and furniture stay."
-  (dolist (item (find-objects *current-bullet-world* (lambda (thing) (typep thing 'item))))
+  "Take all objects that have a type out of the world; robot, furniture, planes and boxes stay."
+  (dolist (item (find-objects *current-bullet-world* (lambda (thing) (and (typep thing 'item) (item-types thing)))))
     (kill-object (name item))))
 
 (defun respawn-object (object)

@@ -20,4 +20,5 @@
     (move-robot)
     (dolist (solution (force-ll (prolog '(and (robot ?robot) (robot-arms-parking-joint-states ?robot ?states ?arm)))))
       (set-robot-state-from-joints (var-value '?states solution) robot))
-    (set-robot-state-from-joints '(("torso_lift_joint" 0.16825)) robot)))
+    (dolist (solution (force-ll (prolog '(and (robot ?robot) (robot-torso-link-joint ?robot ?link ?joint)))))
+      (set-robot-state-from-joints `((,(var-value '?joint solution) 0.16825)) robot))))

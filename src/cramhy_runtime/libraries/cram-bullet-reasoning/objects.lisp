@@ -7,10 +7,18 @@
   (if (listp vector) (apply #'make-3d-vector vector) vector))
 
 (defun ensure-pose (pose)
-  "POSE, or the pose of a list ((x y z) (qx qy qz qw)), or (x y z)."
-  (cond ((not (listp pose)) pose)
+  "POSE, or the pose of a list ((x y z) (qx qy qz qw)), or (x y z). A pose in another frame than the world's is transformed."
+  (cond ((typep pose 'pose-stamped) (in-the-world pose))
+        ((not (listp pose)) pose)
         ((listp (first pose)) (make-pose (ensure-vector (first pose)) (apply #'make-quaternion (second pose))))
         (t (make-pose (ensure-vector pose) (make-identity-rotation)))))
+
+(defun in-the-world (pose)
+  "POSE, which is stamped, in the frame of the world."
+  (let ((frame (or *fixed-frame* "map")))
+    (if (string= (string-left-trim "/" (frame-id pose)) (string-left-trim "/" frame))
+        pose
+        (ensure-pose-in-frame pose frame :use-zero-time t))))
 
 (defgeneric name (object)
   (:documentation "What OBJECT is called in its world.")
@@ -42,25 +50,70 @@
 ;;; Adding. Sizes of boxes and cylinders are whole lengths; those of the kinds of items are half of them, as in the original.
 
 (defgeneric add-object (world type name pose &key &allow-other-keys)
-  (:documentation "Add an object of a type to WORLD, and return it. POSE is a pose or a list.")
+  (:documentation "Add an object of a type to WORLD, and return it. POSE is a pose or a list. The keys depend on the type; with all of them
+:DISABLE-COLLISIONS-WITH names objects whose contacts with this one do not count.")
+  (:method :around (world type name pose &key disable-collisions-with &allow-other-keys)
+    (let ((object (call-next-method)))
+      (dolist (other disable-collisions-with object)
+        (robot-world:ignore-contact world name other))))
   (:method (world (type (eql :box)) name pose &key (mass 0.2) size color)
     (robot-world:add-shape world name :box (lengths size) (ensure-pose pose) :mass mass :color color))
   (:method (world (type (eql :colored-box)) name pose &key (mass 0.2) size (color '(0.5 0.5 0.5)))
     (robot-world:add-shape world name :box (lengths size) (ensure-pose pose) :mass mass :color color))
+  (:method (world (type (eql :visualization-box)) name pose &key size color)
+    (robot-world:add-shape world name :box (lengths size) (ensure-pose pose) :mass 0 :color color))
   (:method (world (type (eql :sphere)) name pose &key (mass 0.2) radius color)
     (robot-world:add-shape world name :sphere (list radius) (ensure-pose pose) :mass mass :color color))
   (:method (world (type (eql :cylinder)) name pose &key (mass 0.2) size color)
     (destructuring-bind (x y z) (lengths size)
       (robot-world:add-shape world name :cylinder (list (/ (+ x y) 4) z) (ensure-pose pose) :mass mass :color color)))
-  (:method (world (type (eql :mesh)) name pose &key (mass 0.2) mesh color types)
-    (robot-world:add-object-of-type world name mesh (ensure-pose pose) :mass mass :color color :types types))
-  (:method (world (type (eql :urdf)) name pose &key urdf color)
-    (robot-world:add-description world name (if (stringp urdf) (robot-world:read-description urdf) urdf) (ensure-pose pose) :color color))
-  (:method (world type name pose &key (mass 0.2) color)
-    (unless (member type (robot-world:object-types))
-      (error "There is no object of type ~s. There are ~{~s~^, ~}, and :box, :sphere, :cylinder, :mesh and :urdf."
-             type (robot-world:object-types)))
-    (robot-world:add-object-of-type world name type (ensure-pose pose) :mass mass :color color)))
+  (:method (world (type (eql :cone)) name pose &key (mass 0.2) radius height color)
+    (robot-world:add-shape world name :cone (list radius height) (ensure-pose pose) :mass mass :color color))
+  (:method (world (type (eql :point-cloud)) name pose &key points (mass 0) color)
+    (robot-world:add-shape world name :points (coerce points 'list) (ensure-pose pose) :mass mass :color color))
+  (:method (world (type (eql :static-plane)) name pose &key (normal '(0 0 1)) (constant 0) color)
+    (robot-world:add-shape world name :plane () (plane-pose (ensure-pose pose) (ensure-vector normal) constant) :mass 0 :color color))
+  (:method (world (type (eql :mesh)) name pose &key (mass 0.2) mesh color types (scale 1.0) disable-face-culling)
+    (declare (ignore disable-face-culling))
+    (add-mesh-item world name (ensure-pose pose) mesh :mass mass :color color :types types :scale scale))
+  (:method (world (type (eql :cutlery)) name pose &key (mass 0.2) (cutlery-type :knife) color)
+    (robot-world:add-object-of-type world name cutlery-type (ensure-pose pose) :mass mass :color color :types (list type cutlery-type)))
+  (:method (world (type (eql :generic-cup)) name pose &key (mass 0.2) (radius 0.04) (height 0.09) color)
+    (robot-world:add-shape world name :cylinder (list radius height) (ensure-pose pose) :mass mass :color color :types '(:generic-cup)))
+  (:method (world (type (eql :urdf)) name pose &key urdf color (collision-group :character-filter) collision-mask compound)
+    (declare (ignore collision-mask compound))
+    (robot-world:add-description world name (if (stringp urdf) (robot-world:read-description urdf) urdf) (ensure-pose pose)
+                                 :color color :fixed (eq collision-group :static-filter)))
+  (:method (world type name pose &key (mass 0.2) size radius color)
+    (cond (size
+           (add-half-lengths world name type size (ensure-pose pose) mass color))
+          (radius
+           (robot-world:add-shape world name :sphere (list radius) (ensure-pose pose) :mass mass :color color :types (list type)))
+          ((or (member type (robot-world:object-types)) (file-of-mesh type))
+           (add-mesh-item world name (ensure-pose pose) type :mass mass :color color))
+          (t
+           (error "There is no object of type ~s. There are ~{~s~^, ~}, and :box, :sphere, :cylinder, :cone, :static-plane, :mesh and :urdf."
+                  type (robot-world:object-types))))))
+
+(defun add-half-lengths (world name type size pose mass color)
+  "Add an item of a kind whose size is given as half its lengths: a cylinder where things of the kind are round, else a box."
+  (destructuring-bind (x y z) (lengths size)
+    (unless (member type '(:pancake-maker :pancake :orange :apple :sugar-box :cereal :mug :generic-cup))
+      (error "An object of type ~s has no :size." type))
+    (if (member type '(:pancake-maker :pancake :mug :generic-cup))
+        (robot-world:add-shape world name :cylinder (list (/ (+ x y) 2) (* 2 z)) pose :mass mass :color color :types (list type))
+        (robot-world:add-shape world name :box (list (* 2 x) (* 2 y) (* 2 z)) pose :mass mass :color color :types (list type)))))
+
+(defun plane-pose (pose normal constant)
+  "The pose of a plane whose points have the distance CONSTANT from POSE, along NORMAL, which is given in the frame of POSE."
+  (let* ((normal (v* normal (/ (v-norm normal))))
+         (up (make-3d-vector 0 0 1))
+         (axis (cross-product up normal))
+         (turn (cond ((> (v-norm axis) 1d-9) (axis-angle->quaternion axis (acos (max -1 (min 1 (dot-product up normal))))))
+                     ((plusp (z normal)) (make-identity-rotation))
+                     (t (make-quaternion 1 0 0 0))))
+         (plane (transform-pose (pose->transform pose) (make-pose (v* normal constant) turn))))
+    plane))
 
 (defun lengths (size)
   "The three numbers of a list or a 3d-vector."
@@ -79,7 +132,7 @@
   "The lengths of the box around an item, or around an object of a type, a 3d-vector."
   (if (typep item-or-type 'object)
       (calculate-bb-dims item-or-type)
-      (or (robot-world:object-size item-or-type)
+      (or (mesh-dimensions item-or-type)
           (error "Couldn't fine a mesh for object type ~a." item-or-type))))
 
 ;;; What touches what.
@@ -103,6 +156,77 @@
   "Whether the middle of OBJECT is as high as that of OTHER, or higher, wherever they are."
   (>= (z (bounding-box-center (aabb object))) (z (bounding-box-center (aabb other)))))
 
+(defun below-p (object other)
+  "Whether the middle of OBJECT is as low as that of OTHER, or lower, wherever they are."
+  (above-p other object))
+
+(defun find-objects-above (world object)
+  "The objects that are above OBJECT."
+  (find-objects world (lambda (other) (and (not (eq other object)) (above-p other object)))))
+
+(defun find-objects-below (world object)
+  "The objects that are below OBJECT."
+  (find-objects world (lambda (other) (and (not (eq other object)) (below-p other object)))))
+
 (defun stable-p (object)
   "Whether OBJECT would still be where it is after five seconds."
   (or (not (typep object 'item)) (robot-world:stable object)))
+
+(defun disabled-collision-objects (world)
+  "The pairs of names (name . other) of objects whose contacts do not count."
+  (robot-world:ignored-contacts world))
+
+;;; The bodies of an object: of an item one, of a robot one for each link that has shapes.
+
+(defclass rigid-body ()
+  ((name :initarg :name :reader name)
+   (object :initarg :object :reader body-object)
+   (link :initarg :link :initform nil :reader body-link))
+  (:documentation "An item, or a link of a robot."))
+
+(defmethod pose ((body rigid-body))
+  (if (body-link body)
+      (link-pose (body-object body) (body-link body))
+      (pose (body-object body))))
+
+(defmethod (setf pose) (new-value (body rigid-body))
+  (if (body-link body)
+      (setf (link-pose (body-object body) (body-link body)) new-value)
+      (setf (pose (body-object body)) new-value)))
+
+(defmethod aabb ((body rigid-body))
+  (if (body-link body)
+      (cl-bullet::bounding-box-of (robot-world:part-bounds (body-object body) (body-link body)))
+      (aabb (body-object body))))
+
+(defun make-rigid-body-name (object-name link-name)
+  "The name of the body of a link: a keyword, such as :|KITCHEN.sink_area|."
+  (intern (format nil "~a.~a" object-name link-name) :keyword))
+
+(defun solid-links (robot)
+  "The names of the links of ROBOT that have shapes."
+  (loop for (name nil shapes) in (robot-world:description-links (robot-world:machine-description robot))
+        when shapes collect name))
+
+(defgeneric rigid-bodies (object)
+  (:documentation "The list of the bodies of OBJECT.")
+  (:method ((item item)) (list (make-instance 'rigid-body :name (name item) :object item)))
+  (:method ((robot robot-object))
+    (loop for link in (solid-links robot)
+          collect (make-instance 'rigid-body :name (make-rigid-body-name (name robot) link) :object robot :link link))))
+
+(defun rigid-body-names (object)
+  "The names of the bodies of OBJECT."
+  (mapcar #'name (rigid-bodies object)))
+
+(defun rigid-body (object name)
+  "The body of OBJECT that has that name, or nil."
+  (find name (rigid-bodies object) :key #'name))
+
+(defun copy-object (object world)
+  "A copy of OBJECT, with what it holds, is in each copy of its world: that in WORLD, or nil."
+  (object world (name object)))
+
+(defun invalidate-object (object)
+  "Where an object's parts are is computed when it is asked for, so nothing is to be forgotten."
+  object)

@@ -30,9 +30,14 @@
     (let ((up (- (z (origin pose)) (z (origin (bottom-pose object))))))
       (setf (pose object) (copy-pose pose :origin (v+ (origin pose) (make-3d-vector 0 0 up)))))))
 
-(def-fact-group bullet-worlds (bullet-world clear-bullet-world simulate)
+(def-fact-group bullet-worlds (bullet-world clear-bullet-world simulate simulate-realtime step debug-window debug-costmap)
   (<- (bullet-world ?world)
+    (not (bound ?world))
     (lisp-fun get-current-world ?world))
+
+  (<- (bullet-world ?world)
+    (bound ?world)
+    (lisp-type ?world bt-reasoning-world))
 
   (<- (bullet-world ?world ?name)
     (bullet-world ?world)
@@ -43,7 +48,28 @@
 
   (<- (simulate ?world ?seconds)
     (bullet-world ?world)
-    (lisp-fun simulate ?world ?seconds ?)))
+    (lisp-fun simulate ?world ?seconds ?))
+
+  (<- (simulate ?world ?seconds ?step)
+    (bullet-world ?world)
+    (lisp-fun simulate ?world ?seconds ?step ?))
+
+  (<- (simulate-realtime ?world ?seconds)
+    (simulate ?world ?seconds))
+
+  (<- (step ?world)
+    (step ?world 0.01))
+
+  (<- (step ?world ?seconds)
+    (bullet-world ?world)
+    (lisp-fun step-simulation ?world ?seconds ?))
+
+  (<- (debug-window ?world)
+    (bullet-world ?world)
+    (lisp-fun add-debug-window ?world ?))
+
+  (<- (debug-costmap ?costmap)
+    (lisp-fun add-costmap-function-object ?costmap ?)))
 
 (defun get-current-world ()
   "The current world; there is always one."
@@ -67,6 +93,28 @@
   (<- (assert ?world (object-pose ?name ?pose))
     (%object ?world ?name ?object)
     (lisp-fun move-to ?object ?pose ?))
+
+  (<- (assert (object-pose-on ?world ?name ?pose))
+    (assert ?world (object-pose-on ?name ?pose)))
+
+  (<- (assert (joint-state ?world ?robot ?states))
+    (assert ?world (joint-state ?robot ?states)))
+
+  (<- (assert (attached ?world ?robot ?link ?name))
+    (assert ?world (attached ?robot ?link ?name)))
+
+  (<- (assert ?world (attached ?robot ?link ?name))
+    (%object ?world ?robot ?instance)
+    (%object ?world ?name ?object)
+    (lisp-fun attach-object ?instance ?object ?link ?))
+
+  (<- (retract ?world (attached ?robot ?link ?name))
+    (%object ?world ?robot ?instance)
+    (%object ?world ?name ?object)
+    (lisp-fun detach-object ?instance ?object ?link ?))
+
+  (<- (retract (attached ?world ?robot ?link ?name))
+    (retract ?world (attached ?robot ?link ?name)))
 
   (<- (assert ?world (object-pose-on ?name ?pose))
     (%object ?world ?name ?object)
@@ -108,6 +156,10 @@
   (<- (object-type ?world ?name ?type)
     (item-type ?world ?name ?type))
 
+  (<- (object-type ?world ?name ?type)
+    (%object ?world ?name ?object)
+    (lisp-fun kind-of ?object ?type))
+
   (<- (object-pose ?world ?name ?pose)
     (not (bound ?pose))
     (%object ?world ?name ?object)
@@ -132,10 +184,14 @@
     (%object ?world ?name ?object)
     (lisp-fun bottom-pose ?object ?pose)))
 
+(defun kind-of (object)
+  "The class of OBJECT, as a symbol."
+  (if (typep object 'item) 'item 'robot-object))
+
 (defun move-to (object pose)
   (setf (pose object) (ensure-pose pose)))
 
-(def-fact-group bullet-contacts (contact object-not-in-collision stable stable-items above below supported-by)
+(def-fact-group bullet-contacts (contact object-not-in-collision stable stable-items above below supported-by supporting)
   (<- (contact ?world ?name ?other-name)
     (%object ?world ?name ?object)
     (lisp-fun find-objects-in-contact ?world ?object ?others)
@@ -150,7 +206,18 @@
   (<- (object-not-in-collision ?world ?name)
     (%object ?world ?name ?object)
     (forall (contact ?world ?name ?other)
-            (attached ?world ?other ? ?name)))
+            (contact-does-not-count ?world ?name ?other)))
+
+  (<- (contact-does-not-count ?world ?name ?other)
+    (attached ?world ?other ? ?name))
+
+  (<- (contact-does-not-count ?world ?name ?other)
+    (attached ?world ?name ? ?other))
+
+  (<- (contact-does-not-count ?world ?name ?other)
+    (lisp-fun disabled-collision-objects ?world ?pairs)
+    (or (member (?name . ?other) ?pairs)
+        (member (?other . ?name) ?pairs)))
 
   (<- (stable ?world ?name)
     (%object ?world ?name ?object)
@@ -171,8 +238,25 @@
     (not (== ?name ?other-name))
     (lisp-pred above-p ?object ?other))
 
+  (<- (above ?world ?name ?other-name ?link)
+    (%object ?world ?name ?object)
+    (%object ?world ?other-name ?other)
+    (not (== ?name ?other-name))
+    (link ?world ?other-name ?link)
+    (lisp-pred above-link-p ?object ?other ?link))
+
   (<- (below ?world ?name ?other-name)
     (above ?world ?other-name ?name))
+
+  (<- (below ?world ?name ?other-name ?link)
+    (%object ?world ?name ?object)
+    (%object ?world ?other-name ?other)
+    (not (== ?name ?other-name))
+    (link ?world ?other-name ?link)
+    (lisp-pred below-link-p ?object ?other ?link))
+
+  (<- (supporting ?world ?bottom ?top)
+    (supported-by ?world ?top ?bottom))
 
   (<- (supported-by ?world ?top ?bottom)
     (supported-by ?world ?top ?bottom ?))
@@ -183,6 +267,14 @@
     (member (?bottom . ?link) ?others)
     (%object ?world ?bottom ?other)
     (lisp-pred rests-on-p ?object ?other ?link)))
+
+(defun above-link-p (object robot link)
+  "Whether the middle of OBJECT is as high as that of a link, or higher."
+  (>= (z (bounding-box-center (aabb object))) (z (first (robot-world:part-bounds robot link)))))
+
+(defun below-link-p (object robot link)
+  "Whether the middle of OBJECT is as low as that of a link, or lower."
+  (<= (z (bounding-box-center (aabb object))) (z (first (robot-world:part-bounds robot link)))))
 
 (defun contacts-with-links (world object)
   "A list (name . link) for each object that touches OBJECT; the link is that of whichever has links."
@@ -227,15 +319,44 @@
     (member (?name . ?links) ?attached)
     (member ?link ?links)))
 
-(def-fact-group bullet-vision (visible-from occluding-objects occluding-object)
+(defun point-head (robot pan-joint pan tilt-joint tilt)
+  (set-robot-state-from-joints `((,pan-joint ,pan) (,tilt-joint ,tilt)) robot))
+
+(def-fact-group bullet-heads (head-pointing-at)
+  (<- (head-pointing-at ?world ?robot ?pose)
+    (%object ?world ?robot ?object)
+    (robot-pan-tilt-links ?robot ?pan-link ?tilt-link)
+    (robot-pan-tilt-joints ?robot ?pan-joint ?tilt-joint)
+    (lisp-fun calculate-pan-tilt ?object ?pan-link ?tilt-link ?pose (?pan ?tilt))
+    (lisp-fun point-head ?object ?pan-joint ?pan ?tilt-joint ?tilt ?)))
+
+(defun camera-poses (robot-or-pose world)
+  "The poses of the cameras of a robot that it has, by its name; or the pose itself."
+  (let ((robot (and (symbolp robot-or-pose) (object world robot-or-pose))))
+    (if robot
+        (loop for solution in (force-ll (prolog `(camera-frame ,robot-or-pose ?frame)))
+              for pose = (link-pose robot (var-value '?frame solution))
+              when pose collect pose)
+        (and (not (symbolp robot-or-pose)) (list (ensure-pose robot-or-pose))))))
+
+(def-fact-group bullet-vision (visible visible-from occluding-objects occluding-object)
+  (<- (visible ?world ?robot ?name)
+    (%object ?world ?robot ?machine)
+    (lisp-type ?machine robot-object)
+    (%object ?world ?name ?object)
+    (not (== ?name ?robot))
+    (lisp-fun camera-poses ?robot ?world ?cameras)
+    (once (member ?camera ?cameras)
+          (lisp-pred object-visible-p ?world ?camera ?object)))
+
   (<- (visible-from ?world ?camera-pose ?name)
     (%object ?world ?name ?object)
     (lisp-fun ensure-pose ?camera-pose ?camera)
     (lisp-pred object-visible-p ?world ?camera ?object))
 
-  (<- (occluding-objects ?world ?camera-pose ?name ?names)
+  (<- (occluding-objects ?world ?robot-or-pose ?name ?names)
     (%object ?world ?name ?object)
-    (lisp-fun ensure-pose ?camera-pose ?camera)
+    (lisp-fun camera-poses ?robot-or-pose ?world (?camera . ?))
     (lisp-fun occluding-objects ?world ?camera ?object ?objects)
     (lisp-fun mapcar name ?objects ?names))
 

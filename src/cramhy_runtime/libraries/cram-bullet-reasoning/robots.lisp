@@ -35,9 +35,52 @@
   "The names of the links of ROBOT."
   (robot-world:machine-links robot))
 
+(defun links (robot)
+  "A hash table of the bodies of ROBOT by the names of their links; only links that have shapes are there."
+  (let ((table (make-hash-table :test 'equal)))
+    (dolist (body (rigid-bodies robot) table)
+      (setf (gethash (body-link body) table) body))))
+
 (defgeneric link-pose (robot name)
   (:documentation "Where a link is in the world, nil when ROBOT has none of that name.")
   (:method ((robot robot-object) name) (robot-world:machine-link robot name)))
+
+(defgeneric (setf link-pose) (new-value robot name)
+  (:documentation "Bring a link as near to a pose as the joint above it allows, its limits apart. What hangs on the link goes along.")
+  (:method (new-value (robot robot-object) name)
+    (unless (robot-world:pull-link robot name (ensure-pose new-value))
+      (error "Link ~a unknown" name))
+    new-value))
+
+(defgeneric set-robot-state-from-tf (tf robot &key reference-frame timestamp only-these-links)
+  (:documentation "Put ROBOT, and its joints, where the transformer TF says. What TF does not know is warned about.")
+  (:method (tf (robot robot-object) &key (reference-frame *fixed-frame*) (timestamp 0.0) only-these-links)
+    (flet ((place-of (link)
+             (handler-case (lookup-transform tf (or reference-frame "map") link :time timestamp :timeout *tf-default-timeout*)
+               (transform-stamped-error (problem)
+                 (roslisp:ros-warn (set-robot-state-from-tf) "Failed with transform-stamped-error: ~a" problem)
+                 nil))))
+      (let ((base (root-link robot)))
+        (dolist (link (cons base (remove base (or only-these-links (moved-links robot)) :test #'equal)))
+          (unless (and only-these-links (not (member link only-these-links :test #'equal)))
+            (let ((transform (place-of link)))
+              (when transform
+                (setf (link-pose robot link) (make-pose (translation transform) (rotation transform)))))))))))
+
+(defun root-link (robot)
+  "The link of ROBOT that no joint leads to."
+  (loop with children = (mapcar #'fourth (robot-world:description-joints (urdf robot)))
+        for link in (link-names robot)
+        unless (member link children :test #'equal) return link))
+
+(defun moved-links (robot)
+  "The links of ROBOT that a joint moves, from the root on."
+  (loop for (nil type nil child) in (robot-world:description-joints (urdf robot))
+        unless (eq type :fixed) collect child))
+
+(defun calculate-pan-tilt (robot pan-link tilt-link pose)
+  "A list (pan tilt): the positions of the joints above two links of the neck with which ROBOT looks at POSE."
+  (robot-world:pan-and-tilt robot pan-link tilt-link (origin (ensure-pose pose))))
 
 ;;; What is held.
 
@@ -93,3 +136,14 @@
    (loop for (nil link other) in (robot-world:contacts (robot-world:thing-world robot) robot)
          when other collect (cons other link))
    :test #'equal :from-end t))
+
+;;; Programs read some slots of objects by their names.
+
+(defmethod slot-missing (class (object object) slot-name operation &optional new-value)
+  (declare (ignore new-value))
+  (let ((reader (and (eq operation 'slot-value)
+                     (cdr (assoc slot-name '((name . name) (world . robot-world:thing-world) (types . item-types) (urdf . urdf)
+                                             (links . links) (joint-states . joint-states) (attached-objects . attached-objects)))))))
+    (if reader
+        (funcall reader object)
+        (call-next-method))))

@@ -13,6 +13,10 @@
   "Let what is free in WORLD fall for SECONDS, at most as long as Bullet would compute: a sixtieth of a second in each STEP."
   (declare (ignore realtime))
   (robot-world:settle world (/ (ceiling seconds step) 60))
+  (loop for (item other) in (robot-world:stuck-things world)
+        do (warn "~s is inside of ~:[the floor~;~:*~s~] and cannot get out of it. It stays where it is: ~
+                  (setf (btr:pose object) pose) puts it somewhere else."
+                 (robot-world:thing-name item) (and other (robot-world:thing-name other))))
   nil)
 
 (defmacro prolog-?w (&body clauses)
@@ -37,3 +41,28 @@
           do (when joints (set-robot-state-from-joints joints thing))
              (setf (pose thing) pose))
   world)
+
+;;; Goals of Prolog that run in a world of their own.
+
+(defun world-of (variable bindings)
+  "The world that VARIABLE is bound to, or the current one."
+  (let ((value (var-value variable bindings)))
+    (if (is-var value) *current-bullet-world* value)))
+
+(defun solutions-in (world goals bindings)
+  "All solutions of GOALS, while WORLD is the current one."
+  (let ((*current-bullet-world* world))
+    (force-ll (prolog `(and ,@goals) bindings))))
+
+(def-prolog-handler with-world (bindings ?world &rest goals)
+  (solutions-in (world-of ?world bindings) goals bindings))
+
+(def-prolog-handler with-stored-world (bindings ?world &rest goals)
+  (let* ((world (world-of ?world bindings))
+         (state (get-state world)))
+    (unwind-protect (solutions-in world goals bindings)
+      (restore-world-state state world))))
+
+(def-prolog-handler with-copied-world (bindings ?world &rest goals)
+  (let ((copy (copy-world (world-of ?world bindings))))
+    (solutions-in copy (if (is-var ?world) (subst copy ?world goals) goals) bindings)))

@@ -34,7 +34,7 @@ gripper, and what is added to it before the grasp, shortly before it, and while 
   (:left-side *left-side-grasp-rotation* (0 -0.02 0.005) (0 0.15 0.15) (0 0.15 0) (0 0 0.15))
   (:right-side *right-side-grasp-rotation* (0 0.02 0.005) (0 -0.15 0.15) (0 -0.15 0) (0 0 0.15))
   (:back *back-grasp-rotation* (0.02 0 0.005) (-0.15 0 0.15) (-0.15 0 0) (0 0 0.15))
-  (:front *front-grasp-rotation* (0.02 0 0.005) (-0.15 0 0.15) (-0.15 0 0) (0 0 0.15)))
+  (:front *front-grasp-rotation* (-0.02 0 0.005) (0.15 0 0.15) (0.15 0 0) (0 0 0.15))) ; the original comes from the back, too
 
 (define-grasps :cup (:left :right)
   (:back *back-grasp-rotation* (0.02 0 0.03) (-0.15 0 0.15) (-0.15 0 0) (0 0 0.15))

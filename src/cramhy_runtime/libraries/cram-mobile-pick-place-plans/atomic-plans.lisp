@@ -84,7 +84,13 @@
 (defun something-held-p ()
   (and (prolog '(cpoe:object-in-hand ?object)) t))
 
-(cpl:def-cram-function park-arms (&key (arm '(:left :right)) (carry t))
+(defun all-arms ()
+  "The arms of the robot; both sides while no robot is described."
+  (or (mapcar (lambda (solution) (cut:var-value '?arm solution))
+              (cut:force-ll (prolog '(and (cram-robot-interfaces:robot ?robot) (cram-robot-interfaces:arm ?robot ?arm)))))
+      '(:left :right)))
+
+(cpl:def-cram-function park-arms (&key (arm (all-arms)) (carry t))
   "Move an arm, or several, where they are out of the way; with CARRY, or while something is held, where they can carry it."
   (let* ((arms (if (listp arm) arm (list arm)))
          (carry (or carry (something-held-p)))

@@ -6,6 +6,10 @@
   (cl-transforms:make-transform (cl-transforms:make-identity-vector) (cl-transforms:matrix->quaternion #2A((0 1 0) (0 0 1) (1 0 0))))
   "From the standard gripper, whose z axis points at the object, to that of the PR2, whose x axis does.")
 
+(defvar *tcp-in-ee-pose*
+  (cl-transforms:make-pose (cl-transforms:make-3d-vector 0.2 0 0) (cl-transforms:make-identity-rotation))
+  "Where the tool point is in the frame of the wrist.")
+
 (defun get-hand-link-names (arm)
   "The names of the links of the hand of ARM, which is :LEFT or :RIGHT."
   (ecase arm
@@ -26,7 +30,7 @@
 
 (def-fact-group pr2-arms (arm arm-joints arm-links arm-base-joints arm-base-links arm-tool-joints hand-links
                           end-effector-link robot-tool-frame gripper-joint gripper-link planning-group
-                          standard-to-particular-gripper-transform)
+                          standard-to-particular-gripper-transform tcp-in-ee-pose gripper-meter-to-joint-multiplier)
 
   (<- (arm pr2 :right))
   (<- (arm pr2 :left))
@@ -78,7 +82,12 @@
   (<- (planning-group pr2 (:right :left) "both_arms"))
 
   (<- (standard-to-particular-gripper-transform pr2 ?transform)
-    (symbol-value *standard-to-pr2-gripper-transform* ?transform)))
+    (symbol-value *standard-to-pr2-gripper-transform* ?transform))
+
+  (<- (tcp-in-ee-pose pr2 ?pose)
+    (symbol-value *tcp-in-ee-pose* ?pose))
+
+  (<- (gripper-meter-to-joint-multiplier pr2 5.0d0)))
 
 (def-fact-group pr2-arm-states (robot-arms-parking-joint-states robot-arms-carrying-joint-states end-effector-parking-pose
                                 robot-pre-grasp-joint-states)

@@ -2,12 +2,11 @@
 
 (in-package #:cram-pr2-description)
 
-(def-fact-group pr2 (robot robot-base-frame robot-odom-frame robot-torso-link-joint
-                    cram-robot-interfaces::robot-description-file)
+(def-fact-group pr2 (robot robot-base-frame robot-odom-frame robot-torso-link-joint robot-description-file)
 
   (<- (robot pr2))
 
-  (<- (cram-robot-interfaces::robot-description-file pr2 "pr2.urdf"))
+  (<- (robot-description-file pr2 "pr2.urdf"))
 
   (<- (robot-base-frame pr2 "base_footprint"))
 

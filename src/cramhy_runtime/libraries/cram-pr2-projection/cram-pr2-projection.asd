@@ -2,7 +2,7 @@
   :description "A robot without a body: process modules that move the robot of the current world."
   :depends-on ("cram-bullet-reasoning" "cram-bullet-reasoning-belief-state" "cram-projection" "cram-process-modules" "cram-language"
                "cram-common-designators" "cram-common-failures" "cram-plan-occasions-events" "cram-robot-interfaces" "cram-tf"
-               "cram-pr2-description" "cl-tf")
+               "cl-tf")
   :serial t
   :components ((:file "package")
                (:file "parts")

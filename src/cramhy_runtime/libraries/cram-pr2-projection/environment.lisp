@@ -10,12 +10,17 @@
     (btr-belief:set-tf-from-bullet :transformer transformer)
     transformer))
 
+(defvar *last-timeline* nil
+  "What happened in the last projection: see `btr:timeline-lookup'.")
+
 (cram-projection:define-projection-environment pr2-bullet-projection-environment
   :special-variable-initializers
   ((cram-tf:*transformer* (new-transformer))
+   (btr:*current-timeline* (btr:timeline-init btr:*current-bullet-world*))
    (desig:*default-role* 'projection-role))
   :process-module-definitions
-  (pr2-proj-navigation pr2-proj-torso pr2-proj-ptu pr2-proj-perception pr2-proj-grippers pr2-proj-arms))
+  (pr2-proj-navigation pr2-proj-torso pr2-proj-ptu pr2-proj-perception pr2-proj-grippers pr2-proj-arms)
+  :shutdown (setf *last-timeline* btr:*current-timeline*))
 
 (defmethod cram-occasions-events:on-event update-tf ((event cpoe:robot-state-changed))
   (when (eq cram-projection:*projection-environment* 'pr2-bullet-projection-environment)

@@ -5,9 +5,13 @@
 (defvar *torso-step* 0.01
   "How far apart the heights of the torso are from which an arm tries to reach, in metres.")
 
+(defvar *frames-follow* t
+  "Whether frames move with the links; what only tries motions has no use for that.")
+
 (defun touched ()
   "After a motion: the frames are where the links are."
-  (btr-belief:set-tf-from-bullet)
+  (when *frames-follow*
+    (btr-belief:set-tf-from-bullet))
   nil)
 
 (defun drive (pose-stamped)
@@ -42,12 +46,18 @@
   (let ((pose (cram-tf:ensure-pose-in-frame pose cram-tf:*fixed-frame* :use-zero-time t)))
     (robot-world:look-at (robot) (parts) (cl-transforms:origin pose))))
 
+(defun check-arm (arm failure)
+  "Fail with FAILURE, the class of a failure, when the robot has no such arm."
+  (let ((arms (values-of '?arm `(cram-robot-interfaces:arm ,(btr:get-robot-name) ?arm))))
+    (unless (member arm arms)
+      (cpl:fail failure :description (format nil "The robot has no ~(~a~) arm; it has ~{~(~a~)~^, ~}." arm arms)))))
+
 (defun gripper-action (action arm &optional effort)
   "Open, close or grip with an arm, or with several; ACTION may be a width in metres."
   (declare (ignore effort))
   (if (listp arm)
       (dolist (each arm) (gripper-action action each))
-      (let ((found (etypecase action
+      (let ((found (etypecase (progn (check-arm arm 'common-fail:gripper-goal-not-reached) action)
                      ((eql :open) (robot-world:set-fingers (robot) (parts) arm) t)
                      ((eql :close) (robot-world:set-fingers (robot) (parts) arm 0) t)
                      ((eql :grip) (robot-world:grip (robot) (parts) arm))
@@ -60,7 +70,9 @@
   "Bring the tools of the arms to poses in the frame of the base."
   (declare (ignore collision-mode))
   (let ((goals (loop for (arm pose) in `((:left ,left-pose) (:right ,right-pose))
-                     when pose collect (cons arm (tool-pose pose)))))
+                     when pose
+                       do (check-arm arm 'common-fail:manipulation-pose-unreachable)
+                       and collect (cons arm (tool-pose pose)))))
     (when goals
       (let ((failed (robot-world:move-tools (robot) (parts) goals)))
         (touched)
@@ -79,7 +91,8 @@
   "Bring the joints of the arms to lists of values."
   (loop for (arm values) in `((:left ,left) (:right ,right))
         when values
-          do (unless (robot-world:move-arm-joints (robot) (parts) arm values)
+          do (check-arm arm 'common-fail:manipulation-pose-unreachable)
+             (unless (robot-world:move-arm-joints (robot) (parts) arm values)
                (error "[PROJECTION MOVE-JOINTS] length of joints list is incorrect.")))
   (touched))
 

@@ -8,3 +8,7 @@
            #:*torso-step* #:*last-timeline*))
 
 (in-package #:cram-pr2-projection)
+
+;;; The robot is the PR2, unless another one was described before.
+(unless (cram-robot-interfaces:current-robot-symbol)
+  (asdf:load-system :cram-pr2-description))

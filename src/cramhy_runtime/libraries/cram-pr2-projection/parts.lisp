@@ -17,16 +17,32 @@
   "All values of VARIABLE in the solutions of GOAL."
   (mapcar (lambda (solution) (cut:var-value variable solution)) (cut:force-ll (prolog goal))))
 
-(defun arm-parts (robot arm links)
+(defun told (variable goal default)
+  "As `value', or DEFAULT where the robot's description does not tell it."
+  (let ((solution (cut:lazy-car (prolog goal))))
+    (if solution (cut:var-value variable solution) default)))
+
+(defun tool-of (robot arm tip)
+  "Where the tool point of ARM is in the frame of its wrist: as told, else where the tool frame is."
+  (or (told '?pose `(cram-robot-interfaces:tcp-in-ee-pose ,robot ?pose) nil)
+      (let* ((machine (btr:get-robot-object))
+             (tool (btr:link-pose machine (value '?frame `(cram-robot-interfaces:robot-tool-frame ,robot ,arm ?frame)))))
+        (cl-transforms:transform->pose
+         (cl-transforms:transform* (cl-transforms:transform-inv (cl-transforms:pose->transform (btr:link-pose machine tip)))
+                                   (cl-transforms:pose->transform tool))))))
+
+(defun arm-parts (robot arm links
+                  &aux (tip (value '?link `(cram-robot-interfaces:end-effector-link ,robot ,arm ?link)))
+                    (fingers (values-of '?joint `(cram-robot-interfaces:gripper-joint ,robot ,arm ?joint))))
   (robot-world:make-arm
    :joints (value '?joints `(cram-robot-interfaces:arm-joints ,robot ,arm ?joints))
    :base (first (value '?links `(cram-robot-interfaces:arm-base-links ,robot ,arm ?links)))
-   :tip (value '?link `(cram-robot-interfaces:end-effector-link ,robot ,arm ?link))
-   :tool 0.2
-   :fingers (values-of '?joint `(cram-robot-interfaces:gripper-joint ,robot ,arm ?joint))
+   :tip tip
+   :tool (tool-of robot arm tip)
+   :fingers fingers
    :hand (remove-if-not (lambda (link) (prolog `(cram-robot-interfaces:gripper-link ,robot ,arm ,link))) links)
-   :open 0.548
-   :factor 5.0))
+   :open (or (cram-robot-interfaces:get-joint-upper-limit (first fingers)) 0)
+   :factor (told '?number `(cram-robot-interfaces:gripper-meter-to-joint-multiplier ,robot ?number) 1)))
 
 (defun read-parts (robot)
   (let ((neck (solution `(cram-robot-interfaces:robot-pan-tilt-joints ,robot ?pan ?tilt)))

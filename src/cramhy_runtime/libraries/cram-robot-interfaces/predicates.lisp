@@ -29,7 +29,9 @@
   (gripper-joint ?robot ?arm ?joint)
   (gripper-link ?robot ?arm ?link)
   (planning-group ?robot ?arms ?name)
-  (standard-to-particular-gripper-transform ?robot ?transform))
+  (standard-to-particular-gripper-transform ?robot ?transform)
+  (tcp-in-ee-pose ?robot ?pose)
+  (gripper-meter-to-joint-multiplier ?robot ?multiplier))
 
 (define-unknown arm-states
   (robot-arms-parking-joint-states ?robot ?states)

@@ -9,7 +9,7 @@
 ======================  =============================================================================================
 
 MuJoCo's own renderer needs OpenGL with a window system, EGL or OSMesa, and two more packages; a server, a container and CI often have none
-of them. The shapes of a world are boxes, cylinders and spheres, and a ray meets these in closed form, so numpy draws them exactly, without
-a mesh, in some tenths of a second. The same pixels come on each machine. Files are written by Pillow, which cramhy needs for the turtle's
-pictures already.
+of them. The shapes of a world are boxes, cylinders, spheres and meshes, and a ray meets these in closed form, so numpy draws them exactly,
+in some tenths of a second; a mesh takes longer, with the number of its triangles. The same pixels come on each machine. Files are written
+by Pillow, which cramhy needs for the turtle's pictures already.
 """

@@ -6,11 +6,14 @@ along each ray it is met first, ``inf`` where it is not; and then for the normal
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from zlib import crc32
 
 import numpy as np
 
+from cramhy_runtime.kernel.active import checkpoint
+
+from ..meshes import mesh_of, shape_box
 from ..mujoco_parts import mujoco
 from ..things import Item, Machine
 
@@ -18,10 +21,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from ..descriptions import Shape
+    from ..mesh_files import Mesh
     from ..things import Colour, Thing
     from ..world import World
 
-_SIGNS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+_CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+_MOST_AT_ONCE = 1 << 19  # pairs of a ray and a triangle
 NEAR = 0.02
 """What is nearer than so many metres is not seen."""
 
@@ -36,29 +41,32 @@ def colour_of(thing: Thing, link: str | None) -> Colour:
 
 
 class Solid:
-    """A shape where it is in the world. reach: the radius of the ball around it. thing, link: what it is a part of."""
+    """A shape where it is in the world. reach: the radius of a ball around its origin in which it is. thing, link: what it is a part of."""
 
-    __slots__ = ("thing", "link", "shape", "place", "turn", "reach", "colour")
+    __slots__ = ("thing", "link", "shape", "form", "place", "turn", "reach", "colour", "_corners")
 
     def __init__(self, thing: Thing, link: str | None, shape: Shape, place: np.ndarray, turn: np.ndarray, colour: Colour) -> None:
         self.thing, self.link, self.shape, self.place, self.turn, self.colour = thing, link, shape, place, turn, colour
-        self.reach = float(np.linalg.norm(_HALF[shape.kind](shape.size)))
+        self.form = shape.size if shape.kind != "mesh" else _triangles(mesh_of(shape))
+        lowest, highest = shape_box(shape)
+        self._corners = lowest + _CORNERS * (highest - lowest)
+        self.reach = float(np.linalg.norm(self._corners, axis=1).max())
 
     def meet(self, eye: np.ndarray, rays: np.ndarray) -> np.ndarray:
         """How far along each of the ``rays``, n x 3, from ``eye`` it is met."""
-        return _MEET[self.shape.kind](self.shape.size, (eye - self.place) @ self.turn, rays @ self.turn)
+        return _MEET[self.shape.kind](self.form, (eye - self.place) @ self.turn, rays @ self.turn)
 
     def normals(self, places: np.ndarray) -> np.ndarray:
         """The normals, n x 3, at ``places`` of its surface, all in the world."""
-        return _NORMALS[self.shape.kind](self.shape.size, (places - self.place) @ self.turn) @ self.turn.T
+        return _NORMALS[self.shape.kind](self.form, (places - self.place) @ self.turn) @ self.turn.T
 
     def corners(self) -> np.ndarray:
         """The corners of the box around it, 8 x 3, in the world."""
-        return (_SIGNS * _HALF[self.shape.kind](self.shape.size)) @ self.turn.T + self.place
+        return self._corners @ self.turn.T + self.place
 
 
 def solids_of(world: World) -> list[Solid]:
-    """All shapes of a world, where they are now. Meshes are left out: nothing here knows their triangles."""
+    """All shapes of a world, where they are now. Of a mesh that has only points the box around them is shown; planes are not."""
     return [solid for thing in world.things.values() for solid in _solids(thing)]
 
 
@@ -135,18 +143,64 @@ def _cylinder_normals(size: tuple[float, ...], places: np.ndarray) -> np.ndarray
     return normals
 
 
-_MEET: dict[str, Callable[[tuple[float, ...], np.ndarray, np.ndarray], np.ndarray]] = {
+def _triangles(mesh: Mesh) -> np.ndarray:
+    """The corners of the triangles of a mesh, n x 3 x 3."""
+    if len(mesh.triangles):
+        return mesh.points[mesh.triangles]
+    (x, y, z), (u, v, w) = mesh.box
+    corners = np.array([[x, y, z], [u, y, z], [u, v, z], [x, v, z], [x, y, w], [u, y, w], [u, v, w], [x, v, w]])
+    sides = [(0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
+    return corners[[half for one, two, three, four in sides for half in ((one, two, three), (one, three, four))]]
+
+
+def _meet_mesh(triangles: np.ndarray, eye: np.ndarray, rays: np.ndarray) -> np.ndarray:
+    found = np.full(len(rays), np.inf)
+    many = max(1, _MOST_AT_ONCE // max(1, len(rays)))
+    for first in range(0, len(triangles), many):
+        found = np.fmin(found, _meet_triangles(triangles[first : first + many], eye, rays))
+        checkpoint()
+    return found
+
+
+def _meet_triangles(triangles: np.ndarray, eye: np.ndarray, rays: np.ndarray) -> np.ndarray:
+    """As Möller and Trumbore: all rays and all triangles at once."""
+    corner, one, other = triangles[:, 0], triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    away = eye - corner
+    across = np.cross(away, one)
+    normal = np.cross(one, other)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse = -1.0 / (rays @ normal.T)
+        along = (away * normal).sum(axis=1) * inverse
+        u, v = (rays @ np.cross(away, other).T) * -inverse, (rays @ across.T) * inverse
+        hit = (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9) & (along > NEAR)
+    return np.where(hit, along, np.inf).min(axis=1)
+
+
+def _mesh_normals(triangles: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Those of the triangles whose planes and middles are nearest."""
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    middles = triangles.mean(axis=1)
+    radii = np.linalg.norm(triangles - middles[:, None], axis=2).max(axis=1)
+    chosen = np.zeros(len(places), int)
+    many = max(1, _MOST_AT_ONCE // (3 * len(triangles)))
+    for first in range(0, len(places), many):
+        away = places[first : first + many, None] - middles
+        beside = np.maximum(np.linalg.norm(away, axis=2) - radii, 0.0)
+        chosen[first : first + many] = np.argmin(np.abs((away * normals).sum(axis=2)) + beside, axis=1)
+        checkpoint()
+    return normals[chosen]
+
+
+_MEET: dict[str, Callable[[Any, np.ndarray, np.ndarray], np.ndarray]] = {
     "box": _meet_box,
     "sphere": _meet_sphere,
     "cylinder": _meet_cylinder,
+    "mesh": _meet_mesh,
 }
-_NORMALS: dict[str, Callable[[tuple[float, ...], np.ndarray], np.ndarray]] = {
+_NORMALS: dict[str, Callable[[Any, np.ndarray], np.ndarray]] = {
     "box": _box_normals,
     "sphere": lambda size, places: places / size[0],
     "cylinder": _cylinder_normals,
-}
-_HALF: dict[str, Callable[[tuple[float, ...]], np.ndarray]] = {
-    "box": lambda size: np.array(size) / 2,
-    "sphere": lambda size: np.array(size[:1] * 3),
-    "cylinder": lambda size: np.array([size[0], size[0], size[1] / 2]),
+    "mesh": _mesh_normals,
 }

@@ -9,12 +9,13 @@
   "Count to THREADS times TIMES, each of THREADS its part."
   (setf *counter* 0)
   (let ((all (loop for number below threads
-                   collect (make-thread (lambda ()
-                                          (loop repeat times
-                                                do (with-mutex (*counter-lock*)
-                                                     (incf *counter*)))
-                                          number)
-                                        :name (format nil "counter ~d" number)))))
+                   collect (let ((number number)) ; LOOP changes its variable while the threads run
+                             (make-thread (lambda ()
+                                            (loop repeat times
+                                                  do (with-mutex (*counter-lock*)
+                                                       (incf *counter*)))
+                                            number)
+                                          :name (format nil "counter ~d" number))))))
     (list (mapcar #'join-thread all) *counter*)))
 
 (defun note-thing (thing note)

@@ -37,9 +37,9 @@ def _texts(names: Any) -> tuple[str, ...]:
     return tuple(map(str, python_list(names)))
 
 
-def make_arm(*, joints: Cons, base: str, tip: str, tool: Any, fingers: Cons, hand: Cons, open: Any, factor: Any = 1.0) -> ArmParts:
+def make_arm(*, joints: Cons, base: str, tip: str, tool: Pose, fingers: Cons, hand: Cons, open: Any, factor: Any = 1.0) -> ArmParts:
     """The parts of an arm; see `ArmParts`."""
-    return ArmParts(_texts(joints), str(base), str(tip), float(tool), _texts(fingers), _texts(hand), float(open), float(factor))
+    return ArmParts(_texts(joints), str(base), str(tip), of_pose(tool), _texts(fingers), _texts(hand), float(open), float(factor))
 
 
 def make_parts(*, torso: str, pan: str, tilt: str, cameras: Cons, arms: Cons) -> RobotParts:

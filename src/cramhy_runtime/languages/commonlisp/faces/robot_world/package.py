@@ -1,4 +1,4 @@
-"""The Lisp package ROBOT-WORLD: the functions of ``world_calls.py`` and ``motion_calls.py``, and the classes of worlds, items and machines.
+"""The Lisp package ROBOT-WORLD: the functions of the modules beside this one, and the classes of worlds, items and machines.
 
 It is made when a program first names it, which the libraries ``cl-bullet``, ``cram-bullet-reasoning`` and ``cl-urdf`` do.
 """
@@ -10,13 +10,23 @@ from cramhy_runtime.ground.dynamic import global_value
 from cramhy_runtime.ground.packages import find_package, on_demand
 from cramhy_runtime.robot_world import shown
 from cramhy_runtime.robot_world.descriptions import Description, Joint, Link
+from cramhy_runtime.robot_world.mesh_files import Mesh
 from cramhy_runtime.robot_world.things import Item, Machine, Thing
 from cramhy_runtime.robot_world.world import World
 
 from ...packages.face_definition import define_face
-from . import motion_calls, picture_calls, world_calls
+from . import link_calls, motion_calls, picture_calls, shape_calls, world_calls
 
-CLASSES = {"WORLD": World, "THING": Thing, "ITEM": Item, "MACHINE": Machine, "DESCRIPTION": Description, "LINK": Link, "JOINT": Joint}
+CLASSES = {
+    "WORLD": World,
+    "THING": Thing,
+    "ITEM": Item,
+    "MACHINE": Machine,
+    "DESCRIPTION": Description,
+    "LINK": Link,
+    "JOINT": Joint,
+    "MESH": Mesh,
+}
 
 
 def define_faces() -> None:
@@ -25,7 +35,7 @@ def define_faces() -> None:
     package = define_face(
         "ROBOT-WORLD",
         use=("COMMON-LISP",),
-        functions={world_calls: world_calls.LISP_NAMES, motion_calls: motion_calls.LISP_NAMES, picture_calls: picture_calls.LISP_NAMES},
+        functions={calls: calls.LISP_NAMES for calls in (world_calls, shape_calls, link_calls, motion_calls, picture_calls)},
         export=" ".join(CLASSES),
     )
     for name, cls in CLASSES.items():

@@ -6,32 +6,32 @@ What a world cannot do is a simple-error with the reason.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, DoubleFloat, FreshString, MultipleValues, boolean, lisp_list, list_from, python_list
-from cramhy_runtime.ground.packages import is_symbol, keyword, symbol_name
+from cramhy_runtime.ground.data import Cons, DoubleFloat, FreshString, MultipleValues, boolean, lisp_list, list_from
+from cramhy_runtime.ground.packages import is_symbol, symbol_name
 from cramhy_runtime.robot_world import models, urdf
-from cramhy_runtime.robot_world.descriptions import Description, DescriptionError, Frame, Shape
+from cramhy_runtime.robot_world.descriptions import Description, DescriptionError
 from cramhy_runtime.robot_world.placements import of_pose
 from cramhy_runtime.robot_world.things import Item, Machine, Thing
 from cramhy_runtime.robot_world.vision import seen
 from cramhy_runtime.robot_world.world import World
 from cramhy_runtime.transforms.vectors import make_3d_vector
 
+from .names import colour_of, name_of
+
 if TYPE_CHECKING:
     from cramhy_runtime.ground.data import Symbol
     from cramhy_runtime.transforms.poses import Pose
 
 LISP_NAMES = """
-make-world copy-world add-object-of-type add-shape add-description remove-thing find-thing things thing-name thing-world thing-pose
-set-thing-pose thing-types thing-mass thing-bounds part-bounds machine-joints machine-joint set-machine-joint machine-links machine-link
-machine-description attach detach attachments contacts settle stable visibility object-types object-size read-description description-text
+make-world copy-world thing-color stuck-things ignored-contacts ignore-contact add-description remove-thing find-thing things thing-name
+thing-world thing-pose set-thing-pose thing-types thing-mass thing-bounds part-bounds machine-joints machine-joint set-machine-joint
+machine-links machine-link machine-description attach detach attachments contacts settle stable visibility read-description
+description-text
 """
-
-
-def _name(designator: Symbol | str) -> Symbol | str:
-    return designator if is_symbol(designator) else str(designator)
 
 
 def make_world() -> World:
@@ -44,48 +44,24 @@ def copy_world(world: World) -> World:
     return world.copy()
 
 
-def _colour(colour: Any) -> tuple[float, float, float, float]:
-    parts = [float(part) for part in python_list(colour)] if colour is not None else [0.5, 0.5, 0.5]
-    return (*parts, 1.0) if len(parts) == 3 else tuple(parts)
-
-
-def add_shape(
-    world: World, name: Symbol | str, kind: Symbol, size: Cons, pose: Pose, *, mass: Any = 0.2, color: Any = None, types: Any = None
-) -> Item:
-    """Add an item of one shape: ``kind`` is :BOX, :CYLINDER or :SPHERE, ``size`` the list that `Shape` tells of."""
-    shape = Shape(symbol_name(kind).lower(), tuple(float(part) for part in python_list(size)), Frame())
-    return world.add_item(_name(name), (shape,), of_pose(pose), mass=float(mass), colour=_colour(color), types=tuple(python_list(types)))
-
-
-def add_object_of_type(
-    world: World, name: Symbol | str, type: Symbol, pose: Pose, *, mass: Any = 0.2, color: Any = None, types: Any = None
-) -> Item:
-    """Add an object of which there is a model: ``type`` is a keyword such as :BOTTLE."""
-    try:
-        shapes = models.object_shapes(symbol_name(type).lower())
-    except models.UnknownObject as problem:
-        return error("~a", str(problem))
-    return world.add_item(
-        _name(name), shapes, of_pose(pose), mass=float(mass), colour=_colour(color), types=tuple(python_list(types)) or (type,)
-    )
-
-
-def add_description(world: World, name: Symbol | str, description: Description, pose: Pose, *, color: Any = None) -> Machine:
-    """Add a robot, or furniture."""
-    machine = world.add_machine(_name(name), description, of_pose(pose))
+def add_description(
+    world: World, name: Symbol | str, description: Description, pose: Pose, *, color: Any = None, fixed: Any = None
+) -> Machine:
+    """Add a robot, or furniture; ``fixed``: it touches neither the floor nor other furniture."""
+    machine = world.add_machine(name_of(name), description, of_pose(pose), fixed=fixed is not None)
     if color is not None:
-        machine.colour = _colour(color)
+        machine.colour = colour_of(color)
     return machine
 
 
 def remove_thing(world: World, name: Symbol | str) -> None:
     """Take a thing away."""
-    world.remove(_name(name))
+    world.remove(name_of(name))
 
 
 def find_thing(world: World, name: Symbol | str) -> Thing | None:
     """The thing of that name, or nil."""
-    return world.things.get(_name(name))
+    return world.things.get(name_of(name))
 
 
 def things(world: World) -> Cons | None:
@@ -129,6 +105,11 @@ def thing_mass(item: Item) -> float:
 def _box(lowest: Any, highest: Any) -> Cons:
     middle, size = (lowest + highest) / 2, highest - lowest
     return lisp_list(*(make_3d_vector(*map(DoubleFloat, vector)) for vector in (middle, size)))
+
+
+def thing_color(thing: Thing) -> Cons:
+    """Red, green, blue and opacity of a thing, each from 0 to 1."""
+    return list_from(map(DoubleFloat, thing.colour))
 
 
 def thing_bounds(thing: Thing) -> Cons:
@@ -201,6 +182,23 @@ def settle(world: World, seconds: Any) -> float:
     return DoubleFloat(world.simulate(float(seconds)))
 
 
+def stuck_things(world: World) -> Cons | None:
+    """A list (item other) for each item that the last `settle` could not free from the other thing."""
+    return list_from(lisp_list(item, other) for item, other in world.stuck)
+
+
+def ignored_contacts(world: World) -> Cons | None:
+    """The pairs of names (name . other) whose contacts do not count."""
+    return list_from(Cons(one, other) for one, other in world.ignored)
+
+
+def ignore_contact(world: World, name: Symbol | str, other: Symbol | str) -> None:
+    """Let contacts of these two things not count from now on, for those who ask `ignored_contacts`."""
+    pair = (name_of(name), name_of(other))
+    if pair not in world.ignored:
+        world.ignored.append(pair)
+
+
 def stable(item: Item) -> bool | None:
     """Whether an item would still be where it is after five seconds."""
     return boolean(item.world.stable(item.name))
@@ -212,21 +210,6 @@ def visibility(world: World, camera: Pose, thing: Thing) -> MultipleValues:
     return MultipleValues((DoubleFloat(part), list_from(hiding)))
 
 
-def object_types() -> Cons | None:
-    """The types of objects of which there is a model, keywords."""
-    return list_from(keyword(name.upper()) for name in models.object_types())
-
-
-def object_size(type: Symbol) -> Any:
-    """The lengths of the box around an object of a type, a vector; nil when there is no model of it."""
-    try:
-        (shape,) = models.object_shapes(symbol_name(type).lower())
-    except models.UnknownObject:
-        return None
-    x, y, z = shape.size if shape.kind == "box" else (2 * shape.size[0], 2 * shape.size[0], shape.size[1])
-    return make_3d_vector(*map(DoubleFloat, (x, y, z)))
-
-
 def read_description(text: str, file: str = "") -> Description:
     """The description in the text of a URDF file."""
     try:
@@ -235,6 +218,12 @@ def read_description(text: str, file: str = "") -> Description:
         return error("~a", str(problem))
 
 
-def description_text(name: Symbol) -> str:
-    """The URDF text that comes with cramhy: of :PR2 or :KITCHEN."""
-    return FreshString(models.urdf_text(symbol_name(name).lower()))
+def description_text(name: Symbol | str) -> str:
+    """The URDF text that comes with cramhy, of :PR2 or :KITCHEN, or a file's, by its path; one in no folder may be a file of ours."""
+    if is_symbol(name):
+        return FreshString(models.urdf_text(symbol_name(name).lower()))
+    path = Path(str(name))
+    try:
+        return FreshString((path if path.is_file() else models.DATA / path).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as problem:
+        return error("the description ~a cannot be read: ~a", str(name), str(problem))

@@ -1,0 +1,19 @@
+;;;; cl-bullet-vis: the window that the original draws a world in. Here the page of cramhy shows worlds, and there is no window.
+
+(defpackage #:cl-bullet-vis
+  (:nicknames #:bt-vis)
+  (:use #:common-lisp #:cl-bullet)
+  (:export #:bullet-world-window #:close-window #:camera-transform #:gl-objects))
+
+(in-package #:cl-bullet-vis)
+
+(defclass bullet-world-window ()
+  ((world :initarg :world :reader world)
+   (camera-transform :initarg :camera-transform :initform nil :accessor camera-transform)
+   (gl-objects :initform nil :accessor gl-objects))
+  (:documentation "What a window would show: a world, from somewhere."))
+
+(defun close-window (window)
+  "Nothing is open, so nothing closes."
+  (declare (ignore window))
+  nil)

@@ -1,0 +1,4 @@
+(defsystem "cram-physics-utils"
+  :description "Addresses of files in ROS packages, and meshes."
+  :depends-on ("cl-transforms")
+  :components ((:file "cram-physics-utils")))

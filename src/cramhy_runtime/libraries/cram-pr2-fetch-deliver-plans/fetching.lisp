@@ -1,0 +1,76 @@
+;;;; Fetching.
+
+(in-package #:cram-pr2-fetch-deliver-plans)
+
+(defun see-again (?object)
+  "Look at an object from where the robot is now, and detect it. Returns what was seen."
+  (let ((?place (place-of ?object))
+        (?current (desig:current-desig ?object)))
+    (exe:perform (desig:an action (type turning-towards) (target ?place)))
+    (exe:perform (desig:an action (type detecting) (object ?current)))))
+
+(defun picking-up (pick-up-action ?object ?arm)
+  "The action of picking up an object as it was seen now, by the arm and grasp of PICK-UP-ACTION where that has any."
+  (let ((?arm (or (and pick-up-action (desig:desig-prop-value pick-up-action :arm)) ?arm))
+        (?grasp (and pick-up-action (desig:desig-prop-value pick-up-action :grasp))))
+    (desig:an action
+              (type picking-up)
+              (desig:when ?arm (arm ?arm))
+              (desig:when ?grasp (grasp ?grasp))
+              (object ?object))))
+
+(defun pick-up-what-is-seen (object arm pick-up-action)
+  "See an object once more, find out how to take it, and take it."
+  (let ((action (picking-up pick-up-action (see-again object) arm)))
+    (pr2-proj-reasoning:check-picking-up-collisions action)
+    (exe:perform (desig:current-desig action))))
+
+;;; Before the robot goes anywhere, the plan tries in the world whether the object can be seen and taken from there.
+
+(defun look-ahead-to (pose)
+  "Look at a pose, for a try."
+  (pr2-proj::look-at :pose pose))
+
+(defun try-picking-up (item object arm pick-up-action)
+  "Fail unless ITEM, which OBJECT means, is seen and can be taken from where the robot is."
+  (let ((object (desig:current-desig object)))
+    (look-ahead-to (pose-in-room object))
+    (unless (member item (pr2-proj::visible-items object))
+      (cpl:fail 'common-fail:perception-object-not-found :object object :description "The object is not seen from there."))
+    (pr2-proj-reasoning:check-picking-up-collisions
+     (picking-up pick-up-action (pr2-proj::seen-object object item) arm))))
+
+(defun settle-on-place-to-fetch-from (location object arm pick-up-action)
+  "The solution of LOCATION, from now on, from which OBJECT can be taken as far as is known."
+  (let ((item (btr-belief:get-designator-object (desig:current-desig object))))
+    (or (null item)
+        (pr2-proj-reasoning:settle-on-place
+         location (lambda () (try-picking-up item object arm pick-up-action)))
+        (cpl:fail 'common-fail:object-unreachable :object object :description "The object cannot be taken from any of the places ahead."))))
+
+(cpl:def-cram-function fetch (?object-designator ?arm ?pick-up-robot-location pick-up-action)
+  "Go to an object, take it, and park the arms. Where it is out of reach, the robot goes to another place, ten times; where the fingers miss
+it, the robot looks again, once. Returns the object as it is known then."
+  (flet ((give-up (&optional (description "The object was not taken from any of the places that were tried."))
+           (cpl:fail 'common-fail:object-unfetchable :object ?object-designator :description description)))
+    (cpl:with-failure-handling
+        ((desig:designator-error (problem)
+           (roslisp:ros-warn (fd-plans fetch) "~a" problem)
+           (give-up "The place to fetch the object from could not be resolved.")))
+      (with-other-solutions (10 (fd-plans fetch)
+                             common-fail:navigation-goal-in-collision
+                             common-fail:looking-high-level-failure
+                             common-fail:perception-low-level-failure
+                             common-fail:object-unreachable
+                             common-fail:manipulation-low-level-failure)
+          ((let ((elsewhere (next-solution ?pick-up-robot-location)))
+             (when elsewhere (setf ?pick-up-robot-location elsewhere)))
+           (give-up))
+        (settle-on-place-to-fetch-from ?pick-up-robot-location ?object-designator ?arm pick-up-action)
+        (exe:perform (desig:an action (type navigating) (location ?pick-up-robot-location)))
+        (with-other-solutions (1 (fd-plans fetch) common-fail:gripper-low-level-failure)
+            ((progn (pp-plans:park-arms) t)
+             (cpl:fail 'common-fail:object-unreachable :object ?object-designator :description "The fingers closed beside the object."))
+          (pick-up-what-is-seen ?object-designator ?arm pick-up-action))
+        (pp-plans:park-arms))))
+  (desig:current-desig ?object-designator))

@@ -1,0 +1,29 @@
+;;;; Searching.
+
+(in-package #:cram-pr2-fetch-deliver-plans)
+
+(cpl:def-cram-function search-for-object (?object-designator ?search-location &optional (retries 9))
+  "Look for an object at the solutions of a location, RETRIES times more than once; when it has one only, from another place each time.
+Returns what was seen."
+  (let ((?see-from (place-to-see-from ?search-location)))
+    (flet ((give-up (&optional (description "The object is at none of the places that were searched."))
+             (cpl:fail 'common-fail:object-nowhere-to-be-found :object ?object-designator :description description))
+           (next-place ()
+             (let ((next (next-solution ?search-location)))
+               (if next
+                   (setf ?search-location next
+                         ?see-from (place-to-see-from next))
+                   (let ((elsewhere (next-solution ?see-from)))
+                     (when elsewhere (setf ?see-from elsewhere)))))))
+      (cpl:with-failure-handling
+          ((desig:designator-error (problem)
+             (roslisp:ros-warn (fd-plans search-for-object) "~a" problem)
+             (give-up "Search location designator could not be resolved.")))
+        (with-other-solutions (retries (fd-plans search-for-object)
+                               common-fail:navigation-goal-in-collision
+                               common-fail:looking-high-level-failure
+                               common-fail:perception-low-level-failure)
+            ((next-place) (give-up))
+          (exe:perform (desig:an action (type navigating) (location ?see-from)))
+          (exe:perform (desig:an action (type turning-towards) (target ?search-location)))
+          (exe:perform (desig:an action (type detecting) (object ?object-designator))))))))

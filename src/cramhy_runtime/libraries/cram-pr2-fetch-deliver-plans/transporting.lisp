@@ -1,0 +1,106 @@
+;;;; Opening and closing what objects are in, and transporting.
+
+(in-package #:cram-pr2-fetch-deliver-plans)
+
+(defparameter *pose-at-sink* '((0.7 -0.2 0) (0 0 0 1))
+  "Where the robot stands in the room to drop an object at the sink.")
+
+(defparameter *pose-over-sink* '((0.7 0 1.2) (0 0 0 1))
+  "Where it drops it, in the frame of its base.")
+
+(defun stamped (frame place)
+  (let ((pose (btr:ensure-pose place)))
+    (cl-transforms-stamped:pose->pose-stamped frame 0.0 pose)))
+
+(cpl:def-cram-function drop-at-sink ()
+  "Put what is held over the sink, since it could not be brought to where it was to be."
+  (let ((?stand (stamped cram-tf:*fixed-frame* *pose-at-sink*))
+        (?over-sink (stamped cram-tf:*robot-base-frame* *pose-over-sink*)))
+    (exe:perform (desig:an action (type navigating) (location (desig:a location (pose ?stand)))))
+    (exe:perform (desig:an action (type placing) (target (desig:a location (pose ?over-sink)))))
+    (pp-plans:park-arms)))
+
+(cpl:def-cram-function manipulate-environment (action-type ?object-to-manipulate ?arm ?distance)
+  "Open (ACTION-TYPE is :ACCESSING) or close (:SEALING) a container, from another place each time, ten times at most."
+  (let ((?type (ecase action-type (:accessing :opening) (:sealing :closing)))
+        (?stand (place-to-reach-from-container ?object-to-manipulate ?arm)))
+    (flet ((give-up (description)
+             (cpl:fail 'common-fail:environment-manipulation-impossible :description description)))
+      (cpl:with-failure-handling
+          ((desig:designator-error (problem)
+             (give-up (format nil "~a" problem))))
+        (with-other-solutions (10 (fd-plans environment)
+                               common-fail:navigation-goal-in-collision
+                               common-fail:looking-high-level-failure
+                               common-fail:environment-unreachable
+                               common-fail:gripper-low-level-failure
+                               common-fail:manipulation-low-level-failure)
+            ((let ((elsewhere (next-solution ?stand)))
+               (when elsewhere (setf ?stand elsewhere)))
+             (give-up "The container cannot be moved from any of the places that were tried."))
+          (exe:perform (desig:an action (type navigating) (location ?stand)))
+          (let ((action (desig:an action
+                                  (type ?type)
+                                  (arm ?arm)
+                                  (desig:when ?distance (distance ?distance))
+                                  (object ?object-to-manipulate))))
+            (pr2-proj-reasoning:check-environment-manipulation-collisions action)
+            (exe:perform (desig:current-desig action))
+            (pp-plans:park-arms))))))
+  nil)
+
+(defun place-to-reach-from-container (?container ?arm)
+  (let ((?robot (robot-name)))
+    (desig:a location (reachable-for ?robot) (arm ?arm) (object ?container))))
+
+(defun open-or-close (?type ?location ?arm)
+  "Open or close the container that a location is in."
+  (let ((?distance (when (eq (container-type ?location) :drawer) 0.3)))
+    (exe:perform (desig:an action
+                           (type ?type)
+                           (location ?location)
+                           (desig:when ?arm (arm ?arm))
+                           (desig:when ?distance (distance ?distance))))))
+
+(defun container-type (location)
+  (let ((container (desig:desig-prop-value location :in)))
+    (and container (desig:desig-prop-value (desig:current-desig container) :type))))
+
+(defun fetch-and-deliver (?object ?target ?arm)
+  "Take an object that was seen, and bring it to ?TARGET."
+  (let ((?fetch-from (place-to-reach-from (place-of ?object) ?arm))
+        (?deliver-from (place-to-reach-from ?target ?arm))
+        (?pick-up (picking-up nil ?object ?arm))
+        (?place (placing (when ?arm (desig:an action (type placing) (arm ?arm))) ?object ?target)))
+    (pr2-proj-reasoning:with-projected-task-tree (?fetch-from ?deliver-from) 3 #'pr2-proj-reasoning::driving-distance
+      (let ((?fetched (exe:perform (desig:an action
+                                             (type fetching)
+                                             (desig:when ?arm (arm ?arm))
+                                             (object ?object)
+                                             (robot-location ?fetch-from)
+                                             (pick-up-action ?pick-up)))))
+        (roslisp:ros-info (fd-plans transport) "Fetched the object.")
+        (cpl:with-failure-handling
+            ((common-fail:object-undeliverable (failure)
+               (roslisp:ros-warn (fd-plans transport) "~a~%Dropping the object at the sink." failure)
+               (drop-at-sink)))
+          (exe:perform (desig:an action
+                                 (type delivering)
+                                 (desig:when ?arm (arm ?arm))
+                                 (object ?fetched)
+                                 (target ?target)
+                                 (robot-location ?deliver-from)
+                                 (place-action ?place))))))))
+
+(cpl:def-cram-function transport (?object-designator ?search-location ?delivering-location ?arm search-location-accessible)
+  "Find an object, take it, and bring it to another place. What it is in is opened before, and closed again whatever happens. An object
+that cannot be brought to its place is dropped at the sink, and the failure goes on to the caller."
+  (unless search-location-accessible
+    (open-or-close :accessing ?search-location ?arm))
+  (unwind-protect
+       (let ((object (exe:perform (desig:an action (type searching) (object ?object-designator) (location ?search-location)))))
+         (roslisp:ros-info (fd-plans transport) "Found the object ~a." (desig:desig-prop-value object :name))
+         (fetch-and-deliver object ?delivering-location ?arm))
+    (unless search-location-accessible
+      (open-or-close :sealing ?search-location ?arm)))
+  nil)

@@ -1,0 +1,127 @@
+"""The current world of the robot, in Python's words. Names of things are names in Lisp: ``"bottle-1"`` is ``:bottle-1``."""
+
+from __future__ import annotations
+
+from math import atan2, degrees
+from typing import Any
+
+from cramhy_runtime.cpl.failures.python_exceptions import for_python
+from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.robot_world.placements import Placement, of_pose
+from cramhy_runtime.tf.stamped import PoseStamped
+
+from .libraries import lisp, load
+from .poses import Place, at, pose_of
+
+Name = str | Symbol
+
+
+class World:
+    """The world in which the robot is now; all objects of this class are about the same one, the current."""
+
+    @property
+    def core(self) -> Any:
+        """The `robot_world.world.World` below, which can be copied to look ahead."""
+        return lisp("CRAM-BULLET-REASONING", "current_bullet_world")
+
+    @for_python
+    def spawn(self, type: str, place: Place, name: Name | None = None, mass: float = 0.2) -> str:  # noqa: A002
+        """Put an object of a type, such as ``"bottle"``, somewhere. Returns its name: by default the type and a number.
+
+        Errors: a type of which there is no model, a name that is taken.
+        """
+        taken = set(self.names())
+        number = next(number for number in range(1, len(taken) + 2) if f"{type}-{number}" not in taken)
+        symbol = _symbol(name or f"{type}-{number}")
+        if text(symbol) in taken:
+            raise ValueError(f"There is a thing named {text(symbol)} already; there are {', '.join(sorted(taken))}.")
+        lisp("CRAM-BULLET-REASONING-UTILITIES", "spawn_object")(
+            symbol, keyword(type.upper()), sym(":POSE"), pose_of(place), sym(":MASS"), mass
+        )
+        return text(symbol)
+
+    @for_python
+    def remove(self, name: Name) -> None:
+        """Take an object away."""
+        self.core.remove(self._thing(name).name)
+
+    @for_python
+    def move(self, name: Name, place: Place) -> None:
+        """Put a thing somewhere else, as a hand would; the robot does not notice."""
+        self.core.put(self._thing(name).name, of_pose(pose_of(place)))
+
+    @for_python
+    def settle(self, seconds: float = 10.0) -> None:
+        """Let what is free fall, until it lies."""
+        self.core.simulate(seconds)
+
+    def names(self) -> list[str]:
+        """The names of all objects that are neither robot nor furniture, in the order in which they came."""
+        return [text(item.name) for item in self.core.items()]
+
+    @for_python
+    def pose(self, name: Name | None = None) -> PoseStamped:
+        """Where a thing is; by default the robot."""
+        placement: Placement = (self.robot if name is None else self._thing(name)).placement
+        x, y, z = map(float, placement.position)
+        made = at(x, y, z)
+        made.orientation = placement.pose().orientation
+        return made
+
+    def place(self, name: Name | None = None) -> tuple[float, float, float]:
+        """Where a thing is, in whole millimetres; by default the robot."""
+        origin = self.pose(name).origin
+        return (round(origin.x, 3), round(origin.y, 3), round(origin.z, 3))
+
+    def yaw(self, name: Name | None = None) -> float:
+        """How far a thing is turned about the vertical axis, in degrees; by default the robot."""
+        turn = self.pose(name).orientation
+        return degrees(atan2(2 * (turn.w * turn.z + turn.x * turn.y), 1 - 2 * (turn.y * turn.y + turn.z * turn.z)))
+
+    def picture(self) -> dict[str, tuple[float, float, float]]:
+        """Where each object is, by its name."""
+        return {name: self.place(name) for name in self.names()}
+
+    def held(self) -> dict[str, str]:
+        """The arm that holds each object that is held, by the object's name."""
+        names = lisp("CRAMHY-ROBOT", "objects_held")() or ()
+        return {text(name): text(lisp("CRAMHY-ROBOT", "arm_that_holds")(name)) for name in names}
+
+    @for_python
+    def touching(self, name: Name) -> list[str]:
+        """The names of the things that touch a thing."""
+        return [text(thing.name) for thing in self.core.touching(self._thing(name).name)]
+
+    @property
+    def robot(self) -> Any:
+        """The robot, a `robot_world.things.Machine`."""
+        return lisp("CRAM-BULLET-REASONING", "get_robot_object")()
+
+    def _thing(self, name: Name) -> Any:
+        wanted = text(name)
+        for thing in self.core.things.values():
+            if text(thing.name) == wanted:
+                return thing
+        raise KeyError(f"There is nothing named {wanted}; there are {', '.join(self.names()) or 'no objects'}.")
+
+
+@for_python
+def world(description: str | None = None) -> World:
+    """Begin with a new world: the kitchen, and the robot with its arms parked at the origin.
+
+    description: the system that describes the robot, such as ``"cram_porter_description"``; by default that of the PR2. Errors:
+    ImportError without the extra ``robot``; ValueError, when this image has another robot.
+    """
+    load(description)
+    lisp("CRAM-OCCASIONS-EVENTS", "clear_belief")()
+    return World()
+
+
+def _symbol(name: Name) -> Symbol:
+    return name if isinstance(name, Symbol) else keyword(name.upper())
+
+
+def text(name: Any) -> str:
+    """A name of Lisp as Python writes it: in small letters, without package."""
+    return (name.name if isinstance(name, Symbol) else str(name)).lower()
