@@ -154,3 +154,23 @@ def test_methods_of_a_program_on_worlds_and_objects(ask):
     ask("(defmethod kind ((thing btr:robot-object)) :robot)")
     assert ask("(mapcar #'kind (btr:objects *world*))") == "(:ROBOT :ROBOT :ITEM :ITEM)"
     assert ask('(subseq (format nil "~s" (named \'cup)) 0 28)') == '"#<CRAM-BULLET-REASONING:ITEM"'
+
+
+# ------------------------------------------------------------------------------------------------------------- pictures and movies
+
+
+def test_a_picture_of_the_current_world_is_written(session, ask, tmp_path):
+    path = tmp_path / "kitchen.png"
+    assert ask(f'(btr:save-picture "{path}" :width 40 :height 30)') == f'"{path}"'
+    assert path.read_bytes().startswith(b"\x89PNG")
+    assert ask('(btr:save-picture "kitchen.jpg")').startswith("What kind of picture is kitchen.jpg to be?")
+
+
+def test_with_movie_gives_the_values_of_its_body_and_writes_a_gif_also_when_it_fails(session, ask, tmp_path):
+    body = "(setf (btr:pose (named 'cup)) (btr:ensure-pose '((-1.8 0 1.2) (0 0 0 1))))"
+    path, other = tmp_path / "run.gif", tmp_path / "failed.gif"
+    assert ask(f'(multiple-value-list (btr:with-movie ("{path}" :width 160 :height 120) {body} (values 1 2)))') == "(1 2)"
+    assert path.read_bytes().startswith(b"GIF89a")
+    assert ask(f'(btr:with-movie ("{other}" :width 40 :height 30) (error "It is broken."))') == "It is broken."
+    assert other.exists()
+    assert ask('(btr:with-movie ("run.png") (error "It never begins."))').startswith("What kind of movie is run.png to be?")

@@ -9,6 +9,8 @@
 ``things, world``         items and machines, and the world that they are in; worlds are copied to look ahead
 ``scene``                 the same for MuJoCo: contacts, falls, rays
 ``vision``                what a camera sees
+``shown``                 which world is the current one, and who is told when it changes
+``pictures/``             pictures and movies of a world, without a screen
 ``simulated_robot``       the motions of a robot in such a world
 ``data/``                 the PR2 and the kitchen of Bremen, as URDF of our own
 ========================  ===========================================================================================

@@ -16,6 +16,7 @@ from cramhy_runtime.ground.condition_types import SimpleError
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import list_from
 
+from . import shown
 from .mesh_files import MeshError
 from .meshes import mesh_of
 from .placements import Placement, placement
@@ -93,6 +94,7 @@ class World:
         self.things[thing.name] = thing
         thing.world = self
         self._scene = None
+        shown.changed(self)
         return thing
 
     def remove(self, name: Hashable) -> None:
@@ -103,6 +105,7 @@ class World:
         for machine in self.machines():
             machine.holds.pop(name, None)
         self._scene = None
+        shown.changed(self)
 
     def thing(self, name: Hashable) -> Thing:
         """The thing of that name. Errors: `WorldError`, when there is none."""
@@ -142,6 +145,7 @@ class World:
             thing.stand(at)
             self._carry(thing)
         self._placed = False
+        shown.changed(self)
 
     def bend(self, name: Hashable, joints: Mapping[str, float]) -> None:
         """Set joints of a machine, whatever their limits. Errors: `WorldError`, for joints that it has not."""
@@ -152,6 +156,7 @@ class World:
         machine.bend(joints)
         self._carry(machine)
         self._placed = False
+        shown.changed(self)
 
     def link(self, name: Hashable, link: str) -> Placement:
         """Where a link of a machine is. Errors: `WorldError`, for a link that it has not."""
@@ -172,6 +177,7 @@ class World:
         machine, held = self.machine(name), self.item(item)
         machine.holds.setdefault(item, []).append(Grip(link, self.link(name, link).inverse() @ held.placement, loose))
         self._scene = None
+        shown.changed(self)
 
     def detach(self, name: Hashable, item: Hashable, link: str | None = None) -> None:
         """Let an item go, by default all links. It stays where it is until the world is simulated."""
@@ -180,6 +186,7 @@ class World:
         if grips:
             machine.holds[item] = grips
         self._scene = None
+        shown.changed(self)
 
     def holders(self, item: Hashable) -> list[tuple[Machine, str]]:
         """The machines and links that hold an item."""
@@ -227,6 +234,7 @@ class World:
             scene.free_all()
             took = scene.settle(seconds)
         self._placed = False
+        shown.changed(self)
         return took
 
     def stable(self, name: Hashable, metres: float = 0.005, radians: float = 0.15) -> bool:

@@ -147,7 +147,7 @@ def broadcasting(broadcaster: Publication, *transforms: TransformStamped) -> Ite
         yield
 
 
-def topic(broadcaster):
+def topic(broadcaster: object) -> str:
     """The name of the topic that a broadcaster publishes on, of CL-TF or of CL-TF2."""
     if isinstance(broadcaster, TransformBroadcaster):
         broadcaster = broadcaster.publication

@@ -9,6 +9,7 @@
                (:file "objects")
                (:file "robots")
                (:file "vision")
+               (:file "pictures")
                (:file "reaching")
                (:file "places")
                (:file "predicates")))

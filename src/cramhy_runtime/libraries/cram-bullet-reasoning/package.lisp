@@ -25,6 +25,8 @@
    #:get-robot-object #:get-robot-name #:get-environment-object #:robot-colliding-objects-without-attached #:calculate-pan-tilt
    ;; seeing
    #:*visibility-threshold* #:object-visible-p #:calculate-object-visibility #:occluding-objects
+   ;; pictures
+   #:save-picture #:with-movie
    #:*debug-window* #:add-debug-window #:add-vis-axis-object #:remove-vis-axis-object #:add-costmap-function-object
    #:add-costmap-sample-object #:clear-costmap-vis-object
    ;; predicates

@@ -40,8 +40,10 @@ ROSOUT_DELAY = 0.05
 """Seconds until the log collector has connected to a new node. Before that, log calls reach no subscriber."""
 
 NODE_NAME = special("ROSLISP::*ROS-NODE-NAME*")
-NODE_STATUS, NAMESPACE = special("ROSLISP::*NODE-STATUS*", sym(":SHUTDOWN")), special("ROSLISP::*NAMESPACE*", "/")
-REMAPPED_NAMES, LOG_LOCATION = special("ROSLISP::*REMAPPED-NAMES*"), special("ROSLISP::*ROS-LOG-LOCATION*")
+NODE_STATUS: Symbol = special("ROSLISP::*NODE-STATUS*", sym(":SHUTDOWN"))
+NAMESPACE: Symbol = special("ROSLISP::*NAMESPACE*", "/")
+REMAPPED_NAMES: Symbol = special("ROSLISP::*REMAPPED-NAMES*")
+LOG_LOCATION: Symbol = special("ROSLISP::*ROS-LOG-LOCATION*")
 """Internal variables of roslisp, which programs look at all the same."""
 RUNNING_FROM_COMMAND_LINE = special("ROSLISP::*RUNNING-FROM-COMMAND-LINE*")
 
