@@ -11,7 +11,7 @@ import os
 from ... import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.data import Cons, LispString, python_list, truth
+from cramhy_runtime.ground.data import Cons, LispString, Symbol, python_list, truth
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.hash_tables import HashTable
 from cramhy_runtime.ground.output import standard_output
