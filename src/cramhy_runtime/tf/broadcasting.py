@@ -67,7 +67,7 @@ def _message(cls, transforms):
     return cls(transforms=[to_msg(check_type(transform, TransformStamped, "TRANSFORM")) for transform in transforms])
 
 
-def _publication(broadcaster, function):
+def _publication(broadcaster: object, function: str) -> Publication:
     if isinstance(broadcaster, Publication):
         return broadcaster
     return no_applicable_method(f"CL-TF:{function}", None, broadcaster)
