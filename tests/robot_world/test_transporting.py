@@ -135,7 +135,7 @@ def test_what_is_not_there_is_nowhere_to_be_found(ask):
 def test_what_no_arm_reaches_is_unfetchable_and_stays(ask):
     spawn(ask, "bottle", "bottle", 1.5, 0.7)
     ask("(setf (btr:pose (btr:object btr:*current-bullet-world* 'bottle)) (btr:ensure-pose '((1.5 0.7 1.9) (0 0 0 1))))")
-    form = f"""(with-simulated-robot
+    form = """(with-simulated-robot
       (let ((?bottle (see 'bottle '((0.2 0.7 0) (0 0 0 1)))))
         (perform (an action (type fetching) (object ?bottle) (robot-location (a location (pose ,(at 0.2 0.7 0))))))))"""
     form = form.replace(",(at 0.2 0.7 0)", "?stand").replace("(let (", "(let* ((?stand (at 0.2 0.7 0)) ")
