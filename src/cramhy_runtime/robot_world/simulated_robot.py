@@ -183,6 +183,10 @@ class SimulatedRobot:
             raise OutOfReach(next(arms, next(iter(goals))), len(heights) // _COARSE + 3)
         self.world.bend(self.name, first)
 
+    def posture_for(self, goals: Mapping[Hashable, Placement]) -> dict[str, float] | None:
+        """Positions of the joints of the torso and of the arms that bring the tools there; ``None`` when that is out of reach."""
+        return next(self._postures(goals), None)
+
     def _heights(self) -> list[float]:
         """From the highest place of the torso to the lowest, step by step."""
         limits = self.machine.description.joints[self.parts.torso]

@@ -22,6 +22,42 @@
       (cut:var-value '?frame (cut:lazy-car (prolog '(and (cram-robot-interfaces:robot ?robot)
                                                      (cram-robot-interfaces:robot-base-frame ?robot ?frame)))))))
 
+(defun reached-p (pose arm)
+  "Whether ARM reaches a pose; true where nothing can tell."
+  (or (null (compute-applicable-methods #'cram-robot-interfaces:compute-iks (list pose)))
+      (cram-robot-interfaces:compute-iks pose :arm arm)))
+
+(defun grasp-reached-p (grasp arm object-name object-type transform &optional (pick #'second))
+  "Whether ARM, or each of a list, reaches the grasp, and the pose that PICK takes of all."
+  (handler-case
+      (every (lambda (side)
+               (let ((poses (obj-int:get-object-grasping-poses object-name object-type side grasp transform)))
+                 (and (reached-p (funcall pick poses) side) (reached-p (third poses) side))))
+             (arms-of arm))
+    (error () nil)))
+
+(defun those-reached-first (grasps arm object-name object-type transform)
+  "GRASPS in their order, but those before the others that ARM can reach."
+  (loop for grasp in (cut:force-ll grasps)
+        if (grasp-reached-p grasp arm object-name object-type transform)
+          collect grasp into reached
+        else
+          collect grasp into others
+        finally (return (append reached others))))
+
+(defun turned (transform quarters)
+  "TRANSFORM, with so many quarters of a turn about the vertical."
+  (cram-tf:copy-transform-stamped
+   transform :rotation (cl-transforms:q* (cl-transforms:axis-angle->quaternion (cl-transforms:make-3d-vector 0 0 1) (* quarters pi 0.5))
+                                         (cl-transforms:rotation transform))))
+
+(defun transforms-to-place (grasp arm object-name object-type transform)
+  "TRANSFORM; where that is out of reach, and the orientation of such objects does not matter, first those of its turns that are reached."
+  (flet ((reached (transform) (grasp-reached-p grasp arm object-name object-type transform #'fourth)))
+    (append (unless (or (reached transform) (prolog `(obj-int:orientation-matters ,object-type)))
+              (remove-if-not #'reached (loop for quarters from 1 to 3 collect (turned transform quarters))))
+            (list transform))))
+
 (defun target-transform (object-name target-pose)
   "The transform from the robot's base to an object that is at TARGET-POSE."
   (cram-tf:pose-stamped->transform-stamped
@@ -42,7 +78,7 @@
     (lisp-fun obj-int:get-object-transform ?current-object ?transform)
     (lisp-pred identity ?transform)
     (arm-to-use ?designator ?arm)
-    (grasp-to-use ?designator ?object-type ?transform ?arm ?grasp)
+    (grasp-to-use ?designator ?object-name ?object-type ?transform ?arm ?grasp)
     (lisp-fun obj-int:get-object-type-gripping-effort ?object-type ?effort)
     (lisp-fun obj-int:get-object-type-gripper-opening ?object-type ?gripper-opening)
     (lisp-fun grasping-poses :left ?arm ?object-name ?object-type ?grasp ?transform ?left-poses)
@@ -58,7 +94,7 @@
         (and (cram-robot-interfaces:robot ?robot)
              (cram-robot-interfaces:arm ?robot ?arm))))
 
-  (<- (grasp-to-use ?designator ?object-type ?transform ?arm ?grasp)
+  (<- (grasp-to-use ?designator ?object-name ?object-type ?transform ?arm ?grasp)
     (-> (spec:property ?designator (:grasp ?given))
         (equal ?grasp ?given)
         (and (lisp-fun obj-int:calculate-object-faces ?transform (?facing-robot ?bottom))
@@ -66,7 +102,8 @@
                  (equal ?symmetric t)
                  (equal ?symmetric nil))
              (lisp-fun obj-int:get-object-type-grasps ?object-type ?facing-robot ?bottom ?symmetric ?arm ?grasps)
-             (member ?grasp ?grasps))))
+             (lisp-fun those-reached-first ?grasps ?arm ?object-name ?object-type ?transform ?ordered-grasps)
+             (member ?grasp ?ordered-grasps))))
 
   (<- (parts nil nil nil nil))
 
@@ -83,8 +120,10 @@
     (spec:property ?current-object (:name ?object-name))
     (place-to-use ?designator ?current-object ?object-name ?target ?transform)
     (grasp-in-hand ?object-type ?object-name ?arm ?transform ?grasp)
-    (lisp-fun grasping-poses :left ?arm ?object-name ?object-type ?grasp ?transform ?left-poses)
-    (lisp-fun grasping-poses :right ?arm ?object-name ?object-type ?grasp ?transform ?right-poses)
+    (lisp-fun transforms-to-place ?grasp ?arm ?object-name ?object-type ?transform ?transforms)
+    (member ?placed ?transforms)
+    (lisp-fun grasping-poses :left ?arm ?object-name ?object-type ?grasp ?placed ?left-poses)
+    (lisp-fun grasping-poses :right ?arm ?object-name ?object-type ?grasp ?placed ?right-poses)
     (lisp-fun split-poses-for-placing ?left-poses ?left-parts)
     (lisp-fun split-poses-for-placing ?right-poses ?right-parts)
     (parts ?left-parts ?left-reach-poses ?left-put-poses ?left-retract-poses)

@@ -3,7 +3,8 @@
   :depends-on ("cram-language" "cram-executive" "cram-designators" "cram-prolog" "cram-utilities" "roslisp" "cl-transforms"
                "cl-transforms-stamped" "cram-common-failures" "cram-designator-specification" "cram-robot-interfaces"
                "cram-object-interfaces" "cram-tf" "cram-location-costmap" "cram-robot-pose-gaussian-costmap"
-               "cram-bullet-reasoning" "cram-bullet-reasoning-belief-state" "cram-mobile-pick-place-plans" "cram-pr2-projection"
+               "cram-btr-spatial-relations-costmap" "cram-bullet-reasoning" "cram-bullet-reasoning-belief-state"
+               "cram-mobile-pick-place-plans" "cram-pr2-projection"
                "cram-pr2-projection-reasoning")
   :serial t
   :components ((:file "package")

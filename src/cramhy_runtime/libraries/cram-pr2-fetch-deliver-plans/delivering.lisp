@@ -20,40 +20,13 @@
     (exe:perform (desig:current-desig action))
     (pp-plans:park-arms)))
 
-(defun turned (location quarters)
-  "The place of LOCATION, with so many quarters of a turn."
-  (let* ((pose (desig:reference location))
-         (?pose (cl-transforms-stamped:copy-pose-stamped
-                 pose :orientation (cl-transforms:q* (cl-transforms:axis-angle->quaternion (cl-transforms:make-3d-vector 0 0 1)
-                                                                                           (* quarters pi 0.5))
-                                                     (cl-transforms:orientation pose)))))
-    (desig:a location (pose ?pose))))
-
-(defun targets-for (object target)
-  "TARGET, and where the orientation of such objects does not matter, also TARGET with quarters of a turn."
-  (let ((type (desig:desig-prop-value (desig:current-desig object) :type)))
-    (cons target
-          (unless (prolog `(obj-int:orientation-matters ,type))
-            (loop for quarters from 1 to 3 collect (turned target quarters))))))
-
-(defun find-target (object target place-action)
-  "The first of the targets for OBJECT where it can be put from where the robot is."
-  (look-ahead-to (desig:reference target))
-  (loop for (each . more) on (targets-for object target)
-        do (cpl:with-failure-handling
-               ((common-fail:object-unreachable (failure)
-                  (declare (ignore failure))
-                  (when more (return))))
-             (pr2-proj-reasoning:check-placing-collisions (placing place-action object each))
-             (return-from find-target each))))
-
 (defun settle-on-place-to-deliver-from (location object target place-action)
-  "Move LOCATION on to a solution from which OBJECT can be put at TARGET as far as is known. Returns the target, which may be turned."
-  (let ((found nil))
-    (unless (pr2-proj-reasoning:settle-on-place
-             location (lambda () (setf found (find-target object target place-action))))
-      (cpl:fail 'common-fail:object-undeliverable :object object :description "The target is out of reach from all of the places ahead."))
-    found))
+  "Move LOCATION on to a solution from which OBJECT can be put at TARGET as far as is known."
+  (or (pr2-proj-reasoning:settle-on-place
+       location (lambda ()
+                  (look-ahead-to (desig:reference target))
+                  (pr2-proj-reasoning:check-placing-collisions (placing place-action object target))))
+      (cpl:fail 'common-fail:object-undeliverable :object object :description "The target is out of reach from all of the places ahead.")))
 
 (cpl:def-cram-function deliver (?object-designator ?target-location ?target-robot-location place-action)
   "Go to where an object that is held shall be, and put it there. Where that is out of reach the robot goes to another place, five times,
@@ -74,10 +47,10 @@ and takes another solution of the target, twice from the same place, and twice w
           ((let ((elsewhere (next-solution ?target-robot-location)))
              (when elsewhere (setf ?target-robot-location elsewhere)))
            (give-up "The target was not reached from any of the places that were tried."))
-        (let ((target (settle-on-place-to-deliver-from ?target-robot-location ?object-designator ?target-location place-action)))
-          (exe:perform (desig:an action (type navigating) (location ?target-robot-location)))
-          (with-other-solutions (2 (fd-plans deliver) common-fail:looking-high-level-failure common-fail:object-unreachable)
-              ((setf target (next-target))
-               (give-up "The target is not to be seen or reached from here."))
-            (put-down ?object-designator target place-action))))))
+        (settle-on-place-to-deliver-from ?target-robot-location ?object-designator ?target-location place-action)
+        (exe:perform (desig:an action (type navigating) (location ?target-robot-location)))
+        (with-other-solutions (2 (fd-plans deliver) common-fail:looking-high-level-failure common-fail:object-unreachable)
+            ((next-target)
+             (give-up "The target is not to be seen or reached from here."))
+          (put-down ?object-designator ?target-location place-action)))))
   nil)

@@ -5,6 +5,9 @@
 (defvar *torso-step* 0.01
   "How far apart the heights of the torso are from which an arm tries to reach, in metres.")
 
+(defvar *ik-solution-cache* (make-hash-table :test 'equal)
+  "For programs that clear it: what was computed for arms is remembered by what computes it.")
+
 (defvar *frames-follow* t
   "Whether frames move with the links; what only tries motions has no use for that.")
 
@@ -21,6 +24,21 @@
       (cpl:fail 'common-fail:navigation-pose-unreachable
                 :description (format nil "The robot would touch ~{~a~^, ~} at ~a." (mapcar #'btr:name things) pose-stamped)))
     (touched)))
+
+(defun drive-with-others (pose-stamped)
+  "As `drive'; where arms that are moving at the same time are in the way, once they are not."
+  (let ((joints (btr:joint-states (robot))))
+    (cpl:with-retry-counters ((waits 10))
+      (cpl:with-failure-handling
+          ((common-fail:navigation-pose-unreachable (failure)
+             (declare (ignore failure))
+             (cpl:do-retry waits
+               (cpl:sleep 0.1)
+               (let ((now (btr:joint-states (robot))))
+                 (unless (equal now joints)
+                   (setf joints now)
+                   (cpl:retry))))))
+        (drive pose-stamped)))))
 
 (defun move-torso (height)
   "Raise or lower the torso."
@@ -86,6 +104,12 @@
   (unless (string= (cl-transforms-stamped:frame-id pose) cram-tf:*robot-base-frame*)
     (error "Arm movement goals should be given in robot base frame"))
   pose)
+
+(defmethod cram-robot-interfaces:compute-iks ((pose-stamped cl-transforms-stamped:pose-stamped) &key arm &allow-other-keys)
+  "A list of one list of joint states, (name position) each, with which the tool of ARM is at a pose; nil, if there are none."
+  (let ((states (robot-world:posture-for (robot) (parts) arm (cram-tf:ensure-pose-in-frame pose-stamped cram-tf:*robot-base-frame*
+                                                                                          :use-zero-time t))))
+    (when states (list states))))
 
 (defun move-joints (left right)
   "Bring the joints of the arms to lists of values."

@@ -10,7 +10,7 @@
          (ecase ,command ,@body)))))
 
 (def-projection-module pr2-proj-navigation (command argument)
-  (cram-common-designators:move-base (drive argument)))
+  (cram-common-designators:move-base (drive-with-others argument)))
 
 (def-projection-module pr2-proj-torso (command argument)
   (cram-common-designators:move-torso (move-torso argument)))

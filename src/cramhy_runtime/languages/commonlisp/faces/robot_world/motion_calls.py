@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cramhy_runtime.ground.data import Cons, boolean, list_from, lisp_list, python_list
+from cramhy_runtime.ground.data import Cons, DoubleFloat, boolean, list_from, lisp_list, python_list
 from cramhy_runtime.robot_world.placements import of_pose
 from cramhy_runtime.robot_world.simulated_robot import (
     ArmParts,
@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from cramhy_runtime.transforms.vectors import Vector3
 
 LISP_NAMES = """
-make-arm make-parts drive move-torso look-at look-forward sees-p move-arm-joints move-tools set-fingers grip collisions
+make-arm make-parts drive move-torso look-at look-forward sees-p move-arm-joints move-tools posture-for set-fingers grip
+collisions
 """
 
 
@@ -116,6 +117,12 @@ def move_tools(machine: Machine, parts: RobotParts, goals: Cons) -> Cons | None:
     except OutOfReach as problem:
         return lisp_list(problem.arm, problem.torsos)
     return None
+
+
+def posture_for(machine: Machine, parts: RobotParts, arm: Symbol, pose: Pose) -> Cons | None:
+    """A list of (joint position) with which the tool of an arm is at a pose in the frame of the base; nil, when it is out of reach."""
+    posture = _robot(machine, parts).posture_for({arm: of_pose(pose)})
+    return None if posture is None else list_from(lisp_list(joint, DoubleFloat(value)) for joint, value in posture.items())
 
 
 def set_fingers(machine: Machine, parts: RobotParts, arm: Symbol, position: Any = None) -> None:
