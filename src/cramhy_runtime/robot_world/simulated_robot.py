@@ -29,8 +29,8 @@ VISIBLE = 0.9
 """Which part of an item's picture must be seen."""
 TORSO_STEP = 0.01  # metres
 _COARSE = 6  # torso steps: between heights that are tried first
-_POSTURES = 80  # how many are tried
-_POSTURES_AT_HEIGHT = 12
+_POSTURES = 32  # how many are tried
+_POSTURES_AT_HEIGHT = 6
 
 
 @dataclass(frozen=True)

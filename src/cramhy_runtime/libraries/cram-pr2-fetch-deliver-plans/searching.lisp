@@ -2,6 +2,13 @@
 
 (in-package #:cram-pr2-fetch-deliver-plans)
 
+(defun next-place-apart (location)
+  "The next solution of LOCATION that is more than a step away from the current one, or nil."
+  (handler-case
+      (let ((location (desig:current-desig location)))
+        (desig:next-filtered-designator-solution location (cram-tf:make-euclidean-distance-filter (desig:reference location) 0.3)))
+    (desig:designator-error () nil)))
+
 (cpl:def-cram-function search-for-object (?object-designator ?search-location &optional (retries 9))
   "Look for an object at the solutions of a location, RETRIES times more than once; when it has one only, from another place each time.
 Returns what was seen."
@@ -13,7 +20,7 @@ Returns what was seen."
                (if next
                    (setf ?search-location next
                          ?see-from (place-to-see-from next))
-                   (let ((elsewhere (next-solution ?see-from)))
+                   (let ((elsewhere (next-place-apart ?see-from)))
                      (when elsewhere (setf ?see-from elsewhere)))))))
       (cpl:with-failure-handling
           ((desig:designator-error (problem)

@@ -107,10 +107,16 @@ solution, TRIES times at most. NONE-LEFT and TOO-MANY are what happens when ther
             ((desig:designator-error (problem)
                (roslisp:ros-warn (projection reasoning) "~a" problem)
                (give-up)))
-          (trying-solutions ((pick-up-action-desig action) retries
-                             common-fail:manipulation-low-level-failure common-fail:manipulation-goal-in-collision)
-              ((back) :none-left (give-up) :too-many (give-up))
-            (try-picking-up (desig:reference action))))))
+          (let ((tried ()))
+            (trying-solutions ((pick-up-action-desig action) retries
+                               common-fail:manipulation-low-level-failure common-fail:manipulation-goal-in-collision)
+                ((back) :none-left (give-up) :too-many (give-up))
+              (let* ((reference (desig:reference action))
+                     (way (list (third reference) (sixth reference))))
+                (when (member way tried :test #'equal)
+                  (cpl:fail 'common-fail:manipulation-goal-in-collision :description "That arm and grasp were tried."))
+                (push way tried)
+                (try-picking-up reference)))))))
     (desig:current-desig pick-up-action-desig)))
 
 (defun try-placing (reference)

@@ -15,7 +15,7 @@
     (funcall function)
     t))
 
-(defun settle-on-place (location try &key (samples 150) (tries 12))
+(defun settle-on-place (location try &key (samples 150) (tries 8))
   "Move LOCATION on to the first of its next solutions at which the robot touches nothing and the function TRY does not fail, with the arms
 parked. Returns that location, or nil when none of so many SAMPLES will do, or TRY has failed TRIES times; the world is then as it was."
   (in-simulation
