@@ -412,3 +412,8 @@ def test_test_modules_outside_of_packages_have_names_of_their_own():
     paths = [path for path in (ROOT / "tests").rglob("*.py") if not (path.parent / "__init__.py").exists() and path.name != "conftest.py"]
     names = [path.stem for path in paths]
     assert not {name for name in names if names.count(name) > 1}
+
+
+def test_what_make_test_leaves_out_is_there():
+    lines = [line for line in (ROOT / "tests/long_tests.txt").read_text().splitlines() if not line.startswith("#")]
+    assert [line for line in lines if not (ROOT / "tests" / line.partition("::")[0]).is_file()] == []
