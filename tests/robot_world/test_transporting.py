@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import random
 import sys
-from math import cos, pi, sin
+from itertools import combinations
+from math import cos, dist, pi, sin
 from pathlib import Path
 
 import pytest
@@ -83,20 +84,15 @@ def scene(ask, seed):
     """Put a bottle and three other objects on the counter, and the robot into the room; where the bottle is, and where it is to go."""
     draw = random.Random(seed)
     places: list[tuple[float, float]] = []
+    while not places or any(dist(one, other) < 0.28 for one, other in combinations(places, 2)):
+        places = [(draw.uniform(1.36, 1.6), draw.uniform(-0.1, 1.15)) for _ in range(4)]
 
     def turn():
         angle = draw.uniform(-pi, pi)
         return f"(0 0 {sin(angle / 2):.6f} {cos(angle / 2):.6f})"
 
-    def spot():
-        while True:
-            place = draw.uniform(1.36, 1.6), draw.uniform(0.1, 1.15)
-            if all((place[0] - x) ** 2 + (place[1] - y) ** 2 > 0.28**2 for x, y in places):
-                places.append(place)
-                return place
-
-    for name in ("bottle", "cup", "milk", "bowl"):
-        spawn(ask, name, name, *spot(), turn())
+    for name, place in zip(("bottle", "cup", "milk", "bowl"), places, strict=True):
+        spawn(ask, name, name, *place, turn())
     while ask(f"(stand '(({draw.uniform(-0.2, 0.7)} {draw.uniform(-0.5, 2.5)} 0) {turn()}))") != "T":
         pass
     return places[0], (draw.uniform(-1.9, -0.9), draw.uniform(-1.1, -0.87))
