@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+import fnmatch
 import os
+import re
 from pathlib import Path
 
 import late_threads
 import pytest
 from hypothesis import settings
+from systems import takes_long
+
 from cramhy_runtime.session import Image
+
+TESTS = Path(__file__).parent
+_patterns = [line for line in (TESTS / "long_tests.txt").read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
+LEFT_OUT = re.compile("|".join(map(fnmatch.translate, _patterns)))
+"""Matches the tests that `make soak` alone runs."""
 
 REPOSITORY = Path(__file__).parents[1]
 SHARED = REPOSITORY.parent / "shared"
@@ -45,6 +54,9 @@ if "CRAMHY_LATE" in os.environ:
 
 def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: not any(part in LONG for part in item.path.parts))
+    for item in items:
+        if LEFT_OUT.match(item.path.relative_to(TESTS).as_posix() + "::" + item.name):
+            item.add_marker(takes_long)
 
 
 @pytest.fixture(scope="session")

@@ -21,6 +21,7 @@ if sys.platform == "win32":
 
 from browsers import chromium  # noqa: E402
 from repl import terminal as terminals  # noqa: E402
+from systems import takes_long  # noqa: E402
 
 from .conftest import commands_of_the_readme  # noqa: E402
 
@@ -96,6 +97,7 @@ def mistakes(prompt):
     assert "TUT> " in prompt.say("(car (list 1 2))", r"\n1\n")
 
 
+@takes_long
 def test_both_lectures_by_hand_with_mistakes_and_a_second_terminal(newcomer, tmp_path):
     lectures = runpy.run_path(str(newcomer.clone / "tutorials" / "lectures.py"))
     forms = [*lectures["LECTURE_34"], *lectures["LECTURE_38"]]
