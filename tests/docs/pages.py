@@ -320,7 +320,7 @@ def play(paths, folder, backend="threads"):
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=300,
     )
     assert done.returncode == 0 and not done.stderr, done.stdout[-3000:] + done.stderr
     return {Path(path): (texts, place_of(path, folder)) for path, texts in json.loads(done.stdout).items()}
