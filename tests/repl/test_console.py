@@ -194,7 +194,7 @@ def test_a_library_is_loaded_whatever_is_bound_where_its_package_is_named(type_i
 
 
 def test_what_is_set_in_the_debugger_stays(type_in):
-    assert type_in('(defvar *n* 1)\n(error "x")\n(setf *n* 3)\n0\n(list *n* :a)').endswith("(3 :A)\n")
+    assert type_in('(defvar *set-there* 1)\n(error "x")\n(setf *set-there* 3)\n0\n(list *set-there* :a)').endswith("(3 :A)\n")
 
 
 def test_the_outermost_restart_leaves_all_levels(type_in):
