@@ -30,8 +30,9 @@ FLOORS = [
     ["process_modules"],
     ["projection"],
     ["languages"],
+    ["testing"],
     ["session"],
-    ["chronicle", "ros_tools", "testing", "robot"],
+    ["chronicle", "ros_tools", "robot"],
     ["view", "repl"],
     ["cli", "pytest_plugin", "coverage_plugin", "__init__"],
 ]
