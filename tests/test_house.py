@@ -33,7 +33,7 @@ FLOORS = [
     ["testing"],
     ["session"],
     ["chronicle", "ros_tools", "robot"],
-    ["view", "repl"],
+    ["view", "repl", "swank"],
     ["cli", "pytest_plugin", "coverage_plugin", "__init__"],
 ]
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
