@@ -62,8 +62,9 @@ def session(options, closings, opened=True):
         made.load(system)
     if options.package:
         made.package = options.package.upper()
+    if options.command in ("repl", "swank"):
+        offer_swank(made, getattr(options, "swank", None))
     if options.command == "repl":
-        offer_swank(made, options.swank)
         evaluate_before_prompt(made, options.forms)
     elif options.command != "run":
         evaluate_forms(made, options.forms)
