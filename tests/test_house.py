@@ -30,9 +30,8 @@ FLOORS = [
     ["process_modules"],
     ["projection"],
     ["languages"],
-    ["testing"],
     ["session"],
-    ["chronicle", "ros_tools", "robot"],
+    ["chronicle", "ros_tools", "testing", "robot"],
     ["view", "repl", "swank"],
     ["cli", "pytest_plugin", "coverage_plugin", "__init__"],
 ]

@@ -108,7 +108,7 @@ def main():
     from cramhy_runtime.cli import program
     from cramhy_runtime.repl.console import Console
     from cramhy_runtime.repl.line_input import standard_lines
-    from cramhy_runtime.session.session import Session
+    from cramhy_runtime.repl.session import Session
 
     save = f'(turtlesim:save-paper "{options.png}")'
     texts = [

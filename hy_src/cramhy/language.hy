@@ -14,7 +14,7 @@ what it emits. `(in-hy)` leads back. Without `in-package` the operators of the p
   (import cramhy_runtime [kernel])
   (import cramhy_runtime.session.boot [boot booted])
   (import cramhy_runtime.session.time-setting [decide])
-  (import cramhy_runtime.session.session [Session])
+  (import cramhy_runtime.repl.session [Session])
   (if (or (kernel.active) (booted))
     (boot)
     (Session :time (decide)))  ; `hy FILE` begins a session, as `cramhy run FILE` does

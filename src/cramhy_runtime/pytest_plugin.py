@@ -70,7 +70,7 @@ def pytest_configure(config):
 def cramhy():
     """A fresh `Session`, in virtual time unless ``--cramhy-time`` or CRAMHY_TIME says otherwise; ``cramhy.evaluate_text("(+ 1 2)")``."""
     from cramhy_runtime import kernel
-    from cramhy_runtime.session.session import Session
+    from cramhy_runtime.repl.session import Session
     from cramhy_runtime.session import time_setting
 
     yield Session(time=time_setting.decide())
@@ -211,7 +211,7 @@ def _explained(problem):
     """What, where and why, as at the REPL; a Python error of the plugin itself keeps its Python text."""
     from cramhy_runtime import kernel
     from cramhy_runtime.languages.commonlisp.tools.advice import explanation
-    from cramhy_runtime.session.session import condition_of
+    from cramhy_runtime.repl.session import condition_of
 
     with kernel.at_hand():  # that of the test has ended
         return explanation(condition_of(problem))

@@ -44,7 +44,7 @@ def test_a_length_that_is_no_number_is_an_error(digits):
         ('"a\\"b\\\\c\n"', 'a"b\\c\n'),
         ("swank::%cursor-marker%", Name("swank::%cursor-marker%")),
         ("a\\.b", Name("a.b")),
-        ("'(1 \"x\")", [Name("quote"), [1, "x"]]),
+        ('\'(1 "x")', [Name("quote"), [1, "x"]]),
         ("('a 'b)", [[Name("quote"), Name("a")], [Name("quote"), Name("b")]]),
         ("(a . b)", [Name("a"), Name("."), Name("b")]),
         ("?x", Name("?x")),

@@ -24,7 +24,7 @@ def session(options, closings, opened=True):
     """
     from cramhy_runtime import kernel
     from cramhy_runtime.languages.commonlisp.tools import backtrace
-    from cramhy_runtime.session.session import Session
+    from cramhy_runtime.repl.session import Session
     from cramhy_runtime.session import time_setting
     from .options import DEFAULT_TIMES
 
@@ -97,7 +97,7 @@ def evaluate_forms(made, forms):
 def evaluate_before_prompt(made, forms):
     """As `evaluate_forms`; Ctrl-C ends these forms, and the prompt comes."""
     from cramhy_runtime.repl.listener import tell_interrupted
-    from cramhy_runtime.session.session import Interruption
+    from cramhy_runtime.repl.session import Interruption
 
     try:
         evaluate_forms(made, forms)
@@ -219,7 +219,7 @@ def _eval(options):
     from cramhy_runtime.ground.conditions import Condition
     from cramhy_runtime.repl import json_lines
     from cramhy_runtime.repl.console import report
-    from cramhy_runtime.session.session import Interruption, condition_of
+    from cramhy_runtime.repl.session import Interruption, condition_of
 
     if not _checked(options):
         return 2
@@ -263,7 +263,7 @@ def _load(options, closings):
 def _status(work):
     """The exit status that ``work()`` gives; 130 after Ctrl-C, 1 after an error, which is reported."""
     from cramhy_runtime.ground.conditions import Condition
-    from cramhy_runtime.session.session import Interruption
+    from cramhy_runtime.repl.session import Interruption
 
     try:
         return work()

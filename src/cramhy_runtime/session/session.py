@@ -62,10 +62,8 @@ def define_leaving():
         COMMON_LISP_USER.import_symbol(package.intern(name))
 
 
-def _define_testing():
-    from cramhy_runtime.testing import package  # a session that tests nothing starts without it
-
-    package.define_faces()
+packages_above: dict = {}
+"""Names of packages of rooms above, and functions that make them when a program names one. Each session offers them."""
 
 
 _current = Cell(None, fresh=True)
@@ -122,8 +120,7 @@ class Session:
         _current.value = self
         evaluator.PACKAGE.value = COMMON_LISP_USER
         define_leaving()
-        if registered("TESTING-USER") is None:
-            on_demand.update(dict.fromkeys(("CRAMHY-TESTING", "TESTING-USER"), _define_testing))
+        on_demand.update({name: define for name, define in packages_above.items() if registered(name) is None})
         for variables in (HISTORY, LAST_VALUES, LAST_FORMS, [THIS_FORM]):
             for variable in variables:
                 variable.value = None

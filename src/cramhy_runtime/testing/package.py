@@ -1,6 +1,6 @@
 """The Lisp packages: CRAMHY-TESTING with ``mark``, and TESTING-USER, in which texts of plans are read.
 
-They are made when a program first names one of them (`session.session`).
+They are made when a program first names one of them (`repl.session`).
 """
 
 from __future__ import annotations

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import tempfile
 import time
@@ -85,7 +86,8 @@ def compile_file_for_emacs(call, path, loads=None, *, policy=None):
         else:
             folder = tempfile.mkdtemp(prefix="cramhy-swank-")
             target = os.path.join(folder, os.path.splitext(os.path.basename(path))[0] + ".fasl")
-            _caught(notes, lambda: aborting(call, lambda: program_files.compile_file(path, output_file=target)))
+            compile_ = functools.partial(program_files.compile_file, path, output_file=target)
+            aborting(call, lambda: conditions.handler_bind([(conditions.types.Error, _raise)], compile_))
             file = target if os.path.exists(target) else None
             call.connection.keep_until_end(folder)
     return notes.result(began, bool(loads) and file is not None, file)
@@ -122,6 +124,11 @@ def compile_string_for_emacs(call, source, buffer, position, filename=None, poli
     with noted(notes), binding(evaluator.PACKAGE, call.package):
         _caught(notes, lambda: aborting(call, run))
     return notes.result(began, True)
+
+
+def _raise(condition):
+    """Let an error go up to ``compile-file``, which notes it and goes on with the next form, past the debugger."""
+    raise condition
 
 
 def _caught(notes, thunk):

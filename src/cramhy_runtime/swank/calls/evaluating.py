@@ -8,6 +8,7 @@ from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PRINT_PRETTY, PRINT_RIGHT_MARGIN
 from cramhy_runtime.languages.commonlisp.streams import streams
+from cramhy_runtime.languages.commonlisp.systems import program_files
 from cramhy_runtime.session.session import HISTORY, LAST_FORMS, LAST_VALUES
 
 from .. import presentations
@@ -84,8 +85,9 @@ def commit_edited_value(call, source, value):
 
 @rpc("load-file", evaluates=True)
 def load_file(call, path):
+    source = text(path).endswith((".lisp", ".hy", ".asd"))
     with binding(evaluator.PACKAGE, call.package):
-        aborting(call, lambda: call.session.load(text(path)))
+        aborting(call, lambda: call.session.load(text(path)) if source else program_files.load(text(path)))
     return f"=> {path} is loaded."
 
 
