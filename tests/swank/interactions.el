@@ -249,7 +249,7 @@
 ;;; the inspector
 
 (defun inspector-text ()
-  (eventually (not (slime-rex-continuations)))
+  (eventually (<= (length (slime-rex-continuations)) (if (debugger) 1 0))) ; the form in the debugger has not ended
   (with-current-buffer (slime-inspector-buffer) (string-trim (buffer-string))))
 (defun go-into (text)
   (with-current-buffer (slime-inspector-buffer)
@@ -276,7 +276,7 @@
   (in-debugger (mapcar (lambda (variable) (cons (plist-get variable :name) (plist-get variable :value))) (car (slime-eval '(swank:frame-locals-and-catch-tags 0))))))
 (interaction "the source of a frame"
   (in-debugger (slime-eval '(swank:frame-source-location 0)) (goto-char sldb-backtrace-start-marker) (sldb-show-source))
-  (eventually (not (slime-rex-continuations)))
+  (eventually (with-current-buffer "good.lisp" (string-match "undefined-here" (line-here))))
   (with-current-buffer "good.lisp" (line-here)))
 (interaction "evaluate in a frame" (in-debugger (slime-eval '(swank:eval-string-in-frame "(list speed angle)" 0 "TUT"))))
 (interaction "print in a frame" (in-debugger (slime-eval '(swank:pprint-eval-string-in-frame "(+ speed angle)" 0 "TUT"))))

@@ -72,11 +72,10 @@ def definitions_of(symbol):
                 found += _methods(definition)
             elif definition is not None:
                 found += place_of_function(definition, f"({kind} {symbol.name})")
-    known = {(each.file, each.line) for each in found}
-    others = [each for each in in_texts(symbol_name(symbol)) if (each.file, each.line) not in known]
-    if any(each.file.endswith((".lisp", ".hy")) or each.file.startswith("<") for each in found):
-        others = [each for each in others if not re.match(r"\(DEF(UN|MACRO|METHOD|INE)\b", each.label)]
-    return found + others
+    # Code of a macro or a method does not know its line as well as the text does.
+    in_text = in_texts(symbol_name(symbol))
+    files = {each.file for each in in_text}
+    return [each for each in found if each.file not in files] + in_text
 
 
 def place_of_function(function, label=None):
@@ -144,7 +143,7 @@ def known_files():
 
 @functools.lru_cache(maxsize=512)
 def _toplevel(filename, stamp):
-    """[(line, operator, name, last line)] of the top-level forms of a text. stamp: changes when the text does."""
+    """[(line, operator, name, last line, qualifier)] of the top-level forms of a text. stamp: changes when the text does."""
     text = "".join(linecache.getlines(filename))
     found, depth, start, words = [], 0, 0, []
     for token in TOKEN.finditer(text):
@@ -157,14 +156,16 @@ def _toplevel(filename, stamp):
             depth = max(0, depth - 1)
             if depth == 0 and words:
                 line = text.count("\n", 0, start) + 1
-                found.append((line, words[0].upper(), words[1] if len(words) > 1 else "", line + text.count("\n", start, token.end())))
-        elif not word.startswith((";", "#|")) and len(words) < 2:
+                name, *more = [*words[1:], ""]
+                qualifier = f" {more[0].upper()}" if more and more[0].startswith(":") and words[0].lower().endswith("method") else ""
+                found.append((line, words[0].upper(), name, line + text.count("\n", start, token.end()), qualifier))
+        elif not word.startswith((";", "#|")) and len(words) < 3:
             words.append(word)
     return found
 
 
 def toplevel_forms(filename):
-    """[(line, operator, name, last line)] of the top-level forms of a file or typed text, as it is now."""
+    """[(line, operator, name, last line, qualifier of a method)] of the top-level forms of a file or typed text, as it is now."""
     lines = text_lines(filename)
     return _toplevel(filename, hash(tuple(lines)))
 
@@ -173,9 +174,9 @@ def in_texts(name):
     """The `Place`s of top-level forms ``(def... name`` in the `known_files`."""
     found = []
     for filename in known_files():
-        for line, operator, defined, _ in toplevel_forms(filename):
+        for line, operator, defined, _, qualifier in toplevel_forms(filename):
             if operator.rpartition(":")[2].startswith(("DEF", "DECLARE-GOAL")) and _bare(defined) == name:
-                found.append(place(f"({operator} {name})", filename, line))
+                found.append(place(f"({operator} {name}{qualifier})", filename, line))
     return found
 
 

@@ -14,6 +14,8 @@ from contextlib import ExitStack
 from cramhy_runtime import kernel
 from cramhy_runtime.ground import conditions
 
+from .session import Interruption
+
 DONE, FAILED, INTERRUPTED = "done", "failed", "interrupted"
 
 
@@ -40,12 +42,11 @@ class Request:
             with ExitStack() as self._wanted:
                 self._wanted.enter_context(kernel.time_wanted())
                 result = self.work()
-        except (kernel.Cancelled, kernel.Abandoned, kernel.Interrupted):
+        except (kernel.Cancelled, kernel.Abandoned, kernel.Interrupted, SystemExit):
             self._end(INTERRUPTED)
             raise
-        except SystemExit:
+        except Interruption:
             self._end(INTERRUPTED)
-            raise
         except BaseException as failure:  # a condition that is no Exception, too
             self._end(FAILED, failure=failure)
         else:

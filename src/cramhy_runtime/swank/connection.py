@@ -13,7 +13,9 @@ from collections import deque
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import COMMON_LISP_USER, find_package
+from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.session import requests
 from cramhy_runtime.session.requests import Mailbox, Request
 
@@ -234,7 +236,9 @@ class _Work:
         self.name = f"Emacs: {entry.name}"
 
     def perform(self, debugger=None):
-        return self.entry.function(Call(self.connection, self.package, debugger), *self.given, **self.named)
+        call = Call(self.connection, self.package, debugger)
+        with binding(PACKAGE, call.package):  # names are shown as the buffer reads them
+            return self.entry.function(call, *self.given, **self.named)
 
     def run(self):
         return self.perform()

@@ -6,12 +6,11 @@ the name of a file for the port. The file swank-loader.lisp is a program for oth
 
 from __future__ import annotations
 
-import functools
 import os
 import sys
 
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.packages import on_demand
+from cramhy_runtime.ground.packages import on_demand, registered
 from cramhy_runtime.languages.commonlisp.packages.face_definition import define_face
 from cramhy_runtime.languages.commonlisp.files.files import path_of
 from cramhy_runtime.session import session
@@ -58,12 +57,13 @@ def stop_server(port=None):
     return True if found else None
 
 
-@functools.cache
 def define():
-    """Make the packages."""
+    """Make the packages, once in each image."""
     for prefix in ("SWANK", "SLYNK"):
         for name in (prefix, f"{prefix}-LOADER"):
             on_demand.pop(name, None)  # they are being made now
+    if registered("SWANK-LOADER") is not None:
+        return
     for prefix in ("SWANK", "SLYNK"):
         define_face(f"{prefix}-LOADER", functions={"init": init})
         define_face(

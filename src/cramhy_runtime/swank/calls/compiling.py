@@ -24,6 +24,9 @@ from ..wire import Name
 from .evaluating import aborting
 
 
+UNREADABLE = (conditions.types.ReaderError, conditions.types.EndOfFile)
+
+
 class Notes(list):
     """What the compiler has said, as Emacs wants it. where: a function from a position to a location."""
 
@@ -38,7 +41,7 @@ class Notes(list):
 
     def fail(self, condition):
         self.failed = True
-        self.add(condition, ":read-error" if isinstance(condition, conditions.types.ReaderError) else ":error")
+        self.add(condition, ":read-error" if isinstance(condition, UNREADABLE) else ":error")
 
     def add(self, condition, severity):
         message = report_text(condition)
@@ -133,7 +136,7 @@ def _raise(condition):
 
 def _caught(notes, thunk):
     """Call ``thunk``. What the compiler or the reader cannot take becomes a note, and the rest of it is left out."""
-    kinds = (CompileError, conditions.types.ReaderError)
+    kinds = (CompileError, *UNREADABLE)
     return conditions.handler_case([(kind, notes.fail) for kind in kinds], lambda: all_values(thunk()) or True)
 
 
