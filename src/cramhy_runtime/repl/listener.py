@@ -32,7 +32,7 @@ from . import commands, prompt_words
 from .line_input import BROKEN_OFF, Lines
 from .open_forms import of_lisp
 from .progress import Progress
-from .session import Interruption, leave, signalled_here
+from cramhy_runtime.session.session import Interruption, leave, signalled_here
 
 
 ABORT = sym("ABORT")

@@ -322,6 +322,7 @@ class _Reporting:
 
     def __init__(self):
         self.usual = self.report = lambda conditions: None
+        self.failed = lambda problem: None
 
 
 REPORTING = _Reporting()
@@ -330,6 +331,12 @@ REPORTING = _Reporting()
 def report_to(function):
     """Let ``function(conditions)`` have the warnings of units, ``None``: the usual one; returns the one before."""
     before, REPORTING.report = REPORTING.report, function or REPORTING.usual
+    return before
+
+
+def report_errors_to(function):
+    """Let ``function(condition)`` hear of the errors that ``compile-file`` meets and goes past; returns the one before."""
+    before, REPORTING.failed = REPORTING.failed, function
     return before
 
 
@@ -345,4 +352,4 @@ def muffle(types, quiet=True):
         MUFFLED.value = (*without, specifier) if quiet else without
 
 
-__all__ = ["CompilationUnit", "compilation_unit", "current", "muffle", "report_to", "with_compilation_unit"]
+__all__ = ["CompilationUnit", "compilation_unit", "current", "muffle", "report_errors_to", "report_to", "with_compilation_unit"]
