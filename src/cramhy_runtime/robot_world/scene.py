@@ -215,19 +215,24 @@ class Scene:
     # ------------------------------------------------------------------------------------------------------------------ falls
 
     def settle(self, seconds: float) -> float:
-        """Let the free items fall for so long, or until all are at rest; the seconds that it took. The things have moved then."""
+        """Let the free items fall for so long, or until all are at rest; the seconds that it took. The things have moved then.
+
+        Other tasks may run meanwhile. What they, or a hand from outside, put elsewhere stays there.
+        """
         free, model, data = self._free, self.model, self.data
         if not free:
             return 0.0
         steps, done, resting, step = max(1, round(seconds / STEP)), 0, 0, mujoco.mj_step
-        velocities = data.qvel
+        velocities, before = data.qvel, [part.thing.placement for part in free]
         while done < steps and resting < _REST_STEPS:
             count = min(_TOGETHER, steps - done)
             step(model, data, count)
             done += count
             resting = resting + count if max(velocities.max(), -velocities.min()) < _AT_REST else 0
             checkpoint()
-        for part in free:
+        for part, place in zip(free, before, strict=True):
+            if part.thing.placement is not place:
+                continue
             start = self.model.jnt_qposadr[self.model.body_jntadr[part.body]]
             now = self.data.qpos[start : start + 7].copy()
             part.thing.placement = Placement(now[:3], now[3:])

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from . import remarks
 from .placements import Placement
 from .reaching import pan_and_tilt, solver_of
 from .things import Item, Machine
@@ -110,10 +111,12 @@ class SimulatedRobot:
     def drive(self, to: Placement) -> None:
         """Put the base there. Errors: `Blocked`, when the robot would touch anything but what it holds; then it stays where it is."""
         before = self.machine.placement
-        self.world.put(self.name, to)
-        touched = self.collisions()
+        with self.world.trial():
+            self.world.put(self.name, to)
+            touched = self.collisions()
+            if touched:
+                self.world.put(self.name, before)
         if touched:
-            self.world.put(self.name, before)
             raise Blocked(touched)
 
     def collisions(self, but: Sequence[Hashable] = ()) -> list[Item | Machine]:
@@ -172,16 +175,25 @@ class SimulatedRobot:
         moved.
         """
         first = None
-        for posture in islice(self._postures(goals), _POSTURES):
-            first = first or posture
-            self.world.bend(self.name, posture)
-            if not self._arms_touch():
+        with self.world.trial():
+            for posture in islice(self._postures(goals), _POSTURES):
+                first = first or posture
+                self.world.bend(self.name, posture)
+                if not self._arms_touch():
+                    self._remark(goals, True)
+                    return
+            self._remark(goals, first is not None)
+            if first is not None:
+                self.world.bend(self.name, first)
                 return
-        if first is None:
-            heights = self._heights()
-            arms = (arm for arm, goal in goals.items() if self.reach(arm, goal, heights[-1]) is None)
-            raise OutOfReach(next(arms, next(iter(goals))), len(heights) // _COARSE + 3)
-        self.world.bend(self.name, first)
+        heights = self._heights()
+        arms = (arm for arm, goal in goals.items() if self.reach(arm, goal, heights[-1]) is None)
+        raise OutOfReach(next(arms, next(iter(goals))), len(heights) // _COARSE + 3)
+
+    def _remark(self, goals: Mapping[Hashable, Placement], reached: bool) -> None:
+        if remarks.heard():
+            for goal in goals.values():
+                remarks.grasp(self.machine, goal, reached)
 
     def posture_for(self, goals: Mapping[Hashable, Placement]) -> dict[str, float] | None:
         """Positions of the joints of the torso and of the arms that bring the tools there; ``None`` when that is out of reach."""

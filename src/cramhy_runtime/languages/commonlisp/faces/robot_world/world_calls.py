@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import Cons, DoubleFloat, FreshString, MultipleValues, boolean, lisp_list, list_from
 from cramhy_runtime.ground.packages import is_symbol, symbol_name
-from cramhy_runtime.robot_world import models, urdf
+from cramhy_runtime.robot_world import models, remarks, urdf
 from cramhy_runtime.robot_world.descriptions import Description, DescriptionError
 from cramhy_runtime.robot_world.placements import of_pose
 from cramhy_runtime.robot_world.things import Item, Machine, Thing
@@ -30,7 +30,7 @@ LISP_NAMES = """
 make-world copy-world thing-color stuck-things ignored-contacts ignore-contact add-description remove-thing find-thing things thing-name
 thing-world thing-pose set-thing-pose thing-types thing-mass thing-bounds part-bounds machine-joints machine-joint set-machine-joint
 machine-links machine-link machine-description attach detach attachments contacts settle stable visibility read-description
-description-text
+description-text looked-on-p remark-seen
 """
 
 
@@ -227,3 +227,13 @@ def description_text(name: Symbol | str) -> str:
         return FreshString((path if path.is_file() else models.DATA / path).read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as problem:
         return error("the description ~a cannot be read: ~a", str(name), str(problem))
+
+
+def looked_on_p() -> bool | None:
+    """Whether anybody looks on at what a plan considers (``remarks``)."""
+    return boolean(remarks.heard())
+
+
+def remark_seen(name: Symbol | str, pose: Pose | None) -> None:
+    """Tell who looks on that the thing of a name is believed to be at a pose in the room; nil: in the hand that holds it."""
+    remarks.seen(name_of(name), None if pose is None else of_pose(pose))
