@@ -36,9 +36,12 @@
 
 (defun touches-nothing-p (pose)
   "Whether the robot, which is tried at that pose in a copy of the world, would touch nothing but what it holds."
-  (btr:with-current-bullet-world (btr:copy-world btr:*current-bullet-world*)
-    (setf (btr:pose (btr:get-robot-object)) pose)
-    (null (btr:robot-colliding-objects-without-attached))))
+  (let* ((copy (btr:copy-world btr:*current-bullet-world*))
+         (robot (btr:object copy (btr:get-robot-name))))
+    (setf (btr:pose robot) pose)
+    (every (lambda (thing)
+             (btr:object-attached robot thing))
+           (btr:find-objects-in-contact copy robot))))
 
 (defun validate-pose-to-reach (location pose)
   "Rejects poses at which the robot would touch something."

@@ -4,6 +4,8 @@
 (defparameter *table-top* 0.746 "how high the dining table is, in metres")
 (defparameter *beside-table* (pose -2.2 1.9 0 -125) "where the robot stands when it is done")
 
+(defparameter *camera* '((-0.6 -0.5 2.5) (-2.9 0.7 0.6)) "from where the table is seen: the eye, and where it looks")
+
 (def-fact-group table-for-two (seat cover belongs)
 
   ;; where a guest sits at the table, and in which direction he looks
@@ -58,6 +60,7 @@
 
 (defun bring (type ?place)
   "Brings a thing of that type from the counter, or from the robot's hand, to a place."
+  (roslisp:ros-info (kitchen) "Bringing a ~(~a~)." type)
   (deliver (or (in-hand type)
                (fetch (search-counter type)))
            ?place))
