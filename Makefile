@@ -68,7 +68,7 @@ $(ROBOT): $(LIGHT)
 $(READY): $(LIGHT)
 	@echo "Adding what tests and pages need to .venv (once) ..."
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
-	@touch $(READY)
+	@touch $(ROBOT) $(READY)
 
 clean:
 	rm -rf .venv .pytest_cache .hypothesis site

@@ -53,9 +53,7 @@ def main() -> None:
     def stay() -> None:
         console.input = standard_lines()
 
-    console = Console(
-        lambda: Session(time="virtual", seed=options.seed, turtlesim=False), Typist(texts, stay) if stays else Typist(texts)
-    )
+    console = Console(lambda: Session(time="virtual", seed=options.seed, turtlesim=False), Typist(texts, stay) if stays else Typist(texts))
     with program():
         status = console.run()
     sys.exit(status)

@@ -25,6 +25,9 @@ Camera = tuple[Point, Point] | str | None
 class World:
     """The world in which the robot is now; all objects of this class are about the same one, the current."""
 
+    def __repr__(self) -> str:
+        return f"<the world of the robot, with {', '.join(self.names()) or 'nothing to take'}>"
+
     @property
     def core(self) -> Any:
         """The `robot_world.world.World` below, which can be copied to look ahead."""

@@ -5,7 +5,8 @@
 
 (defn init-kitchen []
   "Puts the robot into a kitchen without anything in it."
-  (robot.world))
+  (robot.world)
+  None)
 
 (defn spawn [type place]
   "Puts a thing of a type such as \"bottle\" into the kitchen, and lets it fall until it stands. Returns its name."

@@ -1,5 +1,6 @@
 (require cramhy *)
 (import math [cos sin radians dist]
+        cram-plan-occasions-events
         cramhy [robot]
         cramhy.robot [at]
         cramhy_runtime.robot.worlds [text]
@@ -49,15 +50,24 @@
          (and (.startswith name type)
               (< (dist (kitchen.place name) #(pose.origin.x pose.origin.y pose.origin.z)) 0.05)))))
 
+(defn in-hand [type]
+  "The designator of a thing of that type which the robot holds, or None."
+  (for [solution (or (force-ll (prolog '(cram-plan-occasions-events:object-in-hand ?thing))) [])]
+    (setv thing (current-desig (var-value '?thing solution)))
+    (when (= (text (get thing "type")) type)
+      (return thing))))
+
 (defn search-counter [type]
   "Goes to the counter and finds a thing of that type there."
   (robot.go before-counter)
   (find-thing type bottle-on-counter))
 
 (defn bring [type place]
-  "Brings a thing of that type from the counter to a place."
-  (ros-info (kitchen) f"Bringing a {type}.")
-  (deliver (fetch (search-counter type)) place))
+  "Brings a thing of that type from the counter, or from the robot's hand, to a place."
+  (ros-info (kitchen) "Bringing a ~a." type)
+  (deliver (or (in-hand type)
+               (fetch (search-counter type)))
+           place))
 
 (defn set-table []
   "Brings what belongs on the table and is not there yet."

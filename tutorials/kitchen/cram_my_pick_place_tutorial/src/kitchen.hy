@@ -9,26 +9,29 @@
    (cl-transforms:axis-angle->quaternion
     (cl-transforms:make-3d-vector 0 0 1) (/ (* degrees pi) 180))))
 
+(def-fact-group costmap-metadata (costmap:costmap-size costmap:costmap-origin costmap:costmap-resolution
+                                  costmap:costmap-padding costmap:costmap-manipulation-padding
+                                  costmap:costmap-in-reach-distance costmap:costmap-reach-minimal-distance
+                                  costmap:visibility-costmap-size costmap:orientation-samples
+                                  costmap:orientation-sample-step)
+  ;; the maps from which places are drawn cover the kitchen; lengths are metres
+  (<- (costmap:costmap-size 12 12))
+  (<- (costmap:costmap-origin -6 -6))
+  (<- (costmap:costmap-resolution 0.05))
+  (<- (costmap:costmap-padding 0.3))
+  (<- (costmap:costmap-manipulation-padding 0.4))
+  (<- (costmap:costmap-in-reach-distance 0.9))
+  (<- (costmap:costmap-reach-minimal-distance 0.2))
+  (<- (costmap:visibility-costmap-size 2))
+  (<- (costmap:orientation-samples 2))
+  (<- (costmap:orientation-sample-step 0.1)))
+
 (defun init-kitchen ()
   "Puts the robot into a kitchen without anything in it. `startup-ros' calls it."
-  (def-fact-group costmap-metadata (costmap:costmap-size costmap:costmap-origin costmap:costmap-resolution
-                                    costmap:costmap-padding costmap:costmap-manipulation-padding
-                                    costmap:costmap-in-reach-distance costmap:costmap-reach-minimal-distance
-                                    costmap:visibility-costmap-size costmap:orientation-samples
-                                    costmap:orientation-sample-step)
-    (<- (costmap:costmap-size 12 12))
-    (<- (costmap:costmap-origin -6 -6))
-    (<- (costmap:costmap-resolution 0.05))
-    (<- (costmap:costmap-padding 0.3))
-    (<- (costmap:costmap-manipulation-padding 0.4))
-    (<- (costmap:costmap-in-reach-distance 0.9))
-    (<- (costmap:costmap-reach-minimal-distance 0.2))
-    (<- (costmap:visibility-costmap-size 2))
-    (<- (costmap:orientation-samples 2))
-    (<- (costmap:orientation-sample-step 0.1)))
   (setf btr-belief:*robot-parameter* "robot_description"
         btr-belief:*kitchen-parameter* "kitchen_description")
-  (coe:clear-belief))
+  (coe:clear-belief)
+  (values))
 
 (roslisp-utilities:register-ros-init-function init-kitchen)
 
