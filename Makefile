@@ -1,12 +1,14 @@
-# make tutorial: both lectures, typed into the REPL. make view: the turtle draws a house on a page. make test: everything.
+# make tutorial: both lectures, typed into the REPL. make view: the turtle draws a house on a page. make kitchen: a robot sets a table.
+# make test: everything.
 # make docs: the pages with what happens now. make site: the pages as a site, in site/index.html.
-# The first call of tutorial or view makes a small environment in .venv; the first call of any other target adds the rest to it.
+# The first call of tutorial, view or kitchen makes a small environment in .venv; the first call of any other target adds the rest to it.
 PYTHON ?= python3
 BIN := .venv/bin
 LIGHT := .venv/.light
+ROBOT := .venv/.robot
 READY := .venv/.ready
 
-.PHONY: tutorial view test interpreters docs site bench golden lint soak clean
+.PHONY: tutorial view kitchen test interpreters docs site bench golden lint soak clean
 
 tutorial: $(LIGHT)
 	@$(BIN)/python tutorials/lectures.py --png turtle.png
@@ -14,6 +16,9 @@ tutorial: $(LIGHT)
 view: $(LIGHT)
 	@$(BIN)/roslisp_repl --view --time virtual --load cram-my-beginner-tutorial --package tut --eval '(start-ros-node "turtle1")' \
 	    --eval '(init-ros-turtle "turtle1")' --eval '(perform-draw-house)'
+
+kitchen: $(ROBOT)
+	@$(BIN)/python tutorials/kitchen/make_kitchen.py --png kitchen.png --gif kitchen.gif
 
 test: $(READY)
 	@$(BIN)/python -m pytest --numprocesses=auto --dist=loadfile --no-loadscope-reorder
@@ -53,11 +58,17 @@ $(LIGHT): pyproject.toml
 	@$(BIN)/python -m pip uninstall -qq --disable-pip-version-check --yes setuptools # which Python 3.11 adds: 10 MB, not needed
 	@touch $(LIGHT)
 
+# The robot of the kitchen needs MuJoCo and numpy.
+$(ROBOT): $(LIGHT)
+	@echo "Adding what the kitchen needs to .venv (once) ..."
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable '.[repl,web,robot]'
+	@touch $(ROBOT)
+
 # The rest: what tests, pages and wheels are made with.
 $(READY): $(LIGHT)
 	@echo "Adding what tests and pages need to .venv (once) ..."
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
-	@touch $(READY)
+	@touch $(ROBOT) $(READY)
 
 clean:
 	rm -rf .venv .pytest_cache .hypothesis site

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-LIGHT, REST = "[repl,web]", "[dev]"
-SMALL = ("tutorial", "view")
+LIGHT, ROBOT, REST = "[repl,web]", "[repl,web,robot]", "[dev]"
+SMALL = {"tutorial": [LIGHT], "view": [LIGHT], "kitchen": [LIGHT, ROBOT]}
 TARGETS = re.search(r"^\.PHONY: (.*)$", (ROOT / "Makefile").read_text(), re.M)[1].split()
 
 
@@ -38,10 +38,10 @@ def installed(tmp_path):
 
 @pytest.mark.parametrize("target", [target for target in TARGETS if target != "clean"])
 def test_the_lectures_and_the_page_need_little_and_the_rest_comes_with_the_tests(installed, target):
-    wanted = [LIGHT] if target in SMALL else [LIGHT, REST]
+    wanted = SMALL.get(target, [LIGHT, REST])
     assert installed(target) == wanted
     assert installed(target, ".light") == wanted[1:]
-    assert installed(target, ".light", ".ready") == []
+    assert installed(target, ".light", ".robot", ".ready") == []
 
 
 def test_what_an_earlier_version_made_is_made_again(installed):

@@ -114,10 +114,12 @@ class Page:
 LECTURES = ["lecture-34.md", "simple-plans.md", "motion-designators.md", "lecture-38.md"]
 """Pages on which one package grows, in their order."""
 
+KITCHEN = [*sorted((DOCS / "tutorials" / "kitchen").glob("*.md")), DOCS / "how-to" / "add-a-robot.md"]
+"""Pages with the robot in the kitchen, which `play` runs, too. They need the extra ``robot``, and take longer."""
 PAGES = [
     path
     for path in sorted(DOCS.rglob("*.md"), key=lambda path: (LECTURES.index(path.name) if path.name in LECTURES else -1, path))
-    if path.name not in ELSEWHERE and path.parent.name != "reference"
+    if path.name not in ELSEWHERE and path not in KITCHEN and path.parent.name != "reference"
 ]
 """The pages whose blocks `play` runs."""
 
@@ -268,8 +270,9 @@ def played(page, backend):
 
     blocks = page.blocks
     texts = [block.text for block in blocks]
-    if "turtlesim-in-hy" in page.text:
-        shutil.copytree(COURSE / "turtlesim_in_hy", "turtlesim_in_hy", ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("turtlesim_in_hy", "kitchen/kitchen_in_hy"):
+        if Path(name).name.replace("_", "-") in page.text:
+            shutil.copytree(COURSE / name, Path(name).name, ignore=shutil.ignore_patterns("__pycache__"))
     kinds = {block.kind for block in blocks}
     if "session" in kinds:
         with Image():
@@ -311,7 +314,7 @@ def environment():
     return {**keep, "PYTHONPATH": os.pathsep.join(str(ROOT / folder) for folder in ("src", "hy_src"))}
 
 
-def play(paths, folder, backend="threads"):
+def play(paths, folder, backend="threads", timeout=300):
     """Do what stands on pages: for each of ``paths`` the texts of its blocks as they come out, and the folder with its files."""
     paths = [str(path) for path in paths]
     done = subprocess.run(
@@ -320,7 +323,7 @@ def play(paths, folder, backend="threads"):
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=timeout,
     )
     assert done.returncode == 0 and not done.stderr, done.stdout[-3000:] + done.stderr
     return {Path(path): (texts, place_of(path, folder)) for path, texts in json.loads(done.stdout).items()}
@@ -329,7 +332,7 @@ def play(paths, folder, backend="threads"):
 def rewrite(paths):
     """Write what happens, and what the turtle draws, into the pages."""
     with tempfile.TemporaryDirectory() as folder:
-        for path, (texts, place) in play(paths, folder).items():
+        for path, (texts, place) in play(paths, folder, timeout=900).items():
             page = Page(path)
             path.write_text(page.with_texts(texts), encoding="utf-8")
             for name in page.pictures:
@@ -341,4 +344,4 @@ if __name__ == "__main__":
     if sys.argv[1:2] == ["play"]:
         play_here(sys.argv[4:], sys.argv[2], sys.argv[3])
     else:
-        rewrite([Path(word).resolve() for word in sys.argv[1:]] or PAGES)
+        rewrite([Path(word).resolve() for word in sys.argv[1:]] or PAGES + KITCHEN)

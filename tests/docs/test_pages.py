@@ -6,13 +6,17 @@ import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
-from . import command_line
-from .pages import COURSE, DOCS, ELSEWHERE, PAGES, ROOT, Block, Page, balanced, exchanges, play
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from systems import takes_long  # noqa: E402
 
-PACKAGES = [COURSE / "cram_my_beginner_tutorial", COURSE / "turtlesim_in_hy"]
+from . import command_line
+from .pages import COURSE, DOCS, ELSEWHERE, KITCHEN, PAGES, ROOT, Block, Page, balanced, exchanges, play
+
+PACKAGES = [COURSE / "cram_my_beginner_tutorial", COURSE / "turtlesim_in_hy", COURSE / "kitchen"]
 
 
 def without_seconds(text):
@@ -20,6 +24,8 @@ def without_seconds(text):
     return re.sub(r"\bin \d+\.\d\ds\b", "in 0.00s", text)
 
 
+SHORT = [path for path in KITCHEN if path.name in ("arms-and-grasps.md", "recovering.md")]
+"""What of the kitchen is played in ordinary tests, too."""
 STALE = "the page shows other answers than come now; if these are right, `make docs` writes them into the page"
 PICTURES_FROM_ELSEWHERE = {"page.png", "architecture.svg", "spiral.replay.svg"}
 
@@ -41,8 +47,8 @@ def name_of(path):
     return path.relative_to(DOCS).as_posix()
 
 
-@pytest.mark.parametrize("path", PAGES, ids=name_of)
-def test_what_happens_is_what_the_page_shows(path, plays):
+def shows(path, plays):
+    """The page at ``path`` shows what has happened: its texts, and its pictures."""
     texts, _ = plays[path]
     page = Page(path)
     for text, block in zip(texts, page.blocks, strict=True):
@@ -57,9 +63,24 @@ def test_what_happens_is_what_the_page_shows(path, plays):
 
 
 @pytest.mark.parametrize("path", PAGES, ids=name_of)
+def test_what_happens_is_what_the_page_shows(path, plays):
+    shows(path, plays)
+
+
+@pytest.mark.parametrize("path", [pytest.param(path, marks=[] if path in SHORT else takes_long) for path in KITCHEN], ids=name_of)
+def test_what_happens_in_the_kitchen_is_what_the_page_shows(path, tmp_path):
+    pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
+    plays = play([path], tmp_path)
+    shows(path, plays)
+    if path.name == "table-for-two.md":
+        _, folder = plays[path]
+        assert pixels(folder / "table.png") == pixels(folder / "table-in-hy.png"), "Lisp and Hy set the same table"
+
+
+@pytest.mark.parametrize("path", PAGES + KITCHEN, ids=name_of)
 def test_code_that_a_page_quotes_stands_in_the_course(path):
-    source = "".join(file.read_text() for folder in PACKAGES for file in sorted(folder.rglob("*.hy")))
-    source += (COURSE / "spiral.lisp").read_text()
+    files = [file for folder in PACKAGES for kind in ("*.hy", "*.lisp") for file in sorted(folder.rglob(kind))]
+    source = "".join(file.read_text() for file in [*files, COURSE / "spiral.lisp"])
     for code in Page(path).texts("quotation"):
         if balanced(code):  # the piece of a form may end in the middle of a line
             code = code.rstrip().rstrip(")]")

@@ -129,6 +129,13 @@ def test_a_plan_function_that_takes_other_arguments_is_told_with_the_grounding(t
         assert text(f"(top-level (handler-case {call} (program-error () :arity)))") == ":ARITY"
 
 
+def test_long_designators_and_groundings_are_cut_off_in_the_report_of_an_error(text):
+    house = " ".join("house" for _ in range(200))
+    said = text.error(f"(top-level (perform (an action (type doodling) (shape ({house})))))")
+    (line,) = [line for line in said.splitlines() if "was performed" in line]
+    assert line.startswith("  while #<A ACTION (TYPE DOODLING) (SHAPE (HOUSE HOUSE ") and len(line) < 300 and line.count(" ...") == 2
+
+
 def test_a_grounding_that_is_no_list_is_a_destructuring_error(text):
     assert text("(top-level (text-of (generic-perform (an action (type idling)))))") == (
         '"Error while parsing arguments to DESTRUCTURING-BIND: invalid number of elements in NOTHING-TO-DO to satisfy lambda list '

@@ -63,6 +63,18 @@ def test_what_is_held_goes_along_and_falls_when_it_is_let_go(world):
     assert world.holders("bottle") == []
 
 
+@pytest.mark.parametrize("without", [None, "pr2"])
+def test_a_hand_that_has_let_go_does_not_push(world, without):
+    """As a bowl whose rim is between the fingers: they are inside of its shape, and would throw it aside."""
+    place = placement((-1.1, 1.5, 0.92))
+    world.add_item("bowl", (Shape("cylinder", (0.07, 0.067)),), place)
+    hand = world.link("pr2", "r_gripper_tool_frame").position
+    world.put("pr2", placement(np.array(place.position) - hand + (0.07, 0.0, 0.0)))
+    world.simulate(2, without=without)
+    stays = np.allclose(world.item("bowl").placement.position, (-1.1, 1.5, 0.8915), atol=2e-3)
+    assert stays == (without == "pr2")
+
+
 def test_the_firm_grip_decides_where_an_item_goes(world):
     right, left = "r_wrist_roll_link", "l_wrist_roll_link"
     world.add_item("tray", BOX, world.link("pr2", right).moved(0.2))

@@ -154,16 +154,15 @@ def test_what_is_held_is_in_the_hand_in_every_frame(world):
 
 def test_notes_and_frames_have_an_end(empty, monkeypatch):
     monkeypatch.setattr(movies, "MOST_NOTES", 20)
-    monkeypatch.setattr(movies, "MOST_FRAMES", 30)
     empty.add_item("it", (Shape("box", (0.1, 0.1, 0.1)),))
     shown.show(empty)
-    movie = movies.Movie()
+    movie = movies.Movie(most_frames=30)
     movie.begin()
     for step in range(200):
         empty.put("it", placement((step % 7, 0, 0)))
     movie.end()
     shown.show(None)
-    assert len(movie.notes) <= 21 and len(list(movie.frames())) <= 32
+    assert len(movie.notes) <= 21 and len(list(movie.frames())) == 31
     assert movie.notes[-1].item("it").placement.position[0] == 199 % 7
 
 

@@ -39,7 +39,7 @@ from .modules import (
     pm_run,
     sym_of_class,
 )
-from .registry import in_one_line, not_running
+from .registry import in_brief, not_running
 
 if TYPE_CHECKING:
     from cramhy_runtime.cpl.fluents.fluents import ValueFluent
@@ -145,7 +145,7 @@ class AsynchronousProcessModule(AbstractProcessModule):
             if on_process_module_started.methods:
                 on_process_module_started(self, designator)
 
-    @circumstance(lambda here: f"while process module {here['self'].name.name} took {in_one_line(here['designator'])}")
+    @circumstance(lambda here: f"while process module {here['self'].name.name} took {in_brief(here['designator'])}")
     def _call_on_input(self, designator):
         on_input(self, designator)
 

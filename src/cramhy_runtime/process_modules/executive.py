@@ -23,7 +23,7 @@ from cramhy_runtime.ground.packages import keyword
 from ..occasions.occasions import holds
 from .hints import why_none_runs
 from .matching import execute_by, running_matches
-from .registry import in_one_line
+from .registry import in_brief
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from .symbols import sym
 
@@ -165,7 +165,7 @@ def _perform_action(designator):
 
 
 _told_with_the_grounding = circumstance(
-    lambda here: f"while {in_one_line(here['designator'])} was performed, whose grounding is {in_one_line(here['solution'])}"
+    lambda here: f"while {in_brief(here['designator'])} was performed, whose grounding is {in_brief(here['solution'])}"
 )
 
 

@@ -47,7 +47,7 @@ from cramhy_runtime.ground.classes import make_instance
 from cramhy_runtime.ground.classes import class_name, find_class_or_error
 from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.packages import CURRENT, keyword
-from .registry import ended_because, in_one_line, is_defined, not_running, register_process_module, running, start_under, unknown
+from .registry import ended_because, in_brief, is_defined, not_running, register_process_module, running, start_under, unknown
 from .symbols import sym
 
 if TYPE_CHECKING:
@@ -265,7 +265,7 @@ class ProcessModule(AbstractProcessModule):
         finally:
             self._conclude(request, status, outcome)
 
-    @circumstance(lambda here: f"while process module {here['self'].name.name} executed {in_one_line(here['request'].input)}")
+    @circumstance(lambda here: f"while process module {here['self'].name.name} executed {in_brief(here['request'].input)}")
     def _call_body(self, body, request):
         request.started = True
         for later in self.queue:  # they announce that they wait, once it has begun

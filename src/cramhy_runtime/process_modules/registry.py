@@ -147,9 +147,18 @@ def ended_because(problem):
     return f"{in_one_line(problem)}{f', at {place}' if place else ''}"
 
 
+_BRIEF = 120  # characters
+
+
 def in_one_line(thing: object) -> str:
     """``thing`` as ``princ`` prints it, on one line. What cannot be printed is said to be so: the text is for the report of an error."""
     return " ".join(attempt_to_print(princ_to_string, thing).split())
+
+
+def in_brief(thing: object) -> str:
+    """The same, cut off where it gets too long for a line of a report: a pose or an object that was seen has many numbers."""
+    text = in_one_line(thing)
+    return text if len(text) <= _BRIEF else f"{text[: _BRIEF - 4]} ..."
 
 
 def _with_hint(problem, name):

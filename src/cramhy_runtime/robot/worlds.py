@@ -2,23 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from math import atan2, degrees
 from typing import Any
 
 from cramhy_runtime.cpl.failures.python_exceptions import for_python
-from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.ground.data import Symbol, list_from
 from cramhy_runtime.ground.packages import keyword, sym
 from cramhy_runtime.robot_world.placements import Placement, of_pose
+from cramhy_runtime.robot_world.pictures import movies, stills, views
 from cramhy_runtime.tf.stamped import PoseStamped
 
 from .libraries import lisp, load
 from .poses import Place, at, pose_of
 
 Name = str | Symbol
+Point = tuple[float, float, float]
+Camera = tuple[Point, Point] | str | None
 
 
 class World:
     """The world in which the robot is now; all objects of this class are about the same one, the current."""
+
+    def __repr__(self) -> str:
+        return f"<the world of the robot, with {', '.join(self.names()) or 'nothing to take'}>"
 
     @property
     def core(self) -> Any:
@@ -26,9 +34,17 @@ class World:
         return lisp("CRAM-BULLET-REASONING", "current_bullet_world")
 
     @for_python
-    def spawn(self, type: str, place: Place, name: Name | None = None, mass: float = 0.2) -> str:  # noqa: A002
+    def spawn(
+        self,
+        type: str,  # noqa: A002
+        place: Place,
+        name: Name | None = None,
+        mass: float = 0.2,
+        colour: tuple[float, float, float] | None = None,
+    ) -> str:
         """Put an object of a type, such as ``"bottle"``, somewhere. Returns its name: by default the type and a number.
 
+        mass: kilograms; colour: red, green and blue from 0 to 1, by default that of the type.
         Errors: a type of which there is no model, a name that is taken.
         """
         taken = set(self.names())
@@ -37,7 +53,14 @@ class World:
         if text(symbol) in taken:
             raise ValueError(f"There is a thing named {text(symbol)} already; there are {', '.join(sorted(taken))}.")
         lisp("CRAM-BULLET-REASONING-UTILITIES", "spawn_object")(
-            symbol, keyword(type.upper()), sym(":POSE"), pose_of(place), sym(":MASS"), mass
+            symbol,
+            keyword(type.upper()),
+            sym(":POSE"),
+            pose_of(place),
+            sym(":MASS"),
+            mass,
+            sym(":COLOR"),
+            None if colour is None else list_from(map(float, colour)),
         )
         return text(symbol)
 
@@ -78,6 +101,40 @@ class World:
         """How far a thing is turned about the vertical axis, in degrees; by default the robot."""
         turn = self.pose(name).orientation
         return degrees(atan2(2 * (turn.w * turn.z + turn.x * turn.y), 1 - 2 * (turn.y * turn.y + turn.z * turn.z)))
+
+    @for_python
+    def save_picture(self, path: str, camera: Camera = None, width: int = stills.WIDTH, height: int = stills.HEIGHT) -> None:
+        """Write a picture of the world to a PNG file.
+
+        camera: by default one that shows all of it; ``"robot"``, the robot's; or two places, the eye and where it looks, metres. width,
+        height: pixels. Errors: a file-error, when it cannot be written; a simple error for the name of another kind of file.
+        """
+        stills.save(self.core, path, self._view(camera), width, height)
+
+    @contextmanager
+    def movie(
+        self, path: str, camera: Camera = None, width: int = movies.WIDTH, height: int = movies.HEIGHT, frames: int = movies.MOST_FRAMES
+    ) -> Iterator[None]:
+        """Write what happens in the block to a GIF file, each motion for as long as it would take; also when the block fails.
+
+        frames: how many there are at most; a long run is shown faster then. The rest as for `save_picture`.
+        """
+        movies.check(path)
+        movie = movies.Movie(None, self._view(camera), width, height, frames)
+        movie.begin()
+        try:
+            yield
+        finally:
+            movie.end()
+            movie.save(path)
+
+    def _view(self, camera: Camera) -> views.View | None:
+        if camera is None:
+            return None
+        if camera == "robot":
+            return views.robots_view(self.core)
+        eye, target = camera
+        return views.looking_at(eye, target)
 
     def picture(self) -> dict[str, tuple[float, float, float]]:
         """Where each object is, by its name."""

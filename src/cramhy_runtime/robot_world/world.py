@@ -210,12 +210,14 @@ class World:
 
     # ---------------------------------------------------------------------------------------------- what happens between things
 
+    def _held(self) -> frozenset[Hashable]:
+        return frozenset(item for machine in self.machines() for item in machine.holds)
+
     @property
     def scene(self) -> Scene:
         """The things as MuJoCo sees them, where they are now."""
         if self._scene is None:
-            held = frozenset(item for machine in self.machines() for item in machine.holds)
-            self._scene, self._placed = Scene(self.things.values(), held), False
+            self._scene, self._placed = Scene(self.things.values(), self._held()), False
         if not self._placed:
             self._scene.place()
             self._placed = True
@@ -234,21 +236,26 @@ class World:
         """The lowest and the highest corner of the box along the axes around a thing, or around one of its links."""
         return self.scene.bounds(self.thing(name), link)
 
-    def simulate(self, seconds: float) -> float:
+    def simulate(self, seconds: float, without: Hashable | None = None) -> float:
         """Let free items fall for so long, or until all are at rest; the seconds that it took.
 
         An item that is inside of something that stands is lifted out of it first. One that cannot be, as in a wall, stays where it is;
         `stuck` tells of it.
+
+        without: the name of a machine that touches nothing meanwhile, as the fingers of a hand that has just let go.
         """
-        self.stuck = self.scene.free_all()
-        if not self.stuck:
-            took = self.scene.settle(seconds)
-        else:
-            held = {item for machine in self.machines() for item in machine.holds}
-            scene = Scene(self.things.values(), frozenset(held | {item.name for item, _ in self.stuck}))
+        held = self._held()
+        things = [thing for thing in self.things.values() if thing.name != without]
+        scene = self.scene
+        if without is not None:
+            scene = Scene(things, held)
+            scene.place()
+        self.stuck = scene.free_all()
+        if self.stuck:
+            scene = Scene(things, held | {item.name for item, _ in self.stuck})
             scene.place()
             scene.free_all()
-            took = scene.settle(seconds)
+        took = scene.settle(seconds)
         self._placed = False
         self._tell()
         return took

@@ -21,6 +21,10 @@
   (print-unreadable-object (object stream :type t)
     (princ (name object) stream)))
 
+(defmethod print-object ((object robot) stream)
+  (print-unreadable-object (object stream :type t)
+    (princ (name object) stream)))
+
 (defclass link (named)
   ((from-joint :initform nil :reader from-joint :documentation "The joint that leads to it; nil for the root.")
    (to-joints :initform nil :reader to-joints :documentation "The joints that begin at it.")

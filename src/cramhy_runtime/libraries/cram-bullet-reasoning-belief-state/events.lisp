@@ -27,7 +27,7 @@
         (link (end-effector (cpoe:event-arm event))))
     (when (and object link)
       (btr:detach-object (btr:get-robot-object) object link)
-      (btr:simulate btr:*current-bullet-world* 10)
+      (btr::let-fall btr:*current-bullet-world* 5/3 (btr:get-robot-object)) ; as long as (btr:simulate world 10)
       (robot-world:remark-seen (btr:name object) (btr:pose object)))))
 
 (defun move-container (event sign)

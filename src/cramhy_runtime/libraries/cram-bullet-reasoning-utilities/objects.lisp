@@ -29,6 +29,10 @@
   "The object of that name in the current world, or nil."
   (object *current-bullet-world* name))
 
+(defun object-pose (name)
+  "Where the object of that name is: a pose in the room."
+  (pose (object-instance name)))
+
 (defun object-exists (name)
   "Whether there is an object of that name."
   (and (object-instance name) t))
@@ -48,6 +52,12 @@
 (defun move-object (name &optional (new-pose (init-pose)))
   "Put an object somewhere else."
   (prolog `(assert ?world (object-pose ,name ,new-pose))))
+
+(defun translate-object (name &optional (x 0.0) (y 0.0) (z 0.0))
+  "Move an object by so many metres along the axes of the room."
+  (let ((pose (object-pose name)))
+    (move-object name (cl-transforms:copy-pose
+                       pose :origin (cl-transforms:v+ (cl-transforms:origin pose) (cl-transforms:make-3d-vector x y z))))))
 
 (defun kill-object (name)
   "Take an object out of the world."

@@ -8,12 +8,14 @@ CAMERA: nil shows all of it, :ROBOT what the robot's camera sees, a string names
 a list of two places, such as ((-3 -2 2) (0 0 1)), is the eye and where it looks."
   (robot-world:save-picture world path :camera camera :width width :height height))
 
-(defmacro with-movie ((path &key camera (width 400) (height 300)) &body body)
+(defmacro with-movie ((path &key camera (width 400) (height 300) (frames 900)) &body body)
   "The values of BODY; what happens meanwhile in the current world is written to the GIF file PATH, each motion for as long as it would take.
-Also when BODY fails. CAMERA: as for `save-picture'; the one that does not move with the robot is the best."
+Also when BODY fails. CAMERA: as for `save-picture'; the one that does not move with the robot is the best. A run of more than FRAMES is
+shown faster."
   (let ((movie (gensym "MOVIE")) (file (gensym "PATH")))
     `(let ((,file ,path))
        (robot-world:check-movie ,file)
-       (let ((,movie (robot-world:begin-movie *current-bullet-world* :camera ,camera :width ,width :height ,height)))
+       (let ((,movie (robot-world:begin-movie *current-bullet-world* :camera ,camera :width ,width :height ,height
+                                                :frames ,frames)))
          (unwind-protect (progn ,@body)
            (robot-world:end-movie ,movie ,file))))))

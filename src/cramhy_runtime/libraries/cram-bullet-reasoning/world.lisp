@@ -12,7 +12,11 @@
 (defun simulate (world seconds &optional (step 0.1) realtime)
   "Let what is free in WORLD fall for SECONDS, at most as long as Bullet would compute: a sixtieth of a second in each STEP."
   (declare (ignore realtime))
-  (robot-world:settle world (/ (ceiling seconds step) 60))
+  (let-fall world (/ (ceiling seconds step) 60)))
+
+(defun let-fall (world seconds &optional hand)
+  "Let what is free in WORLD fall for SECONDS, or until it lies. The robot HAND does not touch what it has just let go."
+  (robot-world:settle world seconds hand)
   (loop for (item other) in (robot-world:stuck-things world)
         do (warn "~s is inside of ~:[the floor~;~:*~s~] and cannot get out of it. It stays where it is: ~
                   (setf (btr:pose object) pose) puts it somewhere else."

@@ -8,6 +8,8 @@ A movie is of the world that is shown when it begins; it goes on with the one th
 
 from __future__ import annotations
 
+from bisect import bisect_left
+from itertools import accumulate
 from math import ceil
 from typing import TYPE_CHECKING
 
@@ -41,10 +43,15 @@ _SHADES = (0.55, 0.75, 1.0)  # of items' colours
 
 
 class Movie:
-    """Records what happens in a world, from `begin` to `end`; `save` writes it. notes: copies of the world, one after each motion."""
+    """Records what happens in a world, from `begin` to `end`; `save` writes it. notes: copies of the world, one after each motion.
 
-    def __init__(self, world: World | None = None, view: View | None = None, width: int = WIDTH, height: int = HEIGHT) -> None:
-        self._world, self._view, self.width, self.height = world, view, width, height
+    most_frames: how many frames it has at most; a longer run is shown faster.
+    """
+
+    def __init__(
+        self, world: World | None = None, view: View | None = None, width: int = WIDTH, height: int = HEIGHT, most_frames: int = MOST_FRAMES
+    ) -> None:
+        self._world, self._view, self.width, self.height, self.most_frames = world, view, width, height, most_frames
         self._noted: Notes | None = None
 
     @property
@@ -68,15 +75,16 @@ class Movie:
             self._noted.add(world)
 
     def frames(self) -> Iterator[World]:
-        """The worlds that the frames show."""
+        """The worlds that the frames show: the run at even intervals, in `most_frames` of them or less, and its end."""
         steps = [max(1, ceil(seconds(one, other) * RATE)) for one, other in zip(self.notes, self.notes[1:])]
-        scale = min(1.0, MOST_FRAMES / max(1, sum(steps)))
+        ends = list(accumulate(steps))
+        count = min(sum(steps), self.most_frames)
         yield self.notes[0]
-        for one, other, count in zip(self.notes, self.notes[1:], steps):
-            count = max(1, round(count * scale))
-            for step in range(1, count):
-                yield _between(one, other, step / count)
-            yield other
+        for number in range(1, count + 1):
+            at = number * ends[-1] / count
+            motion = bisect_left(ends, at)
+            share = 1 - (ends[motion] - at) / steps[motion]
+            yield self.notes[motion + 1] if share >= 1 else _between(self.notes[motion], self.notes[motion + 1], share)
 
     def save(self, path: str, called: str | None = None) -> None:
         """Write the movie to the GIF file ``path``; other tasks may run meanwhile. called: the user's spelling.

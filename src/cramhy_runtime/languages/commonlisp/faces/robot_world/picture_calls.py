@@ -65,6 +65,12 @@ def _pixels(number: Any) -> int:
     return number
 
 
+def _frames(number: Any) -> int:
+    if not isinstance(number, int) or isinstance(number, bool) or number < 1:
+        return error(SimpleError("A movie has so many frames at most, a positive integer, but not ~S.", number))
+    return number
+
+
 def save_picture(world: World, path: Any, *, camera: Any = None, width: Any = stills.WIDTH, height: Any = stills.HEIGHT) -> Any:
     """Write a picture of a world to a PNG file; returns the path."""
     stills.save(world, path_of(path), _view(world, camera), _pixels(width), _pixels(height), called=namestring(path))
@@ -76,9 +82,11 @@ def check_movie(path: Any) -> None:
     movies.check(path_of(path), namestring(path))
 
 
-def begin_movie(world: World | None, *, camera: Any = None, width: Any = movies.WIDTH, height: Any = movies.HEIGHT) -> movies.Movie:
+def begin_movie(
+    world: World | None, *, camera: Any = None, width: Any = movies.WIDTH, height: Any = movies.HEIGHT, frames: Any = movies.MOST_FRAMES
+) -> movies.Movie:
     """Record what happens from now on in the world that is shown; ``world`` is the one that ``camera`` is in."""
-    movie = movies.Movie(None, None if camera is None else _view(world, camera), _pixels(width), _pixels(height))
+    movie = movies.Movie(None, None if camera is None else _view(world, camera), _pixels(width), _pixels(height), _frames(frames))
     movie.begin()
     return movie
 

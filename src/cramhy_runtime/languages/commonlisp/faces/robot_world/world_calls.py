@@ -177,9 +177,9 @@ def contacts(world: World, thing: Thing | None = None) -> Cons | None:
     return list_from(lisp_list(one.thing, one.link, other and other.thing, other and other.link) for one, other in pairs)
 
 
-def settle(world: World, seconds: Any) -> float:
-    """Let free items fall for so long, or until they lie; the seconds that it took."""
-    return DoubleFloat(world.simulate(float(seconds)))
+def settle(world: World, seconds: Any, without: Machine | None = None) -> float:
+    """Let free items fall for so long, or until they lie, past the machine ``without``; the seconds that it took."""
+    return DoubleFloat(world.simulate(float(seconds), None if without is None else without.name))
 
 
 def stuck_things(world: World) -> Cons | None:
