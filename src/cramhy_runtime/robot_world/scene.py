@@ -227,11 +227,15 @@ class Scene:
             done += count
             resting = resting + count if max(velocities.max(), -velocities.min()) < _AT_REST else 0
             checkpoint()
-        for part in free:
+        self.write_back()
+        return done * STEP
+
+    def write_back(self) -> None:
+        """Write into the free items where they are in the scene."""
+        for part in self._free:
             start = self.model.jnt_qposadr[self.model.body_jntadr[part.body]]
             now = self.data.qpos[start : start + 7].copy()
             part.thing.placement = Placement(now[:3], now[3:])
-        return done * STEP
 
     def free_all(self) -> list[tuple[Item, Item | Machine | None]]:
         """Lift the free items out of what stands and they are inside of; the items that cannot be freed, each with what it is in.

@@ -31,9 +31,10 @@
   "Look at a pose, for a try."
   (pr2-proj::look-at :pose pose))
 
-(defun try-picking-up (item object arm pick-up-action)
-  "Fail unless ITEM, which OBJECT means, is seen and can be taken from where the robot is."
-  (let ((object (desig:current-desig object)))
+(defun try-picking-up (name object arm pick-up-action)
+  "Fail unless the item of that NAME, which OBJECT means, is seen and can be taken from where the robot is."
+  (let* ((object (desig:current-desig object))
+         (item (btr:object btr:*current-bullet-world* name)))
     (look-ahead-to (pose-in-room object))
     (unless (member item (pr2-proj::visible-items object))
       (cpl:fail 'common-fail:perception-object-not-found :object object :description "The object is not seen from there."))
@@ -45,7 +46,7 @@
   (let ((item (btr-belief:get-designator-object (desig:current-desig object))))
     (or (null item)
         (pr2-proj-reasoning:settle-on-place
-         location (lambda () (try-picking-up item object arm pick-up-action)))
+         location (lambda () (try-picking-up (btr:name item) object arm pick-up-action)))
         (cpl:fail 'common-fail:object-unreachable :object object :description "The object cannot be taken from any of the places ahead."))))
 
 (cpl:def-cram-function fetch (?object-designator ?arm ?pick-up-robot-location pick-up-action)

@@ -14,6 +14,7 @@ from cramhy_runtime.ground.data import Cons, DoubleFloat, FreshString, MultipleV
 from cramhy_runtime.ground.packages import is_symbol, symbol_name
 from cramhy_runtime.robot_world import models, urdf
 from cramhy_runtime.robot_world.descriptions import Description, DescriptionError
+from cramhy_runtime.robot_world.physical.world import PhysicalWorld
 from cramhy_runtime.robot_world.placements import of_pose
 from cramhy_runtime.robot_world.things import Item, Machine, Thing
 from cramhy_runtime.robot_world.vision import seen
@@ -27,16 +28,23 @@ if TYPE_CHECKING:
     from cramhy_runtime.transforms.poses import Pose
 
 LISP_NAMES = """
-make-world copy-world thing-color stuck-things ignored-contacts ignore-contact add-description remove-thing find-thing things thing-name
+make-world physical-p copy-world thing-color stuck-things ignored-contacts ignore-contact add-description remove-thing find-thing things thing-name
 thing-world thing-pose set-thing-pose thing-types thing-mass thing-bounds part-bounds machine-joints machine-joint set-machine-joint
 machine-links machine-link machine-description attach detach attachments contacts settle stable visibility read-description
 description-text
 """
 
 
-def make_world() -> World:
-    """A world with nothing in it."""
-    return World()
+def make_world(mode: Any = None) -> World:
+    """A world with nothing in it: :KINEMATIC, or :PHYSICAL, in which motions take time and fingers hold by friction."""
+    word = "KINEMATIC" if mode is None else symbol_name(mode) if is_symbol(mode) else str(mode)
+    kind = {"KINEMATIC": World, "PHYSICAL": PhysicalWorld}.get(word)
+    return error("The mode of a world is :KINEMATIC or :PHYSICAL, not ~s.", mode) if kind is None else kind()
+
+
+def physical_p(world: World) -> bool | None:
+    """Whether motions in a world take time."""
+    return boolean(isinstance(world, PhysicalWorld))
 
 
 def copy_world(world: World) -> World:
