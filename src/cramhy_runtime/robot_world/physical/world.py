@@ -1,7 +1,7 @@
 """A world in which motions take time, and what is let go, or held too loosely, falls.
 
 It is a `World`: things, contacts, what a camera sees, all as before. But nothing teleports unless a program puts it somewhere. A timer of
-the kernel steps MuJoCo, twenty milliseconds at a time, while a motion goes on or something has not come to rest. So motions and falls
+the kernel steps MuJoCo, twenty-four milliseconds at a time, while a motion goes on or something has not come to rest. So motions and falls
 live in the kernel's time, other tasks run in between, and a world at rest costs nothing. A copy is a kinematic world: a plan looks ahead
 there, at once.
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ..things import Item, Thing
     from .trajectory import Trajectory
 
-TICK = 0.02  # seconds: what the timer lets pass at once
+TICK = 0.024  # seconds: what the timer lets pass at once
 _RESTING = 10  # ticks in which nothing moves, until the world is at rest
 _LONGEST = 500  # ticks after the last motion: what trembles then lies
 
@@ -97,8 +97,10 @@ class PhysicalWorld(World):
         self._take_over(name)
 
     def _take_over(self, name: Hashable) -> None:
-        if self._engine is not None:
-            thing = self.thing(name)
+        thing = self.thing(name)
+        if isinstance(thing, Machine) and name not in self.parts:
+            self._rebuild()  # furniture is part of the model's shape
+        elif self._engine is not None:
             self._engine.write(thing)
             if isinstance(thing, Machine):
                 for item in thing.holds:
