@@ -49,6 +49,12 @@
          location (lambda () (try-picking-up (btr:name item) object arm pick-up-action)))
         (cpl:fail 'common-fail:object-unreachable :object object :description "The object cannot be taken from any of the places ahead."))))
 
+(defun in-hand-p (object)
+  "Whether the robot holds OBJECT; true where no world knows it."
+  (let ((item (btr-belief:get-designator-object (desig:current-desig object))))
+    (or (null item)
+        (and (btr:object-attached (btr:get-robot-object) item) t))))
+
 (cpl:def-cram-function fetch (?object-designator ?arm ?pick-up-robot-location pick-up-action)
   "Go to an object, take it, and park the arms. Where it is out of reach, the robot goes to another place, ten times; where the fingers miss
 it, the robot looks again, once. Returns the object as it is known then."
@@ -72,6 +78,8 @@ it, the robot looks again, once. Returns the object as it is known then."
         (with-other-solutions (1 (fd-plans fetch) common-fail:gripper-low-level-failure)
             ((progn (pp-plans:park-arms) t)
              (cpl:fail 'common-fail:object-unreachable :object ?object-designator :description "The fingers closed beside the object."))
-          (pick-up-what-is-seen ?object-designator ?arm pick-up-action))
-        (pp-plans:park-arms))))
+          (pick-up-what-is-seen ?object-designator ?arm pick-up-action)
+          (pp-plans:park-arms)
+          (unless (in-hand-p ?object-designator)
+            (cpl:fail 'common-fail:gripper-closed-completely :description "The object slipped out of the hand."))))))
   (desig:current-desig ?object-designator))

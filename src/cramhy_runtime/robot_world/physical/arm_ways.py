@@ -54,7 +54,7 @@ class Room:
                 if not lenient:
                     mine += part.geoms
             else:
-                others += [geom for geom in part.geoms if scene.model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_PLANE]
+                others += [geom for geom in part.geoms if not scene.is_plane[geom]]
         self.mine, self.others = np.array(mine, int), np.array(others, int)
         lowest, highest = scene.boxes()
         self._low, self._high = lowest[self.others], highest[self.others]

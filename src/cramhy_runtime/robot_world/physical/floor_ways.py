@@ -14,8 +14,6 @@ import numpy as np
 
 from cramhy_runtime.kernel.active import checkpoint
 
-from ..mujoco_parts import mujoco
-
 if TYPE_CHECKING:
     from collections.abc import Hashable
 
@@ -49,7 +47,7 @@ class _Floor:
         lowest, highest = scene.boxes()
         robot, others = [], []
         for part in scene.parts:
-            geoms = [geom for geom in part.geoms if scene.model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_PLANE]
+            geoms = [geom for geom in part.geoms if not scene.is_plane[geom]]
             if part.thing is machine or part.thing.name in machine.holds:
                 robot += geoms
             else:

@@ -19,7 +19,7 @@ from . import floor_ways
 from .arm_ways import Room
 from .engine import BASE, yaw_of
 from .trajectory import Trajectory
-from .world import PhysicalWorld
+from .world import TICK, PhysicalWorld
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterator, Mapping, Sequence
@@ -86,7 +86,7 @@ class PhysicalRobot(SimulatedRobot):
         world.follow(self.name, trajectory)
         try:
             while not trajectory.done:
-                world.pause()
+                world.pause(max(TICK, trajectory.seconds - trajectory.passed))
             for _ in range(late):
                 behind = [joint for joint, goal in zip(joints, trajectory.goal, strict=True) if not self._there(joint, goal)]
                 if not behind:

@@ -159,10 +159,11 @@ class PhysicalWorld(World):
 
     def pause(self, seconds: float = TICK) -> None:
         """Wait in a motion: in the kernel's time, or without a kernel at once."""
-        if kernel.active() is None:
-            self.advance(seconds)
-        else:
+        if kernel.active() is not None:
             sleep(seconds)
+        else:
+            for _ in range(round(seconds / TICK + 0.49)):
+                self.advance(TICK)
 
     def simulate(self, seconds: float) -> float:
         """Let time pass until all is at rest, at most so long; the seconds that it took. It is the kernel's time: others run meanwhile.

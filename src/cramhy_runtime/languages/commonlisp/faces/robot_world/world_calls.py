@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import Cons, DoubleFloat, FreshString, MultipleValues, boolean, lisp_list, list_from
 from cramhy_runtime.ground.packages import is_symbol, symbol_name
-from cramhy_runtime.robot_world import models, urdf
+from cramhy_runtime.robot_world import description_files, models
 from cramhy_runtime.robot_world.descriptions import Description, DescriptionError
 from cramhy_runtime.robot_world.physical.world import PhysicalWorld
 from cramhy_runtime.robot_world.placements import of_pose
@@ -219,9 +219,9 @@ def visibility(world: World, camera: Pose, thing: Thing) -> MultipleValues:
 
 
 def read_description(text: str, file: str = "") -> Description:
-    """The description in the text of a URDF file."""
+    """The description in the text of a URDF or MJCF file."""
     try:
-        return urdf.read_text(str(text), str(file))
+        return description_files.read_text(str(text), str(file))
     except DescriptionError as problem:
         return error("~a", str(problem))
 
