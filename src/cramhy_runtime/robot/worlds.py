@@ -113,9 +113,9 @@ def world(description: str | None = None, mode: str = "kinematic") -> World:
     """Begin with a new world: the kitchen, and the robot with its arms parked at the origin.
 
     description: the system that describes the robot, such as ``"cram_porter_description"``; by default that of the PR2. mode:
-    ``"kinematic"``, in which motions happen at once and what is let go falls, or ``"physical"``, in which controllers move the joints in the
-    kernel's time, fingers hold by friction, and what slips falls. Errors: ImportError without the extra ``robot``; ValueError, when this
-    image has another robot, and for another mode.
+    ``"kinematic"``, in which motions happen at once and what is let go falls, or ``"physical"``, in which controllers move the joints in
+    the kernel's time, fingers hold by friction, and what slips falls. Errors: ImportError without the extra ``robot``; ValueError, when
+    this image has another robot, and for another mode.
     """
     if mode not in MODES:
         raise ValueError(f"The mode of a world is {' or '.join(map(repr, MODES))}, not {mode!r}.")

@@ -254,7 +254,10 @@ class SimulatedRobot:
         self.set_fingers(arm, 0.0)
 
     def grip(self, arm: Hashable, newtons: float | None = None) -> list[Item | Machine]:
-        """Close a gripper; what its hand touches then. newtons: matters in a physical world. Errors: `NothingGripped`; the fingers stay closed."""
+        """Close a gripper; what its hand touches then. newtons: matters in a physical world.
+
+        Errors: `NothingGripped`; the fingers stay closed.
+        """
         self.close_gripper(arm)
         hand = set(self.parts.arms[arm].hand)
         touched = [other.thing for own, other in self.world.contacts(self.name) if own.link in hand and other is not None]

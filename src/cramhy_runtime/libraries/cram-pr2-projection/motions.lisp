@@ -20,7 +20,7 @@
 (defun fail-if-hindered (problem unreachable not-reached)
   "In a physical world: fail when PROBLEM, the value of a motion, tells what hindered it. UNREACHABLE and NOT-REACHED are classes of
 failures: there was no way, or the joints did not get where they were sent."
-  (when (and (consp problem) (keywordp (first problem)))
+  (when (and (consp problem) (member (first problem) '(:no-way :not-reached :slipped)))
     (touched)
     (destructuring-bind (kind text) problem
       (cpl:fail (ecase kind

@@ -1,7 +1,7 @@
 """Ways of arms past furniture and objects: along a line of the tool, straight from posture to posture, or around what is between.
 
-A `Room` is a copy of the world in which postures are tried. Postures are arrays of the positions of some joints. The ways around are found by
-two trees of random postures, one from each end, which grow towards each other; the draw is always the same.
+A `Room` is a copy of the world in which postures are tried. Postures are arrays of the positions of some joints. The ways around are found
+by two trees of random postures, one from each end, which grow towards each other; the draw is always the same.
 
 Source: J. J. Kuffner and S. M. LaValle, RRT-Connect: an efficient approach to single-query path planning (2000).
 """
@@ -34,25 +34,24 @@ _SHORTCUTS = 40
 class Room:
     """A kinematic copy of a world, in which a robot's joints ``names`` are tried.
 
-    lenient: the hands may touch things, as when they grasp.
+    apart: how far from everything its ways lead.
     """
 
-    def __init__(self, world: World, name: Hashable, parts: RobotParts, names: Sequence[str], lenient: bool = False) -> None:
+    def __init__(self, world: World, name: Hashable, parts: RobotParts, names: Sequence[str], apart: float = APART) -> None:
+        self.apart = apart
         self.world, self.name, self.names = world.copy(), name, list(names)
         machine = self.machine = self.world.machine(name)
         scene = self.scene = self.world.scene
-        hands = {link for arm in parts.arms.values() for link in arm.hand}
         description = machine.description
         moved = {link for joint in names for link in description.below(description.joints[joint].child)}
         held = set(machine.holds)
         mine, others = [], []
         for part in scene.parts:
             if part.thing is machine:
-                if part.link in moved and not (lenient and part.link in hands):
+                if part.link in moved:
                     mine += part.geoms
             elif isinstance(part.thing, Item) and part.thing.name in held:
-                if not lenient:
-                    mine += part.geoms
+                mine += part.geoms
             else:
                 others += [geom for geom in part.geoms if not scene.is_plane[geom]]
         self.mine, self.others = np.array(mine, int), np.array(others, int)
@@ -63,7 +62,7 @@ class Room:
         self.upper = np.array([joint.upper for joint in limits])
         self._first: dict[tuple[int, int], float] = {}
         self.start = np.array([machine.joint(joint) for joint in names])
-        self._first = dict(self._near(self.start, APART))
+        self._first = dict(self._near(self.start, apart))
 
     def _near(self, posture: np.ndarray, distance: float) -> list[tuple[tuple[int, int], float]]:
         """The pairs of geoms that are nearer than that, and how near."""
@@ -87,7 +86,7 @@ class Room:
     def free(self, posture: np.ndarray) -> bool:
         """Whether the robot is far enough from everything there."""
         checkpoint()
-        return all(pair in self._first and apart > self._first[pair] - 2e-3 for pair, apart in self._near(posture, APART))
+        return all(pair in self._first and apart > self._first[pair] - 2e-3 for pair, apart in self._near(posture, self.apart))
 
     def clear(self, postures: Sequence[np.ndarray]) -> bool:
         """Whether the way along postures is free; the first one is not looked at."""

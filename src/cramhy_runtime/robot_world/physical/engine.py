@@ -86,8 +86,9 @@ class Engine:
         option.timestep, option.integrator, option.cone = STEP, mujoco.mjtIntegrator.mjINT_IMPLICITFAST, mujoco.mjtCone.mjCONE_ELLIPTIC
         option.impratio = 10  # friction is ten times as stiff as contact, so that what is held does not creep
         has_floor = any(shape.kind == "plane" for thing in self.things for shape in thing.all_shapes())
-        self._add_geom(spec, spec.worldbody, None, None, type=mujoco.mjtGeom.mjGEOM_PLANE, size=[20, 20, 1], pos=[0, 0, -1000 if has_floor else 0],
-                       contype=_FLOOR, conaffinity=_ITEM)  # fmt: skip
+        height = -1000 if has_floor else 0
+        options = {"type": mujoco.mjtGeom.mjGEOM_PLANE, "size": [20, 20, 1], "pos": [0, 0, height], "contype": _FLOOR, "conaffinity": _ITEM}
+        self._add_geom(spec, spec.worldbody, None, None, **options)
         for number, thing in enumerate(self.things):
             if isinstance(thing, Item):
                 self._add_item(spec, number, thing)

@@ -25,7 +25,7 @@ class Trajectory:
         lengths = (np.abs(np.diff(self.postures, axis=0)) / speeds).max(axis=1)
         self._moments = np.concatenate([[0.0], np.cumsum(lengths)])
         self._straight = float(self._moments[-1])
-        self.seconds = self._straight + SOFT if self._straight else 0.0
+        self.seconds = self._straight + min(SOFT, self._straight)
         self.passed = 0.0
 
     @property

@@ -1,8 +1,8 @@
 """The functions of the Lisp package ROBOT-WORLD that move a simulated robot.
 
 A robot is given as a machine of a world and the list of its parts, which `make_parts` makes. What a motion could not do is its value, and
-nil when it did what it should, so that Lisp says it with its own failures. In a physical world a motion may be hindered: its value is then a
-list of :NO-WAY, :NOT-REACHED or :SLIPPED and a text.
+nil when it did what it should, so that Lisp says it with its own failures. In a physical world a motion may be hindered: its value is
+then a list of :NO-WAY, :NOT-REACHED or :SLIPPED, and a text.
 """
 
 from __future__ import annotations

@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     from cramhy_runtime.transforms.poses import Pose
 
 LISP_NAMES = """
-make-world physical-p copy-world thing-color stuck-things ignored-contacts ignore-contact add-description remove-thing find-thing things thing-name
-thing-world thing-pose set-thing-pose thing-types thing-mass thing-bounds part-bounds machine-joints machine-joint set-machine-joint
-machine-links machine-link machine-description attach detach attachments contacts settle stable visibility read-description
-description-text
+make-world physical-p copy-world thing-color stuck-things ignored-contacts ignore-contact add-description remove-thing find-thing things
+thing-name thing-world thing-pose set-thing-pose thing-types thing-mass thing-bounds part-bounds machine-joints machine-joint
+set-machine-joint machine-links machine-link machine-description attach detach attachments contacts settle stable visibility
+read-description description-text
 """
 
 
