@@ -166,13 +166,13 @@ class SimulatedRobot:
         joints."""
         self.world.bend(self.name, dict(zip(self.parts.arms[arm].joints, positions, strict=True)))
 
-    def move_tools(self, goals: Mapping[Hashable, Placement]) -> None:
+    def move_tools(self, goals: Mapping[Hashable, Placement], lenient: bool = False) -> None:
         """Bring the tool points of arms to poses in the frame of the base.
 
         The torso stays where it is if the arms can reach from there, else it goes to the highest place from which they can: every sixth
         step is tried first, then those above the first that will do. Where the arms, but for the hands, would touch something, other
-        heights and postures are tried; if none is better, the first is taken. Errors: `OutOfReach`; then nothing has
-        moved.
+        heights and postures are tried; if none is better, the first is taken. lenient: matters in a physical world, where hands meet what
+        they touch. Errors: `OutOfReach`; then nothing has moved.
         """
         first = None
         with self.world.trial():
@@ -265,8 +265,11 @@ class SimulatedRobot:
     def close_gripper(self, arm: Hashable) -> None:
         self.set_fingers(arm, 0.0)
 
-    def grip(self, arm: Hashable) -> list[Item | Machine]:
-        """Close a gripper; what its hand touches then. Errors: `NothingGripped`; the fingers stay closed."""
+    def grip(self, arm: Hashable, newtons: float | None = None) -> list[Item | Machine]:
+        """Close a gripper; what its hand touches then. newtons: matters in a physical world.
+
+        Errors: `NothingGripped`; the fingers stay closed.
+        """
         self.close_gripper(arm)
         hand = set(self.parts.arms[arm].hand)
         touched = [other.thing for own, other in self.world.contacts(self.name) if own.link in hand and other is not None]
