@@ -165,11 +165,13 @@ class PhysicalWorld(World):
             for _ in range(round(seconds / TICK + 0.49)):
                 self.advance(TICK)
 
-    def simulate(self, seconds: float) -> float:
+    def simulate(self, seconds: float, without: Hashable | None = None) -> float:
         """Let time pass until all is at rest, at most so long; the seconds that it took. It is the kernel's time: others run meanwhile.
 
         An item that is inside of something that stands is lifted out of it first, as in a kinematic world; `stuck` tells of those that
         cannot be.
+
+        without: changes nothing here: fingers that have just let go still touch what they held.
         """
         before = {item.name: item.placement for item in self.items()}
         self.stuck = self.scene.free_all()
