@@ -234,8 +234,15 @@ def list_from(iterable: Iterable[object], tail: Any = None) -> Any:
 def python_list(lst: Any) -> list[Any]:
     """The elements of the Lisp list ``lst`` as a Python list."""
     if lst.__class__ is not Cons:
-        return [] if lst is None else list(lst)
+        return [] if lst is None else list(_iterator(lst))
     return list_parts(lst)[0]
+
+
+def _iterator(thing):
+    try:
+        return iter(thing)
+    except TypeError:
+        return PORTS.signals.type_error(thing, "LIST")
 
 
 def list_parts(cell):

@@ -178,7 +178,12 @@ class Session:
                 )
             )
         else:
-            systems.load_system(system)
+
+            def also_no_file(problem):
+                if problem.hint and f'"{system}"' in problem.report() and "required by" not in problem.report():
+                    problem.hint = f"There is no file {system} in {Path.cwd()}, and no system of that name: {problem.hint}"
+
+            conditions.handler_bind([(systems.MissingComponent, also_no_file)], lambda: systems.load_system(system))
 
     @staticmethod
     def _is_missing_file(name):

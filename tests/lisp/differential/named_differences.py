@@ -81,7 +81,7 @@ def _precision(question: str, theirs: str, ours: str) -> bool:
 
 def _no_object_has(question: str, theirs: str, ours: str) -> bool:
     declared = re.search(
-        r"\((the|declare \((type)?) ?(\(and |nil|\(\)|\(cons nil|\(or *\)|\(member *\)|\(not t\)|\(eql\)|\(integer \((-?\d+)\) \4\))",
+        r"\((the|declare \((type)?) ?(\(and |nil|\(\)|\(cons (?:\* )?nil|\(or *\)|\(member *\)|\(not t\)|\(eql\)|\(integer \((-?\d+)\) \4\))",
         question,
     )
     return bool(declared) and "TYPE-ERROR" in _types(ours) and (not _types(theirs) or "CONTROL-ERROR" in _types(theirs))
@@ -184,6 +184,10 @@ NAMED = [
     ),
     Named("A start behind the end is always an error", _bounds_pass),
     Named("A method with qualifiers that its combination does not know", _inapplicable),
+    Named(
+        "A symbol without a function may be given to a function that never calls it",
+        lambda question, theirs, ours: "UNDEFINED-FUNCTION" in _types(theirs) and not _types(ours) and bool(re.search(r"'[a-z]", question)),
+    ),
     Named(
         "shows the parameters that its Python code has",
         lambda question, theirs, ours: _same_but(theirs, ours, (r"(?<=\(LAMBDA )\([^()]*\)", "()"), ("NIL(?= {})", "()")),
