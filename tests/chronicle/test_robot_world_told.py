@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
+from math import pi, sin
+
 import pytest
 
 pytest.importorskip("mujoco", reason="pip install 'cramhy[robot]'")
 
-from cramhy_runtime import kernel
-from cramhy_runtime.chronicle import merge
+from cramhy_runtime import chronicle, kernel
+from cramhy_runtime.chronicle import merge, robot_scene
 from cramhy_runtime.robot_world import remarks, shown
 from cramhy_runtime.robot_world.descriptions import Description, Frame, Joint, Link, Shape
 from cramhy_runtime.robot_world.placements import placement
@@ -157,6 +160,44 @@ def test_messages_add_up_to_what_there_is_and_go_through_json(world, looker):
     all_at_once.add("robots", sums.message())
     assert to_json(all_at_once.messages()["robots"]) == to_json(state.messages()["robots"]) == to_json(another.messages()["robots"])
     assert sorted(state.sums["robots"].states) == ["bottle", "cup", "ground", "robot"]
+
+
+def test_a_recording_shows_the_robot_in_foxglove_and_the_page_replays_it(world, session, tmp_path):
+    pytest.importorskip("mcap")
+    from mcap.reader import make_reader
+
+    path = tmp_path / "run.mcap"
+    with chronicle.record(path):
+        kernel.sleep(1)
+        world.put("robot", placement((-1.0, 0.0, 0.0)))
+        world.bend("robot", {"shoulder": pi / 2})
+        kernel.sleep(1)
+        world.remove("bottle")
+        kernel.sleep(1)
+    with open(path, "rb") as file:
+        drawn = [(channel.topic, json.loads(message.data)) for _, channel, message in make_reader(file).iter_messages()]
+    scenes = [data for topic, data in drawn if topic == robot_scene.TOPIC]
+    assert {entity["id"] for entity in scenes[0]["entities"]} == {"ground", "table", "bottle", "robot"}
+    (robot_,) = scenes[1]["entities"]
+    base, arm = robot_["cubes"]
+    assert base["size"] == {"x": 0.4, "y": 0.4, "z": 0.4}
+    assert arm["pose"]["position"] == pytest.approx({"x": -1.0, "y": 0.3, "z": 1.0}, abs=1e-4)
+    assert [one["id"] for one in scenes[2]["deletions"]] == ["bottle"]
+    frames = [data for topic, data in drawn if topic == robot_scene.FRAMES_TOPIC][-1]["transforms"]
+    assert [(one["parent_frame_id"], one["child_frame_id"]) for one in frames] == [
+        ("world", "base"),
+        ("base", "arm"),
+        ("base", "eye_optical_frame"),
+    ]
+    assert frames[1]["rotation"]["z"] == pytest.approx(sin(pi / 4), abs=1e-4)
+    told = list(chronicle.read(path).messages())
+    joints = [data for _, topic, _, data in told if topic == robot_scene.JOINTS_TOPIC]
+    assert [list(one["position"]) for one in joints] == [[0.0], pytest.approx([pi / 2], abs=1e-4)] and joints[0]["name"] == ["arm"]
+    state = merge.State()
+    for _, topic, _, data in told:
+        if topic == TOPIC:
+            state.add("robots", from_json(message_class_exact(TYPE), data))
+    assert sorted(state.sums["robots"].things) == ["ground", "robot", "table"]
 
 
 def test_a_hand_moves_an_object_while_a_plan_runs_and_it_falls_to_where_it_lies(world, looker):

@@ -142,7 +142,7 @@ def marks(costmap, grasps, seen):
 
 def _cells(costmap):
     values = costmap.values()
-    cells = np.ceil(values * (255 / values.max())).astype(np.uint8)
+    cells = np.round(values * (255 / values.max())).astype(np.uint8)
     return _type("cramhy_msgs/WorldCostmap")(
         float(costmap.origin_x), float(costmap.origin_y), float(costmap.resolution), costmap.columns, costmap.rows, cells.ravel().tolist()
     )

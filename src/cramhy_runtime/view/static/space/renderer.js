@@ -75,6 +75,7 @@ void main() { pixel = texture(cells, part); }`;
 const ATTRIBUTES = [[0, 3, "FLOAT", 0], [1, 3, "FLOAT", 12], [2, 1, "FLOAT", 24], [3, 4, "UNSIGNED_BYTE", 28], [4, 4, "FLOAT", 32]];
 const GROUND = [-40, -40, 80, 80];
 const ABOVE_FLOOR = 0.006; // m, of costmaps
+const LEAST_SHARE = 0.02; // of the greatest value of a costmap, that is shown
 const PLAIN = [0, 0, 0, 0];
 
 export class Renderer {
@@ -261,16 +262,16 @@ export class Renderer {
   }
 }
 
-// The cells of a WorldCostmap as bytes of colours: from blue over green to yellow, and nothing where it is 0.
+// The cells of a WorldCostmap as bytes of colours: from blue over green to yellow, and nothing where it is next to 0.
 export function coloured({ cells }) {
   const bytes = new Uint8Array(cells.length * 4);
   for (let index = 0; index < cells.length; index++) {
     const share = cells[index] / 255;
-    if (!share) continue;
+    if (share < LEAST_SHARE) continue;
     bytes[4 * index] = 255 * Math.min(1, Math.max(0, 2.2 * share - 1.1));
     bytes[4 * index + 1] = 255 * (0.15 + 0.7 * share);
     bytes[4 * index + 2] = 255 * Math.max(0.1, 0.75 - 0.75 * share);
-    bytes[4 * index + 3] = 255 * (0.45 + 0.4 * share);
+    bytes[4 * index + 3] = 255 * (0.15 + 0.7 * Math.sqrt(share));
   }
   return bytes;
 }

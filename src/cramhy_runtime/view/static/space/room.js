@@ -189,8 +189,8 @@ export class Room {
       }
     }
     if (this.shows.grasps) addGrasps(over, marks?.grasps ?? []);
-    if (this.shows.frames) addFrames(over, things, placed);
     const view = this.view();
+    if (this.shows.frames) addFrames(over, things, placed, view.eye);
     this.renderer.draw({ view, placed, extra, over, ghosts, lit: this.held?.name ?? this.chosen, colours: this.colours });
     this.#tag(view, placed);
   }

@@ -1,11 +1,12 @@
 // What is drawn beside the things themselves: the frames of links, where the robot has driven, the poses to which its tools were to go, and
 // how far an object is from where it is believed to be. All of it is bars.
 
-import { add, minus, turned } from "./maths.js";
+import { add, length, minus, turned } from "./maths.js";
 import { addBar } from "./solids.js";
 
 const AXES = [[[1, 0, 0], [0.85, 0.2, 0.15]], [[0, 1, 0], [0.15, 0.6, 0.2]], [[0, 0, 1], [0.2, 0.35, 0.9]]];
 const FRAME = { robot: [0.09, 0.007], object: [0.1, 0.008], furniture: [0.09, 0.007], room: [0.4, 0.014] }; // long, thick, m
+const NEAREST = 0.3; // m
 const PATH = [[0.1, 0.45, 0.95], 0.035, 0.02]; // colour, thick, height
 const GOOD = [0.1, 0.65, 0.3];
 const BAD = [0.85, 0.15, 0.1];
@@ -15,12 +16,13 @@ export function addFrame(surface, pose, [long, thick]) {
   for (const [axis, colour] of AXES) addBar(surface, pose, add(pose, turned(pose, axis.map((part) => part * long))), thick, colour);
 }
 
-// The frames of the room, of objects, and of those links that have a shape or a camera.
-export function addFrames(surface, things, placed) {
+// The frames of the room, of objects, and of those links that have a shape or a camera; none before the very `eye`.
+export function addFrames(surface, things, placed, eye) {
   addFrame(surface, [0, 0, 0, 1, 0, 0, 0], FRAME.room);
   for (const [name, { kind, links, cameras }] of things) {
     if (kind !== "robot" && kind !== "object") continue;
     placed.get(name)?.forEach((pose, number) => {
+      if (length(minus(pose, eye)) < NEAREST) return;
       if (links[number].shapes.length || cameras.includes(links[number].name)) addFrame(surface, pose, FRAME[kind]);
     });
   }
