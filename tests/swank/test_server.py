@@ -7,7 +7,7 @@ import socket
 import stat
 
 import pytest
-from systems import posix
+from systems import linux, posix
 
 from cramhy_runtime import kernel
 from cramhy_runtime.swank import package, server, slime_version, wire
@@ -160,6 +160,27 @@ def test_a_secret_that_others_may_read_is_refused(serve, secret):
     assert str(refused.value) == (
         "~/.slime-secret holds the secret for Emacs, and others may read or write it. Type: chmod 600 ~/.slime-secret, and see that it is yours."
     )
+
+
+@linux
+def test_a_client_of_another_user_is_sent_away(serve, monkeypatch):
+    monkeypatch.setattr(server, "_of_another_user", lambda peer, port: True)
+    client = Client(serve().port)
+    assert client.hear() is None
+    assert serve.logged == ["A client of another user was sent away. A secret in ~/.slime-secret lets those in who know it."]
+
+
+@linux
+def test_linux_tells_whose_a_client_is(serve, monkeypatch):
+    found = serve()
+    client = Client(found.port)
+    assert client.call("(swank:ping)") == [":ok", "pong"]
+    peer = client.socket.getsockname()
+    assert not server._of_another_user(peer, found.port)
+    if os.getuid() != 0:
+        monkeypatch.setattr(os, "getuid", lambda: 4321)
+        assert server._of_another_user(peer, found.port)
+    assert not server._of_another_user(("127.0.0.1", 1), found.port)
 
 
 # ----------------------------------------------------------------------------------------------------------------------- hostile

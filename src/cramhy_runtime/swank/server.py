@@ -119,6 +119,10 @@ class Server:
             ended.set()
 
     async def _meet(self, reader, writer):
+        if self.secret is None and self.port is not None and _of_another_user(writer.get_extra_info("peername"), self.port):
+            self._tell(f"A client of another user was sent away. A secret in {SECRET} lets those in who know it.")
+            writer.close()
+            return
         if len(self._lines) >= MOST_CLIENTS:
             self._tell(f"A client was sent away: {MOST_CLIENTS} are connected.")
             writer.close()
@@ -229,6 +233,19 @@ def _secret():
     except OSError as problem:
         raise ServerError(f"{SECRET}, the secret for Emacs, cannot be read: {problem.strerror}.") from None
     return first
+
+
+def _of_another_user(peer, port):
+    """Whether Linux says that the client at ``peer``, (host, port), belongs to another user. Other systems do not tell."""
+    try:
+        with open("/proc/net/tcp", encoding="ascii") as table:
+            rows = [row.split() for row in table]
+        mine = os.getuid()
+    except (OSError, AttributeError):
+        return False
+    ours, theirs = f":{port:04X}", f":{peer[1]:04X}"
+    owners = [int(row[7]) for row in rows[1:] if row[1].endswith(theirs) and row[2].endswith(ours)]
+    return bool(owners) and owners[0] not in (mine, 0)
 
 
 def _listen(address):
