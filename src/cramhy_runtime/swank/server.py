@@ -33,6 +33,7 @@ LONGEST_STOP = 5.0  # s that the thread gets to end
 FIRST_MESSAGE = 10.0  # s that a client gets to say the secret
 MOST_CLIENTS = 32
 MOST_WAITING = 500  # messages of a client that the kernel has not read yet; then the thread reads no more of them
+SHARE = 0.3  # of the processor while the kernel computes: a user waits for each answer
 LONGEST_SECRET = 4096  # bytes
 
 
@@ -52,6 +53,7 @@ class Server:
         self.socket, self.address = _listen(address)
         self.kernel.count_outside(1)
         self.company = Company(self._main, "cramhy swank", self.kernel)
+        self.company.share.share = SHARE
         self.kernel.at_stop(self.close)
         requests.ask_whoever_asked()
 
