@@ -246,6 +246,20 @@ def test_calls_that_are_wrong_are_refused(serve, form, why):
     assert client.call("(swank:ping)") == [":ok", "pong"]
 
 
+def test_a_client_that_reads_nothing_is_sent_away(serve, monkeypatch):
+    monkeypatch.setattr(server, "MOST_UNREAD", 100_000)
+    found = serve()
+    client = Client(found.port)
+    client.send('(:emacs-rex (swank-repl:listener-eval "(loop (princ (make-string 50000)) (sleep 0.001))") nil :repl-thread 1)')
+    for _ in range(20_000):
+        if serve.logged and not found.connections:
+            break
+        kernel.run_blocking(lambda: None)
+        kernel.sleep(0.01)
+    assert serve.logged == ["A client was sent away: it does not read what it is sent."]
+    assert Client(found.port).call("(swank:ping)") == [":ok", "pong"]
+
+
 def test_too_many_calls_at_a_time(emacs):
     from cramhy_runtime.swank.connection import MOST_REQUESTS
 

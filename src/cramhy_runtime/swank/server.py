@@ -16,6 +16,7 @@ import os
 import signal
 import socket
 import stat
+from collections import deque
 from pathlib import Path
 
 from cramhy_runtime import kernel, storage
@@ -33,6 +34,7 @@ LONGEST_STOP = 5.0  # s that the thread gets to end
 FIRST_MESSAGE = 10.0  # s that a client gets to say the secret
 MOST_CLIENTS = 32
 MOST_WAITING = 500  # messages of a client that the kernel has not read yet; then the thread reads no more of them
+MOST_UNREAD = 32 << 20  # bytes that a client has not read
 SHARE = 0.3  # of the processor while the kernel computes: a user waits for each answer
 LONGEST_SECRET = 4096  # bytes
 
@@ -174,7 +176,7 @@ class Line:
         self.server, self.writer = server, writer
         self.connection = None
         self.waiting = 0
-        self._out = []
+        self._out = deque()
         self._called = False
 
     # the thread's side
@@ -189,8 +191,15 @@ class Line:
 
     def _write(self):
         self._called = False
-        out, self._out = self._out, []
-        if not self.writer.is_closing():
+        out = []
+        while self._out:
+            out.append(self._out.popleft())
+        if self.writer.is_closing():
+            return
+        if self.writer.transport.get_write_buffer_size() > MOST_UNREAD:
+            self.server._tell("A client was sent away: it does not read what it is sent.")
+            self.writer.transport.abort()
+        else:
             self.writer.write(b"".join(out))
 
     # the kernel's side
