@@ -288,7 +288,7 @@
 (interaction "an error in the debugger"
   (in-debugger (slime-eval-async '(swank:eval-string-in-frame "(car 5)" 0 "TUT")))
   (eventually (and (debugger) (eql 2 (buffer-local-value 'sldb-level (debugger)))))
-  (in-debugger (mapcar #'cadr sldb-restarts)))
+  (in-debugger (mapcar (lambda (restart) (substring-no-properties (cadr restart))) sldb-restarts)))
 (interaction "back to the first level"
   (in-debugger (slime-eval-async '(swank:invoke-nth-restart-for-emacs 2 0)))
   (eventually (and (debugger) (eql 1 (buffer-local-value 'sldb-level (debugger)))))

@@ -14,6 +14,7 @@ import pytest
 from slides import test_lecture_38 as lecture_38
 from slides.conftest import TUTORIAL, Workspace, environment, stable
 from slides.test_lecture_34 import LOAD, control_package
+from systems import needs_terminals
 
 HERE = Path(__file__).parent
 PLACES = ("/usr/share/emacs/site-lisp/elpa-src/slime-*", "/usr/share/emacs/site-lisp/slime", "~/.emacs.d/elpa/slime-*")
@@ -86,6 +87,11 @@ def lisp(value):
     return str(value) if isinstance(value, int) else '"' + str(value).replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
+def slime_folders():
+    """The folders of SLIME for Emacs' load path."""
+    return [SLIME, f"{SLIME}/lib", f"{SLIME}/contrib", *glob.glob("/usr/share/emacs/site-lisp/elpa-src/macrostep-*")]
+
+
 def between_lectures():
     plans = (TUTORIAL / "simple-plans.hy").read_text().replace("(require cramhy *)\n", "")
     motions = (TUTORIAL / "motion-designators.hy").read_text().replace("(require cramhy *)\n", "")
@@ -136,7 +142,7 @@ def told(tmp_path_factory, shared):
     program.chmod(0o755)
     (folder / "run.el").write_text(
         f"(setq here {lisp(folder)} lisp {lisp(program)} patience 8 load-system {lisp(LOAD[0])}\n"
-        f" slime-folders '{lisp([SLIME, f'{SLIME}/lib', f'{SLIME}/contrib', *glob.glob('/usr/share/emacs/site-lisp/elpa-src/macrostep-*')])}\n"
+        f" slime-folders '{lisp(slime_folders())}\n"
         f" folder-34 {lisp(first.folder)} lines-34 '{lisp(LINES_34)}\n folder-38 {lisp(second.folder)} lines-38 '{lisp(lines_38)})\n"
     )
     environ = {**environment(), "HOME": str(folder), "CRAMHY_TEST_FOLDER": str(folder), "CRAMHY_VIEW": "no"}
@@ -309,3 +315,37 @@ def test_sixty_interactions_and_more_are_looked_at(told):
     looked_at = {*EXACTLY, *BEGINS, *CONTAINS}
     assert len(looked_at) >= 60
     assert set(told.found) - looked_at == {name for name in told.found if name.startswith("lecture ")}
+
+
+@needs_terminals
+def test_emacs_in_a_terminal(tmp_path):
+    """Typed keys: M-x slime, a form, an error, q in the debugger, C-c C-c while a form runs, and the end."""
+    from repl.terminal import Terminal
+
+    program = tmp_path / "cramhy"
+    program.write_text(f'#!/bin/sh\nexec {sys.executable} -m cramhy_runtime.cli "$@"\n')
+    program.chmod(0o755)
+    (tmp_path / "init.el").write_text(
+        f"(dolist (folder '{lisp(slime_folders())}) (add-to-list 'load-path folder))\n(require 'slime)\n(slime-setup '(slime-fancy))\n"
+        f"(setq slime-lisp-implementations nil inferior-lisp-program {lisp(program)} slime-kill-without-query-p t)\n"
+        "(setq inhibit-startup-screen t)\n"
+    )
+    variables = {**environment(), "HOME": str(tmp_path), "TERM": "xterm", "CRAMHY_VIEW": "no"}
+    with Terminal("-nw", "-Q", "-l", str(tmp_path / "init.el"), program=[EMACS], variables=variables, size=(40, 100)) as terminal:
+        terminal.expect("scratch")
+        terminal.press("\x1bx")
+        terminal.expect("M-x")
+        terminal.press("slime\r")
+        terminal.expect("; SLIME")  # the REPL buffer; before that the prompt stands in *inferior-lisp*
+        terminal.expect("CL-USER>")
+        terminal.press('(concatenate (quote string) "for" "ty-two")\r')
+        terminal.expect("forty-two")
+        terminal.press("(car 5)\r")
+        terminal.expect("Return to Emacs")
+        terminal.press("q")
+        terminal.expect("aborted")
+        terminal.press("(unwind-protect (sleep 1000) (princ (+ 40000 321)))\r")
+        terminal.press("\x03\x03")
+        terminal.expect("40321")
+        terminal.press("\x18\x03")
+        assert terminal.status() == 0

@@ -200,6 +200,28 @@ def test_disassembly(emacs):
     assert emacs.call('(swank:disassemble-form "\'short")').startswith("; Python of SHORT\n")
 
 
+def test_macros_are_indented(emacs):
+    emacs.call("(swank-repl:create-repl nil)")
+    told = {name: (count, packages) for name, count, packages in emacs.wait_for(":indentation-update")[1]}
+    assert told["par"] == (0, ["CRAM-LANGUAGE-IMPLEMENTATION"]) and told["with-failure-handling"][0] == 1
+    emacs.repl("(defmacro with-it ((it) &body body) `(let ((,it 1)) ,@body))")
+    assert emacs.wait_for(":indentation-update")[1] == [["with-it", 1, ["COMMON-LISP-USER"]]]
+    emacs.call("(swank:update-indentation-information)")
+    assert len(emacs.wait_for(":indentation-update")[1]) > 40
+
+
+def test_systems(emacs, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "small.asd").write_text('(defsystem "small" :components ((:file "code")))')
+    (tmp_path / "code.lisp").write_text("(in-package :cl-user)\n(defun of-small (x y) x)\n")
+    result = emacs.call('(swank:operate-on-system-for-emacs "small" \'load-op)')
+    assert result[1][0][3] == ":style-warning" and result[2] is True
+    assert emacs.repl("(of-small 1 2)") == "1\n"
+    names = emacs.call("(swank:list-asdf-systems)")
+    assert "alexandria" in names
+    assert emacs.call("(swank:list-all-systems-in-central-registry)") == emacs.call("(swank:list-all-systems-known-to-asdf)") == names
+
+
 def test_packages(emacs):
     names = emacs.call("(swank:list-all-package-names)")
     assert "COMMON-LISP-USER" in names and "CL-USER" not in names

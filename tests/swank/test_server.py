@@ -7,7 +7,7 @@ import socket
 import stat
 
 import pytest
-from systems import posix
+from systems import linux, posix
 
 from cramhy_runtime import kernel
 from cramhy_runtime.swank import package, server, slime_version, wire
@@ -162,6 +162,27 @@ def test_a_secret_that_others_may_read_is_refused(serve, secret):
     )
 
 
+@linux
+def test_a_client_of_another_user_is_sent_away(serve, monkeypatch):
+    monkeypatch.setattr(server, "_of_another_user", lambda peer, port: True)
+    client = Client(serve().port)
+    assert client.hear() is None
+    assert serve.logged == ["A client of another user was sent away. A secret in ~/.slime-secret lets those in who know it."]
+
+
+@linux
+def test_linux_tells_whose_a_client_is(serve, monkeypatch):
+    found = serve()
+    client = Client(found.port)
+    assert client.call("(swank:ping)") == [":ok", "pong"]
+    peer = client.socket.getsockname()
+    assert not server._of_another_user(peer, found.port)
+    if os.getuid() != 0:
+        monkeypatch.setattr(os, "getuid", lambda: 4321)
+        assert server._of_another_user(peer, found.port)
+    assert not server._of_another_user(("127.0.0.1", 1), found.port)
+
+
 # ----------------------------------------------------------------------------------------------------------------------- hostile
 
 
@@ -225,6 +246,20 @@ def test_calls_that_are_wrong_are_refused(serve, form, why):
     assert client.call("(swank:ping)") == [":ok", "pong"]
 
 
+def test_a_client_that_reads_nothing_is_sent_away(serve, monkeypatch):
+    monkeypatch.setattr(server, "MOST_UNREAD", 100_000)
+    found = serve()
+    client = Client(found.port)
+    client.send('(:emacs-rex (swank-repl:listener-eval "(loop (princ (make-string 50000)) (sleep 0.001))") nil :repl-thread 1)')
+    for _ in range(20_000):
+        if serve.logged and not found.connections:
+            break
+        kernel.run_blocking(lambda: None)
+        kernel.sleep(0.01)
+    assert serve.logged == ["A client was sent away: it does not read what it is sent."]
+    assert Client(found.port).call("(swank:ping)") == [":ok", "pong"]
+
+
 def test_too_many_calls_at_a_time(emacs):
     from cramhy_runtime.swank.connection import MOST_REQUESTS
 
@@ -280,3 +315,88 @@ def test_every_call_of_the_table_is_in_a_test():
 
     texts = "".join(path.read_text() for path in Path(__file__).parent.glob("*.*"))
     assert [name for name in known() if name not in texts] == []
+
+
+# ------------------------------------------------------------------------------------------------------------------ command line
+
+
+class Process:
+    """``cramhy ...`` in a process of its own, with a port file."""
+
+    def __init__(self, folder, *words, text=None):
+        import subprocess
+        import sys
+        from pathlib import Path
+
+        root = Path(__file__).parents[2]
+        environ = {**os.environ, "HOME": str(folder), "PYTHONPATH": f"{root / 'src'}{os.pathsep}{root / 'hy_src'}", "CRAMHY_VIEW": "no"}
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "cramhy_runtime.cli", *words],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=folder, env=environ,
+        )  # fmt: skip
+
+    def port(self):
+        line = self.process.stderr.readline()
+        assert line.startswith("; Emacs connects by M-x slime-connect RET 127.0.0.1 RET "), line + self.process.stderr.read()
+        return int(line.split()[-2])
+
+    def end(self):
+        out, err = self.process.communicate(timeout=60)
+        return self.process.returncode, out, err
+
+
+class PlainClient(Client):
+    """A client in a process that has no kernel to wait for."""
+
+    def hear(self):
+        return self._message()
+
+
+@posix
+@pytest.mark.parametrize("ending", ["quit-lisp", "SIGTERM", "SIGINT"])
+def test_a_session_for_emacs_alone(tmp_path, ending):
+    import signal
+
+    process = Process(tmp_path, "swank", "--port", "0", "--port-file", "port", "--time", "virtual", "--no-turtlesim")
+    port = process.port()
+    assert (tmp_path / "port").read_text() == f"{port}\n"
+    client = PlainClient(port)
+    assert client.call('(swank:interactive-eval "(progn (sleep 500) 7)")') == [":ok", "=> 7 (3 bits, #x7, #o7, #b111)"]
+    client.send('(:emacs-rex (swank-repl:listener-eval "(unwind-protect (read-line) (princ :cleaned))") nil :repl-thread 2)')
+    while client.hear()[0] != ":read-string":
+        pass
+    if ending == "quit-lisp":
+        client.send("(:emacs-rex (swank:quit-lisp) nil t 3)")
+    else:
+        process.process.send_signal(getattr(signal, ending))
+    heard = []
+    while (message := client.hear()) is not None:
+        heard.append(message)
+    assert [":write-string", "CLEANED"] in heard
+    status, out, err = process.end()
+    assert (status, out, err) == (130 if ending == "SIGINT" else 143, "", "")
+
+
+def test_emacs_beside_a_prompt_in_virtual_time(tmp_path):
+    process = Process(tmp_path, "repl", "--swank", "--time", "virtual", "--no-turtlesim")
+    client = PlainClient(process.port())
+    assert client.call('(swank:interactive-eval "(progn (sleep 500) (setf from-emacs 7))")')[0] == ":ok"
+    process.process.stdin.write("(list from-emacs (car 5))\n0\n(progn (sleep 100) 8)\n")
+    process.process.stdin.flush()
+    status, out, err = process.end()
+    assert status == 0 and "debugger invoked on a TYPE-ERROR" in out and out.endswith("CL-USER> 8\nCL-USER> ") and err == ""
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (
+            ["swank", "--port-file", "/no/such/folder/port"],
+            "The port cannot be written into /no/such/folder/port: No such file or directory.",
+        ),
+        (["swank", "--socket", "/no/such/folder/socket"], "The server for Emacs cannot listen on /no/such/folder/socket: No such file"),
+    ],
+)
+def test_what_keeps_it_from_listening_is_told(tmp_path, words, why):
+    status, out, err = Process(tmp_path, *words).end()
+    assert status == 2 and out == "" and err.startswith(f"cramhy: {why}")

@@ -9,9 +9,11 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from cramhy_runtime.ground.data import Symbol, UndefinedFunction
-from cramhy_runtime.ground.packages import KEYWORD, find_package
+from cramhy_runtime.ground.data import UNBOUND, Symbol, UndefinedFunction
+from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
+from cramhy_runtime.ground.packages import KEYWORD, find_package, registered
 from cramhy_runtime.languages.commonlisp.evaluation.forms import SPECIAL_OPERATORS
+from cramhy_runtime.languages.commonlisp.objects.classes import registered_class
 
 _BREAKS = "-/*+:."
 
@@ -49,27 +51,28 @@ def completions(word, package, most=300):
     prefix, rest, names = _split(word, package)
     if not rest and not prefix:
         return []
+    letters = rest.upper()
+    in_order = re.compile(".*?".join(map(re.escape, letters)), re.S)
     found = []
-    for name, symbol in names.items():
-        chunks = _chunks(rest.upper(), name)
-        if chunks is not None:
-            score = _score(chunks, rest, name)
-            moved = [[place + len(prefix), text.lower()] for place, text in chunks]
-            found.append(Match(prefix + name, score, moved, flags(symbol)))
-    found.sort(key=lambda match: (-match.score, len(match.name), match.name))
-    return found[:most]
+    for name in names:
+        if in_order.search(name) is not None:
+            chunks = _chunks(letters, name)
+            found.append((-_score(chunks, rest, name), len(name), name, chunks))
+    found.sort()
+    return [
+        Match(prefix + name, -score, [[place + len(prefix), text.lower()] for place, text in chunks], flags(names[name]))
+        for score, _, name, chunks in found[:most]
+    ]
 
 
 def _chunks(letters, name):
-    """Where the letters stand in the name, [(place, text)], beginnings of parts before others; ``None`` if they are not in it."""
+    """Where the letters, which are in the name in this order, stand in it: [(place, text)], beginnings of parts before others."""
     if not letters:
         return []
     whole = name.find(letters)
     if whole >= 0:
         return [(whole, letters)]
     places = _places(letters, name, True) or _places(letters, name, False)
-    if places is None:
-        return None
     chunks = []
     for place, letter in zip(places, letters, strict=True):
         if chunks and chunks[-1][0] + len(chunks[-1][1]) == place:
@@ -109,20 +112,16 @@ def flags(symbol):
     """What SLIME shows of a symbol: b bound, f function, g generic, c class, t type, m macro, s special operator, p package."""
     if not isinstance(symbol, Symbol):
         return "b-------"
-    from cramhy_runtime.ground.data import UNBOUND
-    from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
-    from cramhy_runtime.languages.commonlisp.objects.classes import symbol_class
-
     function = None if isinstance(symbol.function, UndefinedFunction) else symbol.function
     kinds = [
         ("b", symbol.value is not UNBOUND),
         ("f", function is not None),
         ("g", isinstance(function, GenericFunction)),
-        ("c", symbol_class(symbol) is not None),
-        ("t", symbol_class(symbol) is not None),
+        ("c", registered_class(symbol) is not None),
+        ("t", registered_class(symbol) is not None),
         ("m", symbol.macro is not None),
         ("s", symbol in SPECIAL_OPERATORS),
-        ("p", find_package(symbol.name) is not None),
+        ("p", registered(symbol.name) is not None),
     ]
     return "".join(letter if is_so else "-" for letter, is_so in kinds)
 

@@ -60,6 +60,7 @@ class Connection:
         self.readers = {}  # tag → the Mailbox of a task that reads a line
         self.tags = 0
         self.presentations, self.presents = None, False  # see `presentations`; whether Emacs wants them
+        self.indentation = {}  # see `indentation`
         self._printed = []  # texts that are not sent yet
         self.folders = []  # with files that are needed as long as the connection
         self.inspector = None  # see `inspector`

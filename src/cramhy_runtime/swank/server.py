@@ -16,6 +16,7 @@ import os
 import signal
 import socket
 import stat
+from collections import deque
 from pathlib import Path
 
 from cramhy_runtime import kernel, storage
@@ -33,6 +34,8 @@ LONGEST_STOP = 5.0  # s that the thread gets to end
 FIRST_MESSAGE = 10.0  # s that a client gets to say the secret
 MOST_CLIENTS = 32
 MOST_WAITING = 500  # messages of a client that the kernel has not read yet; then the thread reads no more of them
+MOST_UNREAD = 32 << 20  # bytes that a client has not read
+SHARE = 0.3  # of the processor while the kernel computes: a user waits for each answer
 LONGEST_SECRET = 4096  # bytes
 
 
@@ -52,6 +55,7 @@ class Server:
         self.socket, self.address = _listen(address)
         self.kernel.count_outside(1)
         self.company = Company(self._main, "cramhy swank", self.kernel)
+        self.company.share.share = SHARE
         self.kernel.at_stop(self.close)
         requests.ask_whoever_asked()
 
@@ -119,6 +123,10 @@ class Server:
             ended.set()
 
     async def _meet(self, reader, writer):
+        if self.secret is None and self.port is not None and _of_another_user(writer.get_extra_info("peername"), self.port):
+            self._tell(f"A client of another user was sent away. A secret in {SECRET} lets those in who know it.")
+            writer.close()
+            return
         if len(self._lines) >= MOST_CLIENTS:
             self._tell(f"A client was sent away: {MOST_CLIENTS} are connected.")
             writer.close()
@@ -168,7 +176,7 @@ class Line:
         self.server, self.writer = server, writer
         self.connection = None
         self.waiting = 0
-        self._out = []
+        self._out = deque()
         self._called = False
 
     # the thread's side
@@ -183,8 +191,15 @@ class Line:
 
     def _write(self):
         self._called = False
-        out, self._out = self._out, []
-        if not self.writer.is_closing():
+        out = []
+        while self._out:
+            out.append(self._out.popleft())
+        if self.writer.is_closing():
+            return
+        if self.writer.transport.get_write_buffer_size() > MOST_UNREAD:
+            self.server._tell("A client was sent away: it does not read what it is sent.")
+            self.writer.transport.abort()
+        else:
             self.writer.write(b"".join(out))
 
     # the kernel's side
@@ -229,6 +244,19 @@ def _secret():
     except OSError as problem:
         raise ServerError(f"{SECRET}, the secret for Emacs, cannot be read: {problem.strerror}.") from None
     return first
+
+
+def _of_another_user(peer, port):
+    """Whether Linux says that the client at ``peer``, (host, port), belongs to another user. Other systems do not tell."""
+    try:
+        with open("/proc/net/tcp", encoding="ascii") as table:
+            rows = [row.split() for row in table]
+        mine = os.getuid()
+    except (OSError, AttributeError):
+        return False
+    ours, theirs = f":{port:04X}", f":{peer[1]:04X}"
+    owners = [int(row[7]) for row in rows[1:] if row[1].endswith(theirs) and row[2].endswith(ours)]
+    return bool(owners) and owners[0] not in (mine, 0)
 
 
 def _listen(address):

@@ -10,13 +10,14 @@ from cramhy_runtime import __version__
 from cramhy_runtime.ground.packages import KEYWORD, symbol_package
 from cramhy_runtime.languages.commonlisp.reader.dispatch_macros import FEATURES
 
+from .. import indentation
 from ..packages import prompt_of
 from ..rpcs import rpc
 from ..slime_version import slime_version
 from ..wire import Name
 
 MODULES = """SWANK-REPL SWANK-PRESENTATIONS SWANK-ARGLISTS SWANK-FUZZY SWANK-C-P-C SWANK-FANCY-INSPECTOR SWANK-PACKAGE-FU SWANK-UTIL
-SWANK-TRACE-DIALOG SWANK-MACROSTEP SWANK-INDENTATION SWANK-ASDF SWANK-SBCL-EXTS""".split()
+SWANK-INDENTATION SWANK-ASDF""".split()
 
 
 def features():
@@ -44,8 +45,14 @@ def connection_info(call):
 
 @rpc("swank-require slynk-require")
 def swank_require(call, modules, *_):
-    """Parts of SLIME that Emacs wants. They are all here, or their calls are refused one by one."""
+    """Parts of SLIME that Emacs wants; the parts that are here. Calls of others are refused one by one."""
     return MODULES
+
+
+@rpc("update-indentation-information")
+def update_indentation(call):
+    call.connection.indentation.clear()
+    indentation.tell(call.connection)
 
 
 @rpc("quit-lisp")

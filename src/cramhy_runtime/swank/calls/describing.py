@@ -6,7 +6,7 @@ from cramhy_runtime.ground.data import UNBOUND, Symbol, UndefinedFunction
 from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
 from cramhy_runtime.ground.packages import is_symbol, sym
 from cramhy_runtime.languages.commonlisp.evaluation.forms import SPECIAL_OPERATORS
-from cramhy_runtime.languages.commonlisp.objects.classes import symbol_class
+from cramhy_runtime.languages.commonlisp.objects.classes import registered_class
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.streams.streams import StringOutputStream
 from cramhy_runtime.languages.commonlisp.tools import apropos
@@ -101,7 +101,7 @@ def _facts(symbol):
         (":function", function is not None and not isinstance(function, GenericFunction), FUNCTION),
         (":macro", symbol.macro is not None, FUNCTION),
         (":special-operator", symbol in SPECIAL_OPERATORS, FUNCTION),
-        (":class", symbol_class(symbol) is not None, TYPE),
+        (":class", registered_class(symbol) is not None, TYPE),
     ]
     facts = []
     for name, is_so, kind in kinds:

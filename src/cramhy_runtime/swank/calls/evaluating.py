@@ -11,7 +11,7 @@ from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.systems import program_files
 from cramhy_runtime.session.session import HISTORY, LAST_FORMS, LAST_VALUES
 
-from .. import presentations
+from .. import indentation, presentations
 from ..packages import prompt_of
 from ..rpcs import Refused, number, rpc, text
 from ..wire import Name
@@ -88,6 +88,7 @@ def load_file(call, path):
     source = text(path).endswith((".lisp", ".hy", ".asd"))
     with binding(evaluator.PACKAGE, call.package):
         aborting(call, lambda: call.session.load(text(path)) if source else program_files.load(text(path)))
+    indentation.tell(call.connection)
     return f"=> {path} is loaded."
 
 
@@ -97,6 +98,7 @@ def load_file(call, path):
 @rpc("create-repl create-mrepl")
 def create_repl(call, target=None, *, coding_system=None):
     package = call.connection.package
+    indentation.tell(call.connection)
     return [package.name, prompt_of(package)]
 
 
@@ -111,6 +113,8 @@ def listener_eval(call, source, *, window_width=None):
         if connection.package is not before:
             connection.send(Name(":new-package"), connection.package.name, prompt_of(connection.package))
         _show(connection, values)
+    if "(" in text(source) and ("mac" in text(source).lower() or "load" in text(source).lower()):
+        indentation.tell(connection)  # it may have defined macros
 
 
 def _show(connection, values):
