@@ -10,7 +10,7 @@
 (defun pose-facing (place distance degrees)
   "A pose on the floor: so far from `place', in that direction, and turned towards it."
   (let ((origin (cl-transforms:origin place))
-        (angle (/ (* degrees pi) 180)))
+        (angle (radians degrees)))
     (pose (+ (cl-transforms:x origin) (* distance (cos angle)))
           (+ (cl-transforms:y origin) (* distance (sin angle)))
           0

@@ -27,7 +27,7 @@
 
 (defun place-before (x y direction ahead left up)
   "The pose on the table that is so far ahead and to the left of a guest."
-  (let ((angle (/ (* direction pi) 180)))
+  (let ((angle (radians direction)))
     (pose (+ x (* ahead (cos angle)) (- (* left (sin angle))))
           (+ y (* ahead (sin angle)) (* left (cos angle)))
           (+ *table-top* up)
