@@ -134,7 +134,11 @@ def test_all_names_are_exported(ask):
         ("(physics-utils:parse-uri \"package://no_such_package/x.stl\")", "NIL"),
         ("(btr:add-objects-to-mesh-list \"cram_pick_place_tutorial\" :extension \"stl\")", "(:BLUE-METAL-PLATE :CUBE :RED-METAL-PLATE)"),
         ("(list btr:*debug-window* (btr:add-debug-window *world*) (btr:add-vis-axis-object 'mug-1))", "(NIL NIL NIL)"),
+        # objects by their names: btr-utils:object-pose is btr's symbol, a function here and a predicate there
+        ("(list (eq 'btr-utils:object-pose 'btr:object-pose) (typep (btr-utils:object-pose 'mug-1) 'cl-transforms:pose))", "(T T)"),
+        ("(flet ((x () (cl-transforms:x (cl-transforms:origin (btr-utils:object-pose 'mug-1))))) (let ((before (x))) (btr-utils::translate-object 'mug-1 0.1) (near (- (x) before) 0.1)))", "T"),
         # cl-urdf
+        ("(princ-to-string (btr:urdf (named :kitchen)))", '"#<ROBOT iai_kitchen>"'),
         ("(cl-urdf:name (btr:urdf (robot)))", '"pr2"'),
         ("(let ((joint (gethash \"torso_lift_joint\" (cl-urdf:joints (btr:urdf (robot)))))) (list (cl-urdf:joint-type joint) (cl-urdf:upper (cl-urdf:limits joint)) (cl-urdf:name (cl-urdf:parent joint)) (cl-urdf:name (cl-urdf:from-joint (cl-urdf:child joint)))))", '(:PRISMATIC 0.33d0 "base_link" "torso_lift_joint")'),
         ("(type-of (cl-urdf:geometry (cl-urdf:collision (gethash \"base_link\" (cl-urdf:links (btr:urdf (robot)))))))", "CL-URDF:BOX"),

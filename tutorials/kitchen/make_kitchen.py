@@ -27,7 +27,7 @@ def lines(png: Path, gif: Path) -> list[str]:
         "(lay-out-dishes)",
         "(things)",
         ";; The robot sets the table; writing the movie takes some seconds",
-        f'(btr:with-movie ("{gif.as_posix()}" :width 320 :height 240 :frames 80) (set-table-for-two))',
+        f'(btr:with-movie ("{gif.as_posix()}" :width 320 :height 240 :frames 60) (set-table-for-two))',
         "(things)",
         f'(btr:save-picture "{png.as_posix()}" :camera *camera*)',
     ]

@@ -1,13 +1,16 @@
 (require cramhy *)
 (in-package :kitchen)
 
+(defun radians (degrees)
+  (* degrees (/ pi 180)))
+
 (defun pose (x y z &optional (degrees 0) (frame "map"))
   "The pose at (x, y, z) metres, turned about the vertical axis by `degrees'."
   (cl-transforms-stamped:make-pose-stamped
    frame 0.0
    (cl-transforms:make-3d-vector x y z)
    (cl-transforms:axis-angle->quaternion
-    (cl-transforms:make-3d-vector 0 0 1) (/ (* degrees pi) 180))))
+    (cl-transforms:make-3d-vector 0 0 1) (radians degrees))))
 
 (def-fact-group costmap-metadata (costmap:costmap-size costmap:costmap-origin costmap:costmap-resolution
                                   costmap:costmap-padding costmap:costmap-manipulation-padding

@@ -1,10 +1,10 @@
 (require cramhy *)
 (in-package :kitchen)
 
-(defparameter *bottle-on-counter* (pose 1.42 0.6 0.96) "a place on the counter, beside the sink")
-(defparameter *bottle-on-island* (pose -0.8 2.0 0.96) "a place on the kitchen island")
-(defparameter *before-counter* (pose 0.75 0.6 0) "where the robot stands to reach the counter")
-(defparameter *before-island* (pose -0.15 2.0 0 180) "where it stands to reach the island")
+(defparameter *bottle-on-counter* (pose 1.42d0 0.6d0 0.96d0) "a place on the counter, beside the sink")
+(defparameter *bottle-on-island* (pose -0.8d0 2.0d0 0.96d0) "a place on the kitchen island")
+(defparameter *before-counter* (pose 0.75d0 0.6d0 0) "where the robot stands to reach the counter")
+(defparameter *before-island* (pose -0.15d0 2.0d0 0 180) "where it stands to reach the island")
 
 (defun go-to (?place)
   "Drives to a pose, or to what a location designator stands for."

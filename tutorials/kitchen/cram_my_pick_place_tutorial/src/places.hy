@@ -1,7 +1,7 @@
 (require cramhy *)
 (in-package :kitchen)
 
-(defparameter *distances* '(0.65 0.55 0.75) "how far from a thing the robot stands to reach it, in metres, the best first")
+(defparameter *distances* '(0.65d0 0.55d0 0.75d0) "how far from a thing the robot stands to reach it, in metres, the best first")
 
 (defun distance-to-robot (place)
   (cl-transforms:v-dist (cl-transforms:origin place)
@@ -10,7 +10,7 @@
 (defun pose-facing (place distance degrees)
   "A pose on the floor: so far from `place', in that direction, and turned towards it."
   (let ((origin (cl-transforms:origin place))
-        (angle (/ (* degrees pi) 180)))
+        (angle (radians degrees)))
     (pose (+ (cl-transforms:x origin) (* distance (cos angle)))
           (+ (cl-transforms:y origin) (* distance (sin angle)))
           0

@@ -1,21 +1,21 @@
 (require cramhy *)
 (in-package :kitchen)
 
-(defparameter *table-top* 0.746 "how high the dining table is, in metres")
-(defparameter *beside-table* (pose -2.2 1.9 0 -125) "where the robot stands when it is done")
+(defparameter *table-top* 0.746d0 "how high the dining table is, in metres")
+(defparameter *beside-table* (pose -2.2d0 1.9d0 0 -125) "where the robot stands when it is done")
 
 (defparameter *camera* '((-0.6 -0.5 2.5) (-2.9 0.7 0.6)) "from where the table is seen: the eye, and where it looks")
 
 (def-fact-group table-for-two (seat cover belongs)
 
   ;; where a guest sits at the table, and in which direction he looks
-  (<- (seat :left -3.28 -0.33 90))
-  (<- (seat :right -3.28 0.95 -90))
+  (<- (seat :left -3.28d0 -0.33d0 90))
+  (<- (seat :right -3.28d0 0.95d0 -90))
 
   ;; what each guest needs: how far before him it is, how far to his left, and how high its middle is above the table
-  (<- (cover :bowl 0.27 0 0.04))
-  (<- (cover :spoon 0.27 -0.12 0.01))
-  (<- (cover :cup 0.42 0.12 0.05))
+  (<- (cover :bowl 0.27d0 0 0.04d0))
+  (<- (cover :spoon 0.27d0 -0.12d0 0.01d0))
+  (<- (cover :cup 0.42d0 0.12d0 0.05d0))
 
   ;; what belongs on the table, and where: a cover for each guest, and a bottle for both
   (<- (belongs ?type ?pose)
@@ -23,11 +23,11 @@
     (cover ?type ?ahead ?left ?up)
     (lisp-fun place-before ?x ?y ?direction ?ahead ?left ?up ?pose))
   (<- (belongs :bottle ?pose)
-    (lisp-fun pose -3.28 0.31 0.85 ?pose)))
+    (lisp-fun pose -3.28d0 0.31d0 0.85d0 ?pose)))
 
 (defun place-before (x y direction ahead left up)
   "The pose on the table that is so far ahead and to the left of a guest."
-  (let ((angle (/ (* direction pi) 180)))
+  (let ((angle (radians direction)))
     (pose (+ x (* ahead (cos angle)) (- (* left (sin angle))))
           (+ y (* ahead (sin angle)) (* left (cos angle)))
           (+ *table-top* up)
@@ -85,16 +85,16 @@
   (go-to *beside-table*))
 
 (defparameter *dishes*
-  '((bowl-1 :bowl 0.2 (0.3 0.45 0.8)) (bowl-2 :bowl 0.42 (0.9 0.5 0.2))
-    (cup-1 :cup 0.62 (0.3 0.45 0.8)) (cup-2 :cup 0.78 (0.9 0.5 0.2))
-    (spoon-1 :spoon 0.95 (0.3 0.45 0.8)) (spoon-2 :spoon 1.1 (0.9 0.5 0.2))
-    (bottle-1 :bottle -0.05 (0.2 0.5 0.25)))
+  '((bowl-1 :bowl 0.2d0 (0.3 0.45 0.8)) (bowl-2 :bowl 0.42d0 (0.9 0.5 0.2))
+    (cup-1 :cup 0.62d0 (0.3 0.45 0.8)) (cup-2 :cup 0.78d0 (0.9 0.5 0.2))
+    (spoon-1 :spoon 0.95d0 (0.3 0.45 0.8)) (spoon-2 :spoon 1.1d0 (0.9 0.5 0.2))
+    (bottle-1 :bottle -0.05d0 (0.2 0.5 0.25)))
   "name, type, place along the counter and colour of what a table for two needs")
 
 (defun lay-out-dishes ()
   "Puts the dishes onto the counter."
   (loop for (name type y color) in *dishes*
-        do (btr-utils:spawn-object name type :pose (pose 1.42 y 0.96) :color color))
+        do (btr-utils:spawn-object name type :pose (pose 1.42d0 y 0.96d0) :color color))
   (btr:simulate btr:*current-bullet-world* 100))
 
 (defun set-table-for-two ()
