@@ -20,14 +20,13 @@ from ..things import Item
 if TYPE_CHECKING:
     from collections.abc import Hashable, Sequence
 
-    from ..simulated_robot import RobotParts
     from ..world import World
 
 APART = 0.01
 """How far from everything a way leads, metres. What is nearer at its start may stay as near."""
 _FINE = 0.08  # radians between postures that are tried
 _BRANCH = 0.4  # radians
-_MOST_BRANCHES = 300
+_MOST_BRANCHES = 150
 _SHORTCUTS = 40
 
 
@@ -37,7 +36,7 @@ class Room:
     apart: how far from everything its ways lead.
     """
 
-    def __init__(self, world: World, name: Hashable, parts: RobotParts, names: Sequence[str], apart: float = APART) -> None:
+    def __init__(self, world: World, name: Hashable, names: Sequence[str], apart: float = APART) -> None:
         self.apart = apart
         self.world, self.name, self.names = world.copy(), name, list(names)
         machine = self.machine = self.world.machine(name)
