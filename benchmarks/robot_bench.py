@@ -134,7 +134,7 @@ def physical_steps(table: Table) -> None:
         for _ in range(count):
             step(engine.model, engine.data)
 
-    beside(table, "a step of the physical world, servos at work", work, bare, 300)
+    beside(table, "a step of the physical world, servos at work", work, bare, 900)
     measured(table, "a copy of the physical world", repeat(world.copy), 100, 1000)
 
 

@@ -12,8 +12,7 @@ from test_simulated_robot import CARRYING, arm
 from cramhy_runtime.robot_world import models
 from cramhy_runtime.robot_world.descriptions import Shape, turned
 from cramhy_runtime.robot_world.physical.contacts import contact_shapes
-from cramhy_runtime.robot_world.physical.reaching import NoWay
-from cramhy_runtime.robot_world.physical.robot import NotReached, PhysicalRobot, Slipped
+from cramhy_runtime.robot_world.physical.robot import NotReached, NoWay, PhysicalRobot, Slipped
 from cramhy_runtime.robot_world.physical.world import PhysicalWorld
 from cramhy_runtime.robot_world.placements import placement
 from cramhy_runtime.robot_world.simulated_robot import BeyondLimits, Blocked, NothingGripped, OutOfReach, RobotParts

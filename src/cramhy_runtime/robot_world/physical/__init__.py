@@ -6,7 +6,6 @@
 ``trajectory``  the way of joints through time, at limited speed
 ``world``       the world: steps in the kernel's time while something moves
 ``robot``       the motions of a robot in it, as those of ``simulated_robot``
-``reaching``      postures of arms for poses of their tools, and ways to them
 ``floor_ways``  ways of the base between furniture
 ``arm_ways``    ways of arms past furniture and objects
 ==============  =====================================================================================

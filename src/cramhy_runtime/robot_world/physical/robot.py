@@ -6,21 +6,23 @@ what was held may slip. A motion waits in the kernel's time. When its task is ev
 
 from __future__ import annotations
 
+from itertools import islice
+from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..placements import Placement
-from ..simulated_robot import BeyondLimits, MotionError, NothingGripped, RobotParts, SimulatedRobot
+from ..reaching import solver_of
+from ..simulated_robot import BeyondLimits, MotionError, NothingGripped, OutOfReach, RobotParts, SimulatedRobot
 from . import floor_ways
 from .arm_ways import Room
 from .engine import BASE, yaw_of
-from .reaching import NoWay, ReachingRobot
 from .trajectory import Trajectory
 from .world import TICK, PhysicalWorld
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Mapping, Sequence
+    from collections.abc import Hashable, Iterator, Mapping, Sequence
 
     from ..things import Item, Machine
 
@@ -34,7 +36,20 @@ _LATE = 75  # ticks that joints may be late
 _LATE_FINGERS = 15
 _CLOSE = {"prismatic": 0.005}  # how near a joint must come
 _CLOSE_BY = 0.03  # radians
+_LINE = (0.35, 0.6)  # metres, radians: so far a tool goes along a line
+_LINE_STEP = (0.02, 0.1)
+_JUMP = 0.35  # radians between two steps of a line
+_TRIED = 6  # postures to which ways are looked for
+_TORSO_STEP = 0.05  # metres
 _SHUT = 0.01  # radians: fingers that are closed so far hold nothing
+
+
+class NoWay(MotionError):
+    """There is no way for the base, or for an arm, past what stands around. what: ``base``, or the arm's name."""
+
+    def __init__(self, what: Hashable) -> None:
+        super().__init__(f"there is no way for the {what} past what stands around")
+        self.what = what
 
 
 class NotReached(MotionError):
@@ -53,7 +68,7 @@ class Slipped(MotionError):
         self.item, self.arm = item, arm
 
 
-class PhysicalRobot(ReachingRobot):
+class PhysicalRobot(SimulatedRobot):
     """The robot ``name`` of a physical world, with its parts."""
 
     world: PhysicalWorld
@@ -142,25 +157,114 @@ class PhysicalRobot(ReachingRobot):
         wanted = dict(zip(joints, positions, strict=True))
         now = self._now(joints)
         goal = np.array([self._nearest(joint, wanted[joint], at) for joint, at in zip(joints, now, strict=True)])
-        way = Room(self.world, self.name, joints).way(goal) or [now, goal]
+        way = Room(self.world, self.name, self.parts, joints).way(goal) or [now, goal]
         behind = self._follow(joints, way, self._speeds(joints))
         self._keep_hold([arm])
         if behind:
             raise NotReached(behind)
 
+    def _nearest(self, joint: str, wanted: float, now: float) -> float:
+        """The same position, without the whole turns of a joint that has no limits."""
+        described = self.machine.description.joints[joint]
+        if described.kind != "continuous":
+            return described.clamped(wanted)
+        return now + (wanted - now + pi) % (2 * pi) - pi
+
     def move_tools(self, goals: Mapping[Hashable, Placement], lenient: bool = False) -> None:
         """Bring the tool points of arms to poses in the frame of the base.
 
         A near goal is reached along a line. Else postures are tried, the nearest first, and ways to them past what stands around; the torso
-        moves only where it must. lenient: hands may touch things on a line. Errors: `OutOfReach`,
-        `NoWay`; then nothing has moved. `NotReached`, `Slipped`.
+        moves only where it must. lenient: hands may touch things, and where there is no free way they go all the same. Errors:
+        `OutOfReach`, `NoWay`; then nothing has moved. `NotReached`, `Slipped`.
         """
-        joints = self._joints(goals)
-        way = self._way(goals, joints, lenient)
+        joints = [self.parts.torso, *(joint for arm in goals for joint in self.parts.arms[arm].joints)]
+        room = Room(self.world, self.name, self.parts, joints, lenient)
+        way = self._way(room, goals, joints, lenient)
         behind = self._follow(joints, way, self._speeds(joints))
         self._keep_hold(list(goals))
         if behind:
             raise NotReached(behind)
+
+    def _way(self, room: Room, goals: Mapping[Hashable, Placement], joints: Sequence[str], lenient: bool) -> list[np.ndarray]:
+        now = self._now(joints)
+        line = self._line(goals, joints, now)
+        if line is not None and room.clear(line):
+            return line
+        postures = list(islice(self._candidates(goals, joints, now), _TRIED))
+        if not postures:
+            heights = self._heights()
+            out = (arm for arm, goal in goals.items() if self.reach(arm, goal, heights[-1]) is None)
+            raise OutOfReach(next(out, next(iter(goals))), len(self._torso_heights()))
+        if line is not None and lenient:
+            return line
+        for posture in postures:
+            way = room.way(posture)
+            if way is not None:
+                return way
+        if lenient:
+            return [now, postures[0]]
+        raise NoWay(f"{next(iter(goals))} arm")
+
+    def _line(self, goals: Mapping[Hashable, Placement], joints: Sequence[str], now: np.ndarray) -> list[np.ndarray] | None:
+        """Postures on a line of all tools to near goals; ``None`` when a goal is far, or an arm does not keep to the line."""
+        starts = {arm: self._tool(arm) for arm in goals}
+        metres = max(float(np.linalg.norm(goal.position - starts[arm].position)) for arm, goal in goals.items())
+        radians = max(_angle(starts[arm].rotation, goal.rotation) for arm, goal in goals.items())
+        if metres > _LINE[0] or radians > _LINE[1]:
+            return None
+        count = max(1, int(np.ceil(max(metres / _LINE_STEP[0], radians / _LINE_STEP[1]))))
+        postures = [now]
+        for number in range(1, count + 1):
+            part = number / count
+            poses = {arm: _between(starts[arm], goal, part) for arm, goal in goals.items()}
+            posture = self._posture_near(poses, joints, postures[-1])
+            if posture is None:
+                return None
+            postures.append(posture)
+        return postures
+
+    def _posture_near(self, poses: Mapping[Hashable, Placement], joints: Sequence[str], near: np.ndarray) -> np.ndarray | None:
+        values = dict(zip(joints, near, strict=True))
+        for arm, pose in poses.items():
+            found = next(self._answers(arm, pose, values[self.parts.torso], [values[joint] for joint in self.parts.arms[arm].joints]), None)
+            if found is None:
+                return None
+            values |= found
+        posture = np.array([values[joint] for joint in joints])
+        return posture if np.abs(posture - near).max() < _JUMP else None
+
+    def _answers(self, arm: Hashable, pose: Placement, torso: float, near: Sequence[float]) -> Iterator[dict[str, float]]:
+        """Positions of an arm's joints with which its tool is at a pose in the frame of the base: first what is found from a posture."""
+        parts, machine = self.parts.arms[arm], self.machine
+        solver = solver_of(machine.description, parts.base, parts.tip)
+        position, rotation = machine.skeleton.pose(machine.skeleton.positions({self.parts.torso: torso}), parts.base)
+        wanted = Placement(position, rotation).inverse() @ (pose @ parts.tool.inverse())
+        known = dict(zip(parts.joints, near, strict=True))
+        first = np.array([known[joint] for joint in solver.joints])
+        for answer in solver.solutions(wanted.position, wanted.rotation, first):
+            yield {joint: self._nearest(joint, float(value), known[joint]) for joint, value in zip(solver.joints, answer, strict=True)}
+
+    def _candidates(self, goals: Mapping[Hashable, Placement], joints: Sequence[str], now: np.ndarray) -> Iterator[np.ndarray]:
+        """Postures in which all tools are at their goals: at each height of the torso, the nearest first, those that are nearest to now."""
+        values = dict(zip(joints, now, strict=True))
+        for height in self._torso_heights():
+            found: list[dict[str, float]] = [{self.parts.torso: height}]
+            for arm, goal in goals.items():
+                answers = list(self._answers(arm, goal, height, [values[joint] for joint in self.parts.arms[arm].joints]))
+                found = [before | answer for before in found for answer in answers]
+            postures = [np.array([posture[joint] for joint in joints]) for posture in found]
+            yield from sorted(postures, key=lambda posture: float(np.abs(posture - now).max()))
+
+    def _torso_heights(self) -> list[float]:
+        limits = self.machine.description.joints[self.parts.torso]
+        now = self.world.engine.joint(self.name, self.parts.torso)
+        others = np.arange(limits.lower, limits.upper + 1e-9, _TORSO_STEP)
+        return [limits.clamped(now), *sorted(map(float, others), key=lambda height: abs(height - now))]
+
+    def _tool(self, arm: Hashable) -> Placement:
+        """Where a tool is in the frame of the base."""
+        parts = self.parts.arms[arm]
+        return self.machine.placement.inverse() @ self.machine.link(parts.tip) @ parts.tool
 
     # ----------------------------------------------------------------------------------------------------------------- grippers
 
@@ -190,3 +294,13 @@ class PhysicalRobot(ReachingRobot):
         if not held or float(self._now(parts.fingers[:1])[0]) < _SHUT:
             raise NothingGripped("there was nothing between the fingers")
         return held
+
+
+def _between(start: Placement, end: Placement, part: float) -> Placement:
+    one, other = start.rotation, end.rotation if float(start.rotation @ end.rotation) >= 0 else -end.rotation
+    rotation = one + part * (other - one)
+    return Placement(start.position + part * (end.position - start.position), rotation / np.linalg.norm(rotation))
+
+
+def _angle(one: np.ndarray, other: np.ndarray) -> float:
+    return 2 * float(np.arccos(min(1.0, abs(float(one @ other)))))

@@ -13,8 +13,7 @@ import numpy as np
 
 from cramhy_runtime.ground.data import Cons, DoubleFloat, boolean, list_from, lisp_list, python_list
 from cramhy_runtime.ground.packages import keyword
-from cramhy_runtime.robot_world.physical.reaching import NoWay
-from cramhy_runtime.robot_world.physical.robot import NotReached, PhysicalRobot, Slipped
+from cramhy_runtime.robot_world.physical.robot import NotReached, NoWay, PhysicalRobot, Slipped
 from cramhy_runtime.robot_world.physical.world import PhysicalWorld
 from cramhy_runtime.robot_world.placements import of_pose
 from cramhy_runtime.robot_world.simulated_robot import (
