@@ -106,6 +106,11 @@ class Machine(Thing):
         """Set the joints of these names, whatever their limits. Errors: KeyError, for a joint that there is not."""
         self.joints, self._links = self.skeleton.positions(values, self.joints), None
 
+    def take(self, numbers: np.ndarray, positions: np.ndarray) -> None:
+        """Set joints by their numbers in ``skeleton.joints``."""
+        self.joints, self._links = self.joints.copy(), None
+        self.joints[numbers] = positions
+
     def joint(self, name: str) -> float | None:
         """The position of a joint; ``None`` for one that does not move or is not there."""
         number = self.skeleton.joint_numbers.get(name)

@@ -34,24 +34,25 @@ _SHORTCUTS = 40
 class Room:
     """A kinematic copy of a world, in which a robot's joints ``names`` are tried.
 
-    apart: how far from everything its ways lead.
+    lenient: the hands may touch things, as when they grasp.
     """
 
-    def __init__(self, world: World, name: Hashable, parts: RobotParts, names: Sequence[str], apart: float = APART) -> None:
-        self.apart = apart
+    def __init__(self, world: World, name: Hashable, parts: RobotParts, names: Sequence[str], lenient: bool = False) -> None:
         self.world, self.name, self.names = world.copy(), name, list(names)
         machine = self.machine = self.world.machine(name)
         scene = self.scene = self.world.scene
+        hands = {link for arm in parts.arms.values() for link in arm.hand}
         description = machine.description
         moved = {link for joint in names for link in description.below(description.joints[joint].child)}
         held = set(machine.holds)
         mine, others = [], []
         for part in scene.parts:
             if part.thing is machine:
-                if part.link in moved:
+                if part.link in moved and not (lenient and part.link in hands):
                     mine += part.geoms
             elif isinstance(part.thing, Item) and part.thing.name in held:
-                mine += part.geoms
+                if not lenient:
+                    mine += part.geoms
             else:
                 others += [geom for geom in part.geoms if not scene.is_plane[geom]]
         self.mine, self.others = np.array(mine, int), np.array(others, int)
@@ -62,7 +63,7 @@ class Room:
         self.upper = np.array([joint.upper for joint in limits])
         self._first: dict[tuple[int, int], float] = {}
         self.start = np.array([machine.joint(joint) for joint in names])
-        self._first = dict(self._near(self.start, apart))
+        self._first = dict(self._near(self.start, APART))
 
     def _near(self, posture: np.ndarray, distance: float) -> list[tuple[tuple[int, int], float]]:
         """The pairs of geoms that are nearer than that, and how near."""
@@ -86,7 +87,7 @@ class Room:
     def free(self, posture: np.ndarray) -> bool:
         """Whether the robot is far enough from everything there."""
         checkpoint()
-        return all(pair in self._first and apart > self._first[pair] - 2e-3 for pair, apart in self._near(posture, self.apart))
+        return all(pair in self._first and apart > self._first[pair] - 2e-3 for pair, apart in self._near(posture, APART))
 
     def clear(self, postures: Sequence[np.ndarray]) -> bool:
         """Whether the way along postures is free; the first one is not looked at."""

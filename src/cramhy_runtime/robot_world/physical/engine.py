@@ -203,6 +203,13 @@ class Engine:
                 driven, coupled = used_joints(thing, self.robots[thing.name])
                 self._joints[thing.name] = {name: int(model.joint(f"{number} {name}").qposadr[0]) for name in (*BASE, *driven, *coupled)}
                 self.servos[thing.name] = {name: model.actuator(f"{number} {name}").id for name in (*BASE, *driven)}
+        self._read_from = []
+        for machine in self.things:
+            joints = dict(self._joints.get(machine.name, {}))
+            if joints:
+                base = [joints.pop(name) for name in BASE]
+                numbers = [machine.skeleton.joint_numbers[name] for name in joints]
+                self._read_from.append((machine, np.array(base), np.array([*joints.values()], int), np.array(numbers, int)))
         self._free = np.array([start + axis for _, mocap, _, start in self._items if mocap < 0 for axis in range(6)], int)
 
     def _tune(self) -> None:
@@ -271,14 +278,10 @@ class Engine:
             if mocap < 0:
                 now = qpos[start : start + 7].copy()
                 item.placement = Placement(now[:3], now[3:])
-        for machine in self.things:
-            joints = self._joints.get(machine.name)
-            if joints:
-                x, y, turn = (float(qpos[joints[name]]) for name in BASE)
-                machine.stand(
-                    Placement(np.array([x, y, machine.placement.position[2]]), np.array([cos(turn / 2), 0.0, 0.0, sin(turn / 2)]))
-                )
-                machine.bend({name: float(qpos[place]) for name, place in joints.items() if name not in BASE})
+        for machine, base, places, numbers in self._read_from:
+            x, y, turn = qpos[base].tolist()
+            machine.stand(Placement(np.array([x, y, machine.placement.position[2]]), np.array([cos(turn / 2), 0.0, 0.0, sin(turn / 2)])))
+            machine.take(numbers, qpos[places])
 
     def _go_on_as(self, before: Engine) -> None:
         for name, servos in self.servos.items():
@@ -329,7 +332,10 @@ class Engine:
 
     def at_rest(self) -> bool:
         """Whether no item moves."""
-        return not len(self._free) or float(np.abs(self.data.qvel[self._free]).max()) < _SPEED
+        if not len(self._free):
+            return True
+        speeds = self.data.qvel[self._free]
+        return max(float(speeds.max()), -float(speeds.min())) < _SPEED
 
     def touching(self, thing: Item | Machine) -> list[tuple[str | None, Item | Machine | None, str | None]]:
         """The contacts of a thing now: (its link, the other thing or ``None`` for the floor, the other link)."""

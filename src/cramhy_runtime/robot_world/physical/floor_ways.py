@@ -14,6 +14,8 @@ import numpy as np
 
 from cramhy_runtime.kernel.active import checkpoint
 
+from .engine import yaw_of
+
 if TYPE_CHECKING:
     from collections.abc import Hashable
 
@@ -38,8 +40,6 @@ def way(world: World, name: Hashable, goal: tuple[float, float, float]) -> list[
 
 class _Floor:
     def __init__(self, world: World, name: Hashable, goal: tuple[float, float, float]) -> None:
-        from .engine import yaw_of
-
         machine, scene = world.machine(name), world.scene
         here = machine.placement
         self.start = (float(here.position[0]), float(here.position[1]), yaw_of(here))

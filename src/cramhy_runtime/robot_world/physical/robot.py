@@ -24,7 +24,6 @@ from .world import TICK, PhysicalWorld
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterator, Mapping, Sequence
 
-    from ..inverse_kinematics import Reach
     from ..things import Item, Machine
 
 PACE = 0.5
@@ -175,11 +174,11 @@ class PhysicalRobot(SimulatedRobot):
         """Bring the tool points of arms to poses in the frame of the base.
 
         A near goal is reached along a line. Else postures are tried, the nearest first, and ways to them past what stands around; the torso
-        moves only where it must. lenient: hands may touch things on a line. Errors: `OutOfReach`,
-        `NoWay`; then nothing has moved. `NotReached`, `Slipped`.
+        moves only where it must. lenient: hands may touch things, and where there is no free way they go all the same. Errors:
+        `OutOfReach`, `NoWay`; then nothing has moved. `NotReached`, `Slipped`.
         """
         joints = [self.parts.torso, *(joint for arm in goals for joint in self.parts.arms[arm].joints)]
-        room = Room(self.world, self.name, self.parts, joints)
+        room = Room(self.world, self.name, self.parts, joints, lenient)
         way = self._way(room, goals, joints, lenient)
         behind = self._follow(joints, way, self._speeds(joints))
         self._keep_hold(list(goals))
@@ -188,25 +187,26 @@ class PhysicalRobot(SimulatedRobot):
 
     def _way(self, room: Room, goals: Mapping[Hashable, Placement], joints: Sequence[str], lenient: bool) -> list[np.ndarray]:
         now = self._now(joints)
-        line = next(filter(None, (self._line(goals, joints, now, height) for height in self._heights_for(goals))), None)
-        if line is not None and (lenient or room.clear(line)):
+        line = self._line(goals, joints, now)
+        if line is not None and room.clear(line):
             return line
         postures = list(islice(self._candidates(goals, joints, now), _TRIED))
         if not postures:
             heights = self._heights()
             out = (arm for arm, goal in goals.items() if self.reach(arm, goal, heights[-1]) is None)
             raise OutOfReach(next(out, next(iter(goals))), len(self._torso_heights()))
-        if lenient:  # elsewhere than on a line hands must not push things about
-            room = Room(self.world, self.name, self.parts, joints, apart=0.0)
+        if line is not None and lenient:
+            return line
         for posture in postures:
             way = room.way(posture)
             if way is not None:
                 return way
+        if lenient:
+            return [now, postures[0]]
         raise NoWay(f"{next(iter(goals))} arm")
 
-    def _line(self, goals: Mapping[Hashable, Placement], joints: Sequence[str], now: np.ndarray, height: float) -> list[np.ndarray] | None:
-        """Postures on a line of all tools to near goals, while the torso goes to a height; ``None`` when a goal is far, or an arm does not
-        keep to the line."""
+    def _line(self, goals: Mapping[Hashable, Placement], joints: Sequence[str], now: np.ndarray) -> list[np.ndarray] | None:
+        """Postures on a line of all tools to near goals; ``None`` when a goal is far, or an arm does not keep to the line."""
         starts = {arm: self._tool(arm) for arm in goals}
         metres = max(float(np.linalg.norm(goal.position - starts[arm].position)) for arm, goal in goals.items())
         radians = max(_angle(starts[arm].rotation, goal.rotation) for arm, goal in goals.items())
@@ -217,37 +217,29 @@ class PhysicalRobot(SimulatedRobot):
         for number in range(1, count + 1):
             part = number / count
             poses = {arm: _between(starts[arm], goal, part) for arm, goal in goals.items()}
-            posture = self._posture_near(poses, joints, postures[-1], now[0] + part * (height - now[0]))
+            posture = self._posture_near(poses, joints, postures[-1])
             if posture is None:
                 return None
             postures.append(posture)
         return postures
 
-    def _posture_near(
-        self, poses: Mapping[Hashable, Placement], joints: Sequence[str], near: np.ndarray, torso: float
-    ) -> np.ndarray | None:
-        """The posture with the tools there that the one before leads to; ``joints`` begin with the torso."""
-        values = dict(zip(joints, near, strict=True)) | {self.parts.torso: torso}
+    def _posture_near(self, poses: Mapping[Hashable, Placement], joints: Sequence[str], near: np.ndarray) -> np.ndarray | None:
+        values = dict(zip(joints, near, strict=True))
         for arm, pose in poses.items():
-            solver, wanted = self._wanted(arm, pose, torso)
-            found = solver.near(*wanted, np.array([values[joint] for joint in solver.joints]))
+            found = next(self._answers(arm, pose, values[self.parts.torso], [values[joint] for joint in self.parts.arms[arm].joints]), None)
             if found is None:
                 return None
-            values |= {joint: self._nearest(joint, float(value), values[joint]) for joint, value in zip(solver.joints, found, strict=True)}
+            values |= found
         posture = np.array([values[joint] for joint in joints])
         return posture if np.abs(posture - near).max() < _JUMP else None
 
-    def _wanted(self, arm: Hashable, pose: Placement, torso: float) -> tuple[Reach, Placement]:
-        """(the solver of an arm, where its tip has to be for it) when its tool is at a pose in the frame of the base."""
-        parts, machine = self.parts.arms[arm], self.machine
-        position, rotation = machine.skeleton.pose(machine.skeleton.positions({self.parts.torso: torso}), parts.base)
-        wanted = Placement(position, rotation).inverse() @ (pose @ parts.tool.inverse())
-        return solver_of(machine.description, parts.base, parts.tip), wanted
-
     def _answers(self, arm: Hashable, pose: Placement, torso: float, near: Sequence[float]) -> Iterator[dict[str, float]]:
         """Positions of an arm's joints with which its tool is at a pose in the frame of the base: first what is found from a posture."""
-        solver, wanted = self._wanted(arm, pose, torso)
-        known = dict(zip(self.parts.arms[arm].joints, near, strict=True))
+        parts, machine = self.parts.arms[arm], self.machine
+        solver = solver_of(machine.description, parts.base, parts.tip)
+        position, rotation = machine.skeleton.pose(machine.skeleton.positions({self.parts.torso: torso}), parts.base)
+        wanted = Placement(position, rotation).inverse() @ (pose @ parts.tool.inverse())
+        known = dict(zip(parts.joints, near, strict=True))
         first = np.array([known[joint] for joint in solver.joints])
         for answer in solver.solutions(wanted.position, wanted.rotation, first):
             yield {joint: self._nearest(joint, float(value), known[joint]) for joint, value in zip(solver.joints, answer, strict=True)}
@@ -262,12 +254,6 @@ class PhysicalRobot(SimulatedRobot):
                 found = [before | answer for before in found for answer in answers]
             postures = [np.array([posture[joint] for joint in joints]) for posture in found]
             yield from sorted(postures, key=lambda posture: float(np.abs(posture - now).max()))
-
-    def _heights_for(self, goals: Mapping[Hashable, Placement]) -> list[float]:
-        """Heights of the torso to try with a line: first as it is, then raised as much as the tools, so that arms stay as they are."""
-        now, *others = self._torso_heights()
-        rise = float(np.mean([goal.position[2] - self._tool(arm).position[2] for arm, goal in goals.items()]))
-        return [now, self.machine.description.joints[self.parts.torso].clamped(now + rise), *others]
 
     def _torso_heights(self) -> list[float]:
         limits = self.machine.description.joints[self.parts.torso]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,8 +24,9 @@ class Trajectory:
     def __init__(self, joints: Sequence[str], postures: Sequence[np.ndarray] | np.ndarray, speeds: np.ndarray) -> None:
         self.joints, self.postures = tuple(joints), np.asarray(postures, float)
         lengths = (np.abs(np.diff(self.postures, axis=0)) / speeds).max(axis=1)
-        self._moments = np.concatenate([[0.0], np.cumsum(lengths)])
-        self._straight = float(self._moments[-1])
+        self._moments: list[float] = [0.0, *np.cumsum(lengths).tolist()]
+        self._steps = np.diff(self.postures, axis=0)
+        self._straight = self._moments[-1]
         self.seconds = self._straight + min(SOFT, self._straight)
         self.passed = 0.0
 
@@ -43,10 +45,10 @@ class Trajectory:
         if self.done:
             return self.postures[-1]
         way = self._way(self.passed)
-        number = min(int(np.searchsorted(self._moments, way, "right")), len(self._moments) - 1)
+        number = min(bisect_right(self._moments, way), len(self._moments) - 1)
         before, next_ = self._moments[number - 1], self._moments[number]
         part = (way - before) / (next_ - before) if next_ > before else 1.0
-        return self.postures[number - 1] + part * (self.postures[number] - self.postures[number - 1])
+        return self.postures[number - 1] + part * self._steps[number - 1]
 
     def _way(self, time: float) -> float:
         """The part of the straight time that has been covered: speed grows evenly at first and falls evenly at last."""

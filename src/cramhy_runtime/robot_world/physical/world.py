@@ -138,8 +138,11 @@ class PhysicalWorld(World):
         engine.step(seconds)
         engine.read()
         self._placed = False
-        self._since = 0 if engine.trajectories else self._since + 1
-        self._still = self._still + 1 if engine.at_rest() and not engine.trajectories else 0
+        if engine.trajectories:
+            self._since = self._still = 0
+        else:
+            self._since += 1
+            self._still = self._still + 1 if engine.at_rest() else 0
         shown.changed(self)
 
     @property
