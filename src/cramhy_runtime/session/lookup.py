@@ -22,6 +22,9 @@ from cramhy_runtime.languages.commonlisp.evaluation.function_facts import plain
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.tools.operators_around import TOKEN
 
+from cramhy_runtime.languages import operators
+from cramhy_runtime.languages.operators import operator_of
+
 from .arglists import symbol_named
 
 MOST_USES = 200
@@ -72,6 +75,9 @@ def definitions_of(symbol):
                 found += _methods(definition)
             elif definition is not None:
                 found += place_of_function(definition, f"({kind} {symbol.name})")
+    operator = operator_of(symbol)
+    if operator is not None:
+        found += _of_operator(operator)
     # Code of a macro or a method does not know its line as well as the text does.
     in_text = in_texts(symbol_name(symbol))
     files = {each.file for each in in_text}
@@ -91,6 +97,19 @@ def place_of_function(function, label=None):
     if filename.endswith(".py"):
         shown = f"(PYTHON {function.__module__}.{code.co_qualname})" if label is None else label
     return [place(shown, filename, line, _column(filename, line))]
+
+
+def _of_operator(operator):
+    """[`Place`] of the row that declares an operator of the plan language."""
+    folder = os.path.dirname(operators.__file__)
+    row = re.compile(rf"""^\s*\(?['"]\((?:[\w-]*::)?{re.escape(operator.name.lower())}[\s)]""")
+    for filename in sorted(os.listdir(folder)):
+        path = os.path.join(folder, filename)
+        if filename.endswith(".py"):
+            for number, line in enumerate(text_lines(path), 1):
+                if row.match(line):
+                    return [place(f"(OPERATOR {operator.name})", path, number, _column(path, number))]
+    return []
 
 
 def _column(filename, line):
