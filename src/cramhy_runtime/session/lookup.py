@@ -67,17 +67,15 @@ def definitions(name, package):
 
 def definitions_of(symbol):
     """The `Place`s where ``symbol`` is defined: as a function, a macro, methods, a variable, a class and so on."""
-    found = []
+    operator = operator_of(symbol)
+    found = [] if operator is None else _of_operator(operator)
     if isinstance(symbol, Symbol):
         function = None if isinstance(symbol.function, UndefinedFunction) else symbol.function
         for kind, definition in (("DEFMACRO", symbol.macro), ("DEFUN", function), ("DEFSETF", symbol.setf_function)):
             if isinstance(definition, GenericFunction):
                 found += _methods(definition)
-            elif definition is not None:
+            elif definition is not None and not (operator is not None and kind == "DEFMACRO"):  # its macro is made of the row
                 found += place_of_function(definition, f"({kind} {symbol.name})")
-    operator = operator_of(symbol)
-    if operator is not None:
-        found += _of_operator(operator)
     # Code of a macro or a method does not know its line as well as the text does.
     in_text = in_texts(symbol_name(symbol))
     files = {each.file for each in in_text}
