@@ -128,6 +128,8 @@ def test_definitions_of_methods(emacs, files):
     [
         ("roslisp:publish", "topics.py", "def publish("),
         ("mapcar", "lists.py", "def mapcar("),
+        ("cpl:par", "plan_language.py", '("(par form...)"'),
+        ("cpl:with-failure-handling", "plan_language.py", ""),
         ("cramhy_runtime.kernel.sleep", "active.py", "def sleep("),
     ],
 )

@@ -22,6 +22,9 @@ from cramhy_runtime.languages.commonlisp.evaluation.function_facts import plain
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.tools.operators_around import TOKEN
 
+from cramhy_runtime.languages import operators
+from cramhy_runtime.languages.operators import operator_of
+
 from .arglists import symbol_named
 
 MOST_USES = 200
@@ -64,13 +67,14 @@ def definitions(name, package):
 
 def definitions_of(symbol):
     """The `Place`s where ``symbol`` is defined: as a function, a macro, methods, a variable, a class and so on."""
-    found = []
+    operator = operator_of(symbol)
+    found = [] if operator is None else _of_operator(operator)
     if isinstance(symbol, Symbol):
         function = None if isinstance(symbol.function, UndefinedFunction) else symbol.function
         for kind, definition in (("DEFMACRO", symbol.macro), ("DEFUN", function), ("DEFSETF", symbol.setf_function)):
             if isinstance(definition, GenericFunction):
                 found += _methods(definition)
-            elif definition is not None:
+            elif definition is not None and not (operator is not None and kind == "DEFMACRO"):  # its macro is made of the row
                 found += place_of_function(definition, f"({kind} {symbol.name})")
     # Code of a macro or a method does not know its line as well as the text does.
     in_text = in_texts(symbol_name(symbol))
@@ -91,6 +95,19 @@ def place_of_function(function, label=None):
     if filename.endswith(".py"):
         shown = f"(PYTHON {function.__module__}.{code.co_qualname})" if label is None else label
     return [place(shown, filename, line, _column(filename, line))]
+
+
+def _of_operator(operator):
+    """[`Place`] of the row that declares an operator of the plan language."""
+    folder = os.path.dirname(operators.__file__)
+    row = re.compile(rf"""^\s*\(?['"]\((?:[\w-]*::)?{re.escape(operator.name.lower())}[\s)]""")
+    for filename in sorted(os.listdir(folder)):
+        path = os.path.join(folder, filename)
+        if filename.endswith(".py"):
+            for number, line in enumerate(text_lines(path), 1):
+                if row.match(line):
+                    return [place(f"(OPERATOR {operator.name})", path, number, _column(path, number))]
+    return []
 
 
 def _column(filename, line):
