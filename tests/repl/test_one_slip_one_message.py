@@ -116,6 +116,11 @@ class TestUnknownNames:
         assert messages(text) == 2 and "The variable X is defined but never used." in text
         assert "cramhy: UNBOUND-VARIABLE\n  The variable ANIMALS is unbound.\n" in text and "(def-rules ...) is taken for a call" in text
 
+    def test_names_that_packages_of_sbcl_have_too_are_told_of_as_those_of_the_plan_language(self, said):
+        said("(sb-ext:gc)")  # makes the package
+        text = said("(defun plan (f)\n  (top-level (seq (wait-for f)\n    (pursue (fl-funcall f)))))")
+        assert "cpl:wait-for" in text and "sb-ext" not in text
+
     def test_a_text_in_the_wrong_package_is_told_once(self, said):
         text = said("(defun plan (f)\n  (top-level (seq (wait-for f)\n    (pursue (fl-funcall f)))))")
         assert text == (

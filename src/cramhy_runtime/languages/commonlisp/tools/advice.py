@@ -233,12 +233,15 @@ def is_operator(symbol):
 
 
 def elsewhere(symbol):
-    """The operator of the same name that another package exports to users, or ``None``."""
+    """The operator of the same name that another package exports to users, or ``None``. SBCL's packages come last."""
+    last = None
     for package in all_packages():
         other = package.external.get(symbol.name)
         if isinstance(other, Symbol) and other is not symbol and is_operator(other) and package.name != "CRAMHY":
-            return other
-    return None
+            if not package.name.startswith("SB-"):
+                return other
+            last = last or other
+    return last
 
 
 def _users_package_with(symbol):
