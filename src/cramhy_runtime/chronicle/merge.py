@@ -11,7 +11,7 @@ from cramhy_runtime.ros.messages import message_class_exact
 from cramhy_runtime.turtlesim.strokes import PIECE, Ink
 from cramhy_runtime.turtlesim.dimensions import EXTENT
 
-from . import robot_sums
+from . import robot_merge
 
 
 class Things:
@@ -192,16 +192,16 @@ TOPICS = {
     "tasks": "/cramhy/tasks",
     "fluents": "/cramhy/fluents",
     "modules": "/cramhy/process_modules",
-    "robots": robot_sums.TOPIC,
+    "robots": robot_merge.TOPIC,
 }
 TYPES = {
     "world": "cramhy_msgs/World",
     "tasks": "cramhy_msgs/TaskTree",
     "fluents": "cramhy_msgs/Fluents",
     "modules": "cramhy_msgs/ProcessModules",
-    "robots": robot_sums.TYPE,
+    "robots": robot_merge.TYPE,
 }
-CHANGES = {"world": WorldChanges, "tasks": TaskTrees, "fluents": FluentLists, "modules": Latest, "robots": robot_sums.RobotChanges}
+CHANGES = {"world": WorldChanges, "tasks": TaskTrees, "fluents": FluentLists, "modules": Latest, "robots": robot_merge.RobotChanges}
 
 
 class State:
@@ -213,7 +213,7 @@ class State:
             "tasks": TaskTrees(whole=True),
             "fluents": FluentLists(whole=True),
             "modules": Latest(),
-            "robots": robot_sums.RobotState(),
+            "robots": robot_merge.RobotState(),
         }
 
     def add(self, kind, message):
