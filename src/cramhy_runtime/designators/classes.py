@@ -354,6 +354,8 @@ def make_effective_designator(parent, *, new_properties=None, data_object=None, 
 
     timestamp: seconds; the default is the present time.
     """
+    if not isinstance(parent, Designator):
+        return type_error(parent, "DESIGNATOR")
     designator = new(parent.__class__, new_properties if new_properties is not None else parent.description)
     designator.data = data_object
     designator.effective = True

@@ -13,7 +13,7 @@ from cramhy_runtime import kernel
 
 from ..cpl.task_variables import inherit
 from cramhy_runtime.ground.condition_types import SimpleTypeError
-from cramhy_runtime.ground.conditions import error, restart_case, type_error
+from cramhy_runtime.ground.conditions import as_name, error, restart_case, type_error
 from cramhy_runtime.ground.data import Cons, UndefinedFunction, list_from, one, truth
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.source_places import circumstance
@@ -68,7 +68,7 @@ class Registry:
         """Remove ``name``. With ``forget``, forget too that it is disabled."""
         self.entries = [entry for entry in self.entries if entry[1] is not name]
         if forget:
-            self.disabled.discard(name)
+            self.disabled.discard(as_name(name))
 
     def all(self):
         """All functions by ascending priority, disabled ones too, as a Lisp list. A name without a function stands for itself."""
@@ -127,22 +127,22 @@ def delete_location_validation_function(function_name):
 
 def disable_location_generator_function(function_name):
     """Do not ask a generator until it is enabled."""
-    generators.disabled.add(function_name)
+    generators.disabled.add(as_name(function_name))
 
 
 def enable_location_generator_function(function_name):
     """Ask a disabled generator again."""
-    generators.disabled.discard(function_name)
+    generators.disabled.discard(as_name(function_name))
 
 
 def disable_location_validation_function(function_name):
     """Do not ask a validator until it is enabled."""
-    validators.disabled.add(function_name)
+    validators.disabled.add(as_name(function_name))
 
 
 def enable_location_validation_function(function_name):
     """Ask a disabled validator again."""
-    validators.disabled.discard(function_name)
+    validators.disabled.discard(as_name(function_name))
 
 
 def location_solutions(designator):

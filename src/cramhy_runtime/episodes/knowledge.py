@@ -22,7 +22,7 @@ from cramhy_runtime.cpl.forms.plans import plan_property
 from ..cpl.statuses import DEAD
 from ..cpl.task_variables import define_task_state, inherit
 from cramhy_runtime.cpl.tasks.tasks import AbstractTask
-from cramhy_runtime.ground.conditions import SimpleError, error, type_error
+from cramhy_runtime.ground.conditions import SimpleError, as_name, error, type_error
 from cramhy_runtime.ground.data import UNBOUND, DoubleFloat
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import near_names
@@ -154,7 +154,7 @@ def checked(episode, or_nil=False):
 
 def get_top_level_episode_knowledge(name):
     """The episode of the last run of the top-level plan ``name`` (nil: of the last without a name); an empty one before its first run."""
-    if name in finished_plans.by_name:
+    if as_name(name) in finished_plans.by_name:
         return episode_of(finished_plans.by_name[name])
     if plan_property(name, "PLAN-TYPE") is TOP_LEVEL_PLAN:
         return register_top_level_episode_knowledge(name)
@@ -172,7 +172,7 @@ def get_top_level_episode_knowledge(name):
 
 def register_top_level_episode_knowledge(name):
     """Let an empty episode stand under ``name``; returns it."""
-    finished_plans.by_name[name] = episode = LiveEpisodeKnowledge(name)
+    finished_plans.by_name[as_name(name)] = episode = LiveEpisodeKnowledge(name)
     return episode
 
 

@@ -399,6 +399,11 @@ def type_error(datum: object, expected: object, context: str = "") -> NoReturn:
     return error(condition)
 
 
+def as_name(thing):
+    """``thing`` as the key of a table of names. A vector, which a ``dict`` of Python refuses, is a type-error."""
+    return thing if thing.__class__.__hash__ is not None else type_error(thing, "SYMBOL")
+
+
 def unbound_variable(symbol):
     """Signal that ``symbol`` has no value. Restarts: CONTINUE (look again), USE-VALUE, STORE-VALUE; returns the value."""
 

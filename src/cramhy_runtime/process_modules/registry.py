@@ -14,7 +14,7 @@ from cramhy_runtime import kernel
 from cramhy_runtime.cpl.failures.failure_types import opened
 from cramhy_runtime.cpl.tasks.pausing import pause
 from ..cpl.task_variables import inherit
-from cramhy_runtime.ground.conditions import SimpleError, error, from_python
+from cramhy_runtime.ground.conditions import SimpleError, as_name, error, from_python
 from cramhy_runtime.ground.data import Symbol, list_from
 from cramhy_runtime.ground.source_places import describe, locate
 from cramhy_runtime.ground.packages import near_names
@@ -91,7 +91,7 @@ def running() -> Registry:
 
 def register_process_module(name: Symbol) -> Cons | None:
     """Note that ``name`` is the class of a process module. Returns the list of such names, the newest first."""
-    _defined.pop(name, None)
+    _defined.pop(as_name(name), None)
     _defined[name] = True
     return get_process_module_names()
 
@@ -108,7 +108,7 @@ def get_process_module_names() -> Cons | None:
 
 def get_running_process_module(name: Symbol) -> AbstractProcessModule | None:
     """The running module called ``name``, or nil."""
-    return running().modules.get(name)
+    return running().modules.get(as_name(name))
 
 
 def get_running_process_module_name(module):
@@ -269,7 +269,7 @@ def wait_for_process_module_running(process_module: Symbol | AbstractProcessModu
     until = None if timeout is None else kernel.now() + timeout
 
     def found():
-        return process_module in registry.modules or any(module is process_module for module in registry.modules.values())
+        return as_name(process_module) in registry.modules or any(module is process_module for module in registry.modules.values())
 
     registry.waiters.append(me)
     try:

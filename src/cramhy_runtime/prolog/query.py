@@ -14,7 +14,7 @@ All solutions are computed on demand, so a query that is dropped costs nothing m
 from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol
+from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol, python_list
 
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.hooks import Hook
@@ -174,10 +174,14 @@ def query_var(var, function, query, *args):
     return None if solutions is None else var_value(var, solutions.car)
 
 
+def _pairs(bdgs):
+    return [pair if isinstance(pair, Cons) else type_error(pair, "CONS") for pair in python_list(bdgs)]
+
+
 def filter_bindings(form, bdgs, initial_bdgs=None):
     """The bindings of the variables of ``form`` (and of ``initial_bdgs``) in ``bdgs``, in front of ``initial_bdgs``."""
     symbols = [symbol for symbol in variables_of(form) if symbol is not ANONYMOUS]
-    symbols += [pair.car for pair in initial_bdgs or () if pair.car not in symbols]
+    symbols += [pair.car for pair in _pairs(initial_bdgs) if pair.car not in symbols]
     result = initial_bdgs
     for symbol in reversed(symbols):
         value = var_value(symbol, bdgs)

@@ -59,7 +59,7 @@ class RosMessage:
     attributes: dict[str, str] = {}
     initargs: dict[str, str] = {}
     keywords: tuple[Symbol, ...] = ()
-    lisp_symbol: Symbol = None  # type: ignore[assignment]  # every type that is defined has both
+    lisp_symbol: Symbol  # of each type that is defined; the root has only ``lisp_name``
     definition: Definition = None  # type: ignore[assignment]
 
     if TYPE_CHECKING:  # the fields of each type stand in its definition
@@ -478,7 +478,7 @@ def service_type(designator: ServiceName) -> ServiceType:
         if found is not None:
             return found
         advice = _types_hint("rossrv", _services, text)
-    found = named(designator)
+    found = named(conditions.as_name(designator))
     if not isinstance(found, ServiceType):
         advice = advice or 'A service type is a symbol, such as turtlesim-srv:Spawn, or a text, such as "turtlesim/Spawn".'
         return no_applicable_method("ROSLISP-MSG-PROTOCOL:SERVICE-RESPONSE-TYPE", len(_services), designator, advice=advice)

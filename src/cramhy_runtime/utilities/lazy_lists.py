@@ -218,6 +218,10 @@ def _cons(thing):
     return thing if thing.__class__ is Cons else type_error(thing, "LIST")
 
 
+def _count(thing):
+    return thing if thing.__class__ is int else type_error(thing, "INTEGER")
+
+
 def lazy_car(ll):
     """The first element; ``nil`` for ``nil``."""
     return None if ll is None else _cons(ll).car
@@ -235,7 +239,7 @@ def lazy_cdr(ll):
 
 def lazy_elt(ll, index):
     """Element ``index``, counted from 0; ``nil`` past the end."""
-    for _ in range(index):
+    for _ in range(_count(index)):
         kernel.checkpoint()
         ll = lazy_cdr(ll)
     return lazy_car(ll)
@@ -314,7 +318,7 @@ def _followed_by(part, generate_rest):
         more = lazy_cdr(part)
         return generate_rest() if more is None else _followed_by(more, generate_rest)
 
-    return Cons(part.car, tail(rest))
+    return Cons(lazy_car(part), tail(rest))
 
 
 def lazy_filter(pred, ll):
@@ -358,14 +362,14 @@ def lazy_append(l_1=None, *further_lists):
 
 def lazy_take(n, ll):
     """The first ``n`` elements, lazily; the source is computed only as far as it is read."""
-    if n <= 0 or ll is None:
+    if _count(n) <= 0 or ll is None:
         return None
-    return Cons(ll.car, tail(lambda: lazy_take(n - 1, lazy_cdr(ll) if n > 1 else None)))
+    return Cons(lazy_car(ll), tail(lambda: lazy_take(n - 1, lazy_cdr(ll) if n > 1 else None)))
 
 
 def lazy_skip(n, ll):
     """The list without its first ``n`` elements. (The original drops one element whatever ``n`` is.)"""
-    for _ in range(n):
+    for _ in range(_count(n)):
         kernel.checkpoint()
         ll = lazy_cdr(ll)
     return ll
@@ -389,7 +393,7 @@ def lazy_flatten(list_):
                 return Cons(cell.car, tail(lambda: step((lazy_cdr(cell), outer))))
         return None
 
-    return step((list_, None))
+    return step((None if list_ is None else _cons(list_), None))
 
 
 def lazy_rests(list_):

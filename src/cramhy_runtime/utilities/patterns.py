@@ -14,7 +14,7 @@ import itertools
 from cramhy_runtime.ground import equality
 from cramhy_runtime.kernel.active import checkpoint
 from cramhy_runtime.ground.conditions import error, type_error, warn
-from cramhy_runtime.ground.data import Cons, Keyword, LispString, MultipleValues, Symbol, conses, list_from, one, truth
+from cramhy_runtime.ground.data import Cons, Keyword, LispString, MultipleValues, Symbol, conses, list_from, one, python_list, truth
 from cramhy_runtime.ground.functions import function_of
 
 from .lazy_lists import LazyTail, lazy_cdr
@@ -112,8 +112,8 @@ def entry(var, bdgs):
     """The pair for ``var`` in an association list, or ``None``."""
     while bdgs is not None:
         checkpoint()
-        pair = bdgs.car
-        if pair is not None and pair.car is var:
+        pair = bdgs.car if bdgs.__class__ is Cons else type_error(bdgs, "LIST")
+        if pair is not None and (pair if pair.__class__ is Cons else type_error(pair, "LIST")).car is var:
             return pair
         bdgs = lazy_cdr(bdgs)
     return None
@@ -248,7 +248,9 @@ def _patterns_eq(pattern_1, pattern_2):
 def bindings_equal(lhs, rhs, *, test=None):
     """Whether every binding of ``lhs`` has an equal value in ``rhs``; not the reverse."""
     function = equal if test is None else function_of(test)
-    for pair in lhs or ():
+    for pair in python_list(lhs):
+        if pair.__class__ is not Cons:
+            return type_error(pair, "CONS")
         other = entry(pair.car, rhs)
         if not truth(one(function(pair.cdr, None if other is None else other.cdr))):
             return None

@@ -125,7 +125,7 @@ def compare(x, y, *, test=None, key=None):
 
 def _extremum(seq, test, key):
     key_of, best, best_key, started = _or_default(key, identity), None, None, False
-    for item in seq or ():
+    for item in python_list(seq):
         value = one(key_of(item))
         if not started or truth(one(test(value, best_key))):
             best, best_key, started = item, value, True

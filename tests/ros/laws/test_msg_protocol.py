@@ -122,3 +122,9 @@ def test_a_node_of_a_plan_tree_is_made(lisp):
                      (list (walker:plan-tree-node-p child) (eq (walker:plan-tree-node-parent (walker:copy-plan-tree-node child)) root)))""")
         == ("(T T)")
     )
+
+
+def test_the_root_of_all_messages_has_a_name(bytes_):
+    bytes_("(defvar *root* (find-class 'roslisp-msg-protocol:ros-message))")
+    assert bytes_("(eq (class-name *root*) 'roslisp-msg-protocol:ros-message)") == "T"
+    assert bytes_("(equal (sb-mop:class-direct-superclasses (find-class 'turtlesim-msg:pose)) (list *root*))") == "T"

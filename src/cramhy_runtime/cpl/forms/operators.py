@@ -20,6 +20,7 @@ from cramhy_runtime.ground import condition_types as types
 from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import Cons, list_from, one, truth
 from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.functions import function_of
 from ..tree import finished_plans
 from ..tasks.branches import branch_tasks, run, run_forms, run_one
 from ..failures.failure_types import CompositeFailure, opened
@@ -327,5 +328,6 @@ def unwind_and_teardown(*, reason="Manual teardown."):
 
 def mapcar_clean(function, first, *more):
     """``(mapcar-clean function list...)``: the results of ``mapcar`` without the nils. Repaired: it works with several lists."""
-    results = (one(function(*arguments)) for arguments in zip(*(_list(lst) for lst in (first, *more)), strict=False))
+    call = function_of(function)
+    results = (one(call(*arguments)) for arguments in zip(*(_list(lst) for lst in (first, *more)), strict=False))
     return list_from([result for result in results if truth(result)])

@@ -17,7 +17,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.ground import condition_types as types
 from cramhy_runtime.ground.condition_types import shown
-from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.ground.conditions import as_name, error
 from cramhy_runtime.ground.data import UNSUPPLIED, list_from, one, python_list, truth
 from cramhy_runtime.ground.packages import is_symbol, redefined, symbol_name
 from ..failures.failure_types import PolicyCheckConditionMet, PolicyInitFailed, PolicyNotFound
@@ -104,7 +104,7 @@ def define_policy(name, parameters=UNSUPPLIED, description=None, **clauses):
 
 def named_policy(name):
     """The policy called ``name``. If there is none, fail with ``policy-not-found``."""
-    policy = _named.get(name)
+    policy = _named.get(as_name(name))
     if policy is not None:
         return policy
     return fail_with_advice(

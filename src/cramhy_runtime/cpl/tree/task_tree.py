@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.utilities import patterns
-from cramhy_runtime.ground.conditions import error, type_error
+from cramhy_runtime.ground.conditions import as_name, error, type_error
 from cramhy_runtime.ground.data import Cons, lisp_list, list_from, python_list, truth
 from cramhy_runtime.ground.packages import keyword
 from . import finished_plans
@@ -303,7 +303,7 @@ def register_task_code(sexp, function, *, path=None, task_tree=None, replace_reg
 
 def get_top_level_task_tree(name):
     """The tree of the named top-level. It is empty at first and stays after the run. Source: cpl.md 5.4."""
-    tree = _named_trees.get(name)
+    tree = _named_trees.get(as_name(name))
     if tree is None:
         tree = _named_trees[name] = TaskTreeNode()
     return tree
@@ -311,12 +311,12 @@ def get_top_level_task_tree(name):
 
 def named_tree(name):
     """The tree stored under ``name``, or ``None``."""
-    return _named_trees.get(name)
+    return _named_trees.get(as_name(name))
 
 
 def remove_top_level_task_tree(name):
     """Forget the tree stored under ``name``."""
-    _named_trees.pop(name, None)
+    _named_trees.pop(as_name(name), None)
 
 
 @of(TaskTreeNode)

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from cramhy_runtime.kernel.images import per_image
-from cramhy_runtime.ground.conditions import SimpleError, error, style_warn
+from cramhy_runtime.ground.conditions import SimpleError, as_name, error, style_warn
 from cramhy_runtime.ground.data import Cons, list_from, python_list
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.equality import eql_key
@@ -278,7 +278,7 @@ class Production:
 
 def register_production(name, definition):
     """``(register-production name definition)``: define a production by its list of patterns. Returns it. A redefinition warns."""
-    if name in _definitions.value:
+    if as_name(name) in _definitions.value:
         remove_production(name)
         style_warn("Redefining production `~S'.", name)
     production = _definitions.value[name] = Production(name, python_list(definition))
@@ -287,7 +287,7 @@ def register_production(name, definition):
 
 def remove_production(name):
     """``(remove-production name)``: forget a production, so that its handlers are not called any more. Returns nil if there is none."""
-    production = _definitions.value.pop(name, None)
+    production = _definitions.value.pop(as_name(name), None)
     if production is not None:
         _network.drop(production)
     return True if production else None
@@ -311,7 +311,7 @@ def with_productions(productions, body):
 
 
 def _production(name):
-    found = _definitions.value.get(name)
+    found = _definitions.value.get(as_name(name))
     return found if found is not None else error(SimpleError("Production `~a' unknown.", name))
 
 

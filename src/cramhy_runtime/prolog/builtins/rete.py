@@ -278,6 +278,8 @@ def clear_alpha_network():
 
 def alpha_network_size(node=None):
     """``(alpha-network-size &optional node)``: the number of nodes below ``node`` (default: the root), itself included."""
+    if not (node is None or isinstance(node, Node)):
+        return type_error(node, _ALPHA_NODE)
     return (node or memory.root).size()
 
 
@@ -318,7 +320,11 @@ def rete_prove(expr, bdgs=None):
             if found is not None:
                 yield from join(patterns.cdr, _pairs(found, bindings))
 
-    return from_iterator(join(expr, bdgs)) if expr is not None else Cons(bdgs)
+    if expr is None:
+        return Cons(bdgs)
+    if list_end(expr) is not None:
+        return type_error(expr, "LIST")
+    return from_iterator(join(expr, bdgs))
 
 
 @predicate("CRAM-PROLOG::RETE-HOLDS")

@@ -4,22 +4,22 @@ Every node is generated for a *destination*: its value is wanted as an expressio
 its effect is wanted. Lisp is made of expressions and Python partly of statements, so an expression may need statements before
 it; where an argument does, the arguments before it are first saved in variables, because Lisp evaluates from left to right.
 
-Exits are in ``generate_exits.py``, function definitions in ``generate_functions.py``.
+Exits are in ``generate_exits.py``, function definitions in ``generate_functions.py``, texts in ``generate_texts.py``.
 """
 
 from __future__ import annotations
 
 from cramhy_runtime.ground.data import Symbol, UndefinedFunction
-from ..format.format_templates import SMALL, template
 from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym
 from . import core, nodes
 from .constants import Constants, float_model
 from .core import List, expression, word
 from .destinations import EFFECT, FIRST_OF_VALUES, NONE, TRUE, VALUE, VALUES, Destination
-from .facts import NUMBERS, study, walk
+from .facts import MINUS, NUMBERS, PLUS, study, walk
 from .generate_exits import ExitGenerator
 from .generate_functions import FunctionGenerator
 from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS, STEPS, OperatorGenerator
+from .generate_texts import TextGenerator
 
 
 COLLECT, FORMAT, GETHASH = map(sym, "CRAMHY::COLLECT FORMAT GETHASH".split())
@@ -29,7 +29,7 @@ DISPATCHERS = {"UnaryGeneric": 1, "FirstOfTwo": 2}
 """Kinds of generic functions that look only at the class of the first of so many arguments; the caller's code may ask them for it."""
 
 
-class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
+class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerator):
     """Generates one Python function at a time; `toplevel` is the entry."""
 
     def __init__(self, constants=None):
@@ -264,39 +264,6 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
             model = expression(function, *models)
         return self.finish(self.positioned(model, node), node, destination)
 
-    def text(self, node, arguments):
-        """``(format nil "..." ...)`` with a simple control: Python's formatting, if all arguments are atoms; else ``None``."""
-        if len(arguments) < 2 or any(argument.__class__ is not nodes.Constant for argument in arguments[:2]):
-            return None
-        control = arguments[1].value
-        if arguments[0].value is not None or control.__class__ is not str:
-            return None
-        found = template(control)
-        if found is None or len(found[1]) != len(arguments) - 2 or not found[1]:
-            return None
-        names = self.stable_names(self.arguments(arguments[2:]))
-        tests, parts = [], []
-        for kind, name in zip(found[1], names, strict=True):
-            if kind == "A" and name.__class__ is str:
-                parts.append(name)
-                continue
-            part, text = word(self.temporary()), self.call("text" + kind, name)
-            if kind == "A":
-                is_text = expression(word("is"), expression(word("."), name, word("__class__")), word("Lstr"))
-                text = expression(word("if"), is_text, name, text)
-            elif kind == "D":  # so small that Python surely prints it
-                is_integer = expression(word("is"), expression(word("."), name, word("__class__")), word("Lint"))
-                small = expression(word("<"), -SMALL, name, SMALL)
-                text = expression(word("if"), expression(word("and"), is_integer, small), name, text)
-            tests.append(expression(word("is-not"), expression(word("setx"), part, text), NONE))
-            parts.append(part)
-        filled = expression(word("Lfresh"), expression(word("%"), found[0], core.Tuple(parts)))
-        if not tests:
-            return filled
-        general = expression(word(self.constants.name("function", node.symbol)), NONE, control, *names)
-        simple = tests[0] if len(tests) == 1 else expression(word("and"), *tests)
-        return expression(word("if"), simple, filled, self.positioned(general, node))
-
     def stable_names(self, models):
         """``models``, evaluated and named as far as that is needed to use them twice."""
         done = []
@@ -487,7 +454,30 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator):
     def bind_variable(self, variable, value):
         self.assign(variable.name, self.call("cell", value) if variable.boxed else value)
 
+    @staticmethod
+    def modification(node):
+        """The body of ``(let ((delta value)) (setq place (+ place delta)))``, as ``incf`` makes it, with the value in place of delta.
+
+        ``None`` if the body is another, or if the value may change the place: then the sum must read the place after it.
+        """
+        (variable, value), body = node.bindings[0], node.body
+        if len(node.bindings) > 1 or isinstance(variable, Symbol) or body.__class__ is not nodes.SetLocal:
+            return None
+        call, place = body.value, body.variable
+        if call.__class__ is not nodes.Call or call.symbol not in (PLUS, MINUS) or len(call.arguments) != 2:
+            return None
+        if [each.variable if each.__class__ is nodes.LocalVariable else None for each in call.arguments] != [place, variable]:
+            return None
+        if variable.reads != 1 or variable.writes or place.captured:
+            return None
+        if any(item.__class__ is nodes.SetLocal and item.variable is place for item in walk([value])):
+            return None
+        call.arguments[1] = value
+        return body
+
     def Let(self, node, destination):
+        if node.bindings and (body := self.modification(node)) is not None:
+            return self.gen(body, destination)
         bindings = []
         for variable, value in node.bindings:
             plain = not isinstance(variable, Symbol) and value.__class__ is nodes.LocalVariable

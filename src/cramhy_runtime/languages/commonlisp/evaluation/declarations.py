@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from ..compiler.declared_types import checkable
 from cramhy_runtime.ground.conditions import program_error, type_error, warn
-from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, list_from
+from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, list_from, python_list
 from cramhy_runtime.ground.packages import sym
 from ..packages.package_errors import check_function_name
 from ..types.types import is_known_type
@@ -42,7 +42,7 @@ def _proclaim(specifier):
         return program_error("malformed proclamation specifier: ~S", specifier)
     if not isinstance(specifier, Cons):
         return type_error(specifier, "LIST")
-    kind, names = specifier.car, list(specifier.cdr or ())
+    kind, names = specifier.car, python_list(specifier.cdr)
     if kind is sym("SPECIAL"):
         for symbol in names:
             proclaim_special(symbol)

@@ -8,10 +8,13 @@ templates of constant controls in place.
 
 from __future__ import annotations
 
+import re
+
 from cramhy_runtime.ground.data import Keyword
 from ..printer.print_controls import PRINT_CASE, PRINT_CIRCLE, PRINT_BASE, PRINT_RADIX, PRINT_READABLY, UPCASE
 from ..printer.print_names import symbol_text
 from ..printer.printer import PRINT_PPRINT_DISPATCH, atom_text
+from ..reader.readtables import READTABLE
 from .format_parser import FormatError, parse
 
 SMALL = 10**18
@@ -50,6 +53,16 @@ def template(control):
     return found
 
 
+def with_known(text, known):
+    """The text of a template with the arguments put in that are ``known`` (``None``: not known, its ``%s`` stays)."""
+    rest = iter(known)
+    return re.sub("%%|%s", lambda match: _escaped(next(rest)) if match[0] == "%s" else "%%", text)
+
+
+def _escaped(text):
+    return "%s" if text is None else text.replace("%", "%%")
+
+
 def princ_atom(obj):
     """What ``~A`` makes of an atom; ``None`` for other objects."""
     if obj.__class__ is str:
@@ -61,7 +74,7 @@ def princ_atom(obj):
 
 def prin1_atom(obj):
     """What ``~S`` makes of an atom; ``None`` for other objects."""
-    if obj.__class__ is Keyword and PRINT_CASE.value is UPCASE and PRINT_BASE.value == 10:
+    if obj.__class__ is Keyword and PRINT_CASE.value is UPCASE and PRINT_BASE.value == 10 and READTABLE.value.case is UPCASE:
         text = _keywords.get(obj)
         if text is None:
             text = _keywords[obj] = symbol_text(obj)

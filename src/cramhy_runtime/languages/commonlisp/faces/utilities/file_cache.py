@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import os
 
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import one
+from cramhy_runtime.ground.conditions import error, type_error
+from cramhy_runtime.ground.data import LispString, one
 
 _values: dict = {}
 
 
 def _date(file):
-    name = os.path.abspath(os.fspath(file))
+    if not isinstance(file, (str, LispString, os.PathLike)):
+        return type_error(file, "(OR PATHNAME STRING)")
+    name = os.path.abspath(str(file) if isinstance(file, LispString) else os.fspath(file))
     try:
         status = os.stat(name)
     except OSError as problem:

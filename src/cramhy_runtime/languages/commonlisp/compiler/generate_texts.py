@@ -1,0 +1,61 @@
+"""Code for ``(format nil "..." ...)`` with a simple control: Python's own formatting makes the text."""
+
+from __future__ import annotations
+
+from cramhy_runtime.ground.data import Keyword
+from . import core, nodes
+from ..format.format_templates import SMALL, template, with_known
+from ..printer.print_controls import PRINT_BASE, PRINT_CASE, UPCASE
+from ..printer.print_names import symbol_text
+from ..reader.readtables import READTABLE
+from .core import NONE, expression, word
+
+
+class TextGenerator:
+    """The part of the `Generator` that makes expressions of calls of ``format``."""
+
+    def text(self, node, arguments):
+        """``(format nil "..." ...)`` with a simple control: Python's formatting, if all arguments are atoms; else ``None``."""
+        if len(arguments) < 2 or any(argument.__class__ is not nodes.Constant for argument in arguments[:2]):
+            return None
+        control = arguments[1].value
+        if arguments[0].value is not None or control.__class__ is not str:
+            return None
+        found = template(control)
+        if found is None or len(found[1]) != len(arguments) - 2 or not found[1]:
+            return None
+        names = self.stable_names(self.arguments(arguments[2:]))
+        tests, parts, known = [], [], []
+        for kind, name, argument in zip(found[1], names, arguments[2:], strict=True):
+            if kind == "A" and name.__class__ is str:
+                known.append(name)
+                continue
+            if kind == "S" and argument.__class__ is nodes.Constant and argument.value.__class__ is Keyword:
+                known.append(symbol_text(argument.value))
+                tests.append(self.customary_printing())
+                continue
+            known.append(None)
+            part, text = word(self.temporary()), self.call("text" + kind, name)
+            if kind == "A":
+                is_text = expression(word("is"), expression(word("."), name, word("__class__")), word("Lstr"))
+                text = expression(word("if"), is_text, name, text)
+            elif kind == "D":  # so small that Python surely prints it
+                is_integer = expression(word("is"), expression(word("."), name, word("__class__")), word("Lint"))
+                small = expression(word("<"), -SMALL, name, SMALL)
+                text = expression(word("if"), expression(word("and"), is_integer, small), name, text)
+            tests.append(expression(word("is-not"), expression(word("setx"), part, text), NONE))
+            parts.append(part)
+        text = with_known(found[0], known)
+        filled = expression(word("Lfresh"), expression(word("%"), text, core.Tuple(parts)) if parts else text % ())
+        if not tests:
+            return filled
+        general = expression(word(self.constants.name("function", node.symbol)), NONE, control, *names)
+        simple = tests[0] if len(tests) == 1 else expression(word("and"), *tests)
+        return expression(word("if"), simple, filled, self.positioned(general, node))
+
+    def customary_printing(self):
+        """The test that keywords are printed in upper case and numbers in decimal, as they are unless a program says otherwise."""
+        case, base, readtable = [expression(word("."), self.constant(each), word("value")) for each in (PRINT_CASE, PRINT_BASE, READTABLE)]
+        upper = self.constant(UPCASE)
+        tests = expression(word("is"), case, upper), expression(word("is"), expression(word("."), readtable, word("case")), upper)
+        return expression(word("and"), *tests, expression(word("="), base, 10))
