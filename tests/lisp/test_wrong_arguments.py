@@ -79,6 +79,7 @@ def quiet():
     outputs = [(sym(name), shown) for name in "*STANDARD-OUTPUT* *ERROR-OUTPUT* *TRACE-OUTPUT*".split()]
     both = [(sym(name), TwoWayStream(StringInputStream(""), shown)) for name in "*QUERY-IO* *DEBUG-IO* *TERMINAL-IO*".split()]
     others = [(sym("*STANDARD-INPUT*"), StringInputStream("")), (sym("*PACKAGE*"), COMMON_LISP_USER), (sym("*PRINT-CIRCLE*"), True)]
+    others.append((sym("*READTABLE*"), sym("COPY-READTABLE").function(None)))  # whose characters some of them change
     with binding(*itertools.chain.from_iterable([*outputs, *both, *others])):
         yield
 
