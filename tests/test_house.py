@@ -32,7 +32,7 @@ FLOORS = [
     ["languages"],
     ["session"],
     ["chronicle", "ros_tools", "testing", "robot"],
-    ["view", "repl"],
+    ["view", "repl", "swank"],
     ["cli", "pytest_plugin", "coverage_plugin", "__init__"],
 ]
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
@@ -416,4 +416,4 @@ def test_test_modules_outside_of_packages_have_names_of_their_own():
 
 def test_what_make_test_leaves_out_is_there():
     lines = [line for line in (ROOT / "tests/long_tests.txt").read_text().splitlines() if not line.startswith("#")]
-    assert [line for line in lines if not (ROOT / "tests" / line.partition("::")[0]).is_file()] == []
+    assert [line for line in lines if not list((ROOT / "tests").glob(line.partition("::")[0].split("*")[0] + "*"))] == []

@@ -28,7 +28,7 @@ class Looker:
     """Looks at the active session: every message by kind, what it hears on the topics, and the services."""
 
     def __init__(self):
-        self.told = {kind: [] for kind in ("world", "tasks", "fluents", "modules")}
+        self.told = {kind: [] for kind in ("world", "tasks", "fluents", "modules", "robots")}
         self.heard = {}
         self.wall = 0.0
         self.chronicler = chronicler.active()
@@ -45,7 +45,7 @@ class Looker:
         self.node.subscribe(topic, message_class_exact(ros_type), heard.append)
         return heard
 
-    def call(self, name, ros_type, **request):
+    def call(self, name, ros_type, /, **request):
         """(the response, or the text of the refusal)."""
         answer = services.exchange(graph.active().services[name], service_type_exact(ros_type).request(**request))
         return answer.failure or answer.response

@@ -292,4 +292,4 @@ def test_without_a_session_there_is_no_replay(path):
 
 
 def test_all_topics_of_a_session_are_told(whole):
-    assert set(TOPICS.values()) - {"/cramhy/process_modules"} <= {topic for _, topic, _, _ in whole}
+    assert set(TOPICS.values()) - {"/cramhy/process_modules", "/cramhy/robot_world"} <= {topic for _, topic, _, _ in whole}

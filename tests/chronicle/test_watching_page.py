@@ -43,5 +43,5 @@ def test_the_tables_name_what_there_is():
     assert set(named) == {*TOPICS.values(), "/cramhy/pace"}
     assert all(message_class_exact(f"cramhy_msgs/{name}") for name in named.values())
     services = re.findall(r"^\| `/cramhy/(\w+)` \| [^`|]", PAGE, re.M)
-    assert services == ["get_state", "get_history", "set_pace", "step", "seek"]
+    assert services == ["get_state", "get_history", "set_pace", "step", "move_thing", "seek"]
     assert all(service_type_exact("cramhy_msgs/" + name.title().replace("_", "")) for name in services)

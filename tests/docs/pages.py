@@ -314,7 +314,7 @@ def environment():
     return {**keep, "PYTHONPATH": os.pathsep.join(str(ROOT / folder) for folder in ("src", "hy_src"))}
 
 
-def play(paths, folder, backend="threads", timeout=120):
+def play(paths, folder, backend="threads", timeout=300):
     """Do what stands on pages: for each of ``paths`` the texts of its blocks as they come out, and the folder with its files."""
     paths = [str(path) for path in paths]
     done = subprocess.run(

@@ -262,3 +262,28 @@ def test_a_function_of_a_lisp_package_is_named_with_its_module(write, program):
         "NameError: name 'drive-on' is not defined",
         "  drive-on is a function of the Lisp package PARTS. In Hy it is called by its module: (import parts), then (parts.drive-on ...).",
     ]
+
+
+@pytest.mark.parametrize(
+    "text, operator",
+    [
+        ("(par (print 1) (print 2))\n", "par"),
+        ("(defn drive [] (seq 1 2))\n(drive)\n", "seq"),
+        ("(def-cram-function drive [] 1)\n", "def-cram-function"),
+        ("(with-failure-handling [(simple-plan-failure [e] (print e) (return))] 1)\n", "with-failure-handling"),
+        ("(print 1)\n(top-level (par 1))\n", "top-level"),
+        ("(require cramhy [par])\n(pursue (par 1) (par 2))\n", "pursue"),
+    ],
+)
+def test_an_operator_that_was_not_required_is_told_of(write, program, text, operator):
+    write("plan.hy", text)
+    assert program("run", "plan.hy").stderr.splitlines()[-1] == (
+        f"  {operator} is an operator of cramhy. Begin the file with (require cramhy *)."
+    )
+
+
+@pytest.mark.parametrize("text", ["(require cramhy *)\n(print par)\n", "(print unknown-word)\n", "(defn f [] (return 1))\n(return)\n"])
+def test_other_names_are_not_told_to_be_required(write, program, text):
+    write("plan.hy", text)
+    shown = program("run", "plan.hy").stderr
+    assert "Error" in shown and "Begin the file" not in shown

@@ -204,6 +204,36 @@ RUNNING = [
   Did you mean PRINT?""",
     ),
     (
+        "(define-condition lost (eror) ())",
+        """\
+  There is no class named COMMON-LISP-USER::EROR.
+  at plan.lisp:1:1
+    (define-condition lost (eror) ())
+    ^
+  Did you mean ERROR?""",
+    ),
+    (
+        "(defclass arm (standar-object) ())\n(make-instance 'arm)",
+        """\
+  While computing the class precedence list of the class named COMMON-LISP-USER::ARM.
+  The class named COMMON-LISP-USER::STANDAR-OBJECT is a forward referenced class.
+  The class named COMMON-LISP-USER::STANDAR-OBJECT is a direct superclass of the class named COMMON-LISP-USER::ARM.
+  at plan.lisp:2:1
+    (make-instance 'arm)
+    ^
+  Did you mean STANDARD-OBJECT?""",
+    ),
+    (
+        "(defclass arm (standar-object) ())\n(make-instance 'standar-object)",
+        """\
+  FINALIZE-INHERITANCE was called on a forward referenced class:
+  #<SB-MOP:FORWARD-REFERENCED-CLASS COMMON-LISP-USER::STANDAR-OBJECT>
+  at plan.lisp:2:1
+    (make-instance 'standar-object)
+    ^
+  Did you mean STANDARD-OBJECT?""",
+    ),
+    (
         '(error "speed ~a of ~a" 1)',
         """\
   speed ~a of ~a

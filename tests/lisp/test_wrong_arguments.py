@@ -132,3 +132,36 @@ def test_wrong_values_at_places_give_conditions_of_lisp(session, quiet):
             for makers in [FEW[:2], FEW[1:3], FEW[2:4], FEW[:3], FEW[1:]]:
                 found.append(wrong(f"SETF {name}", setter, [make() for make in makers]))
     assert [complaint for complaint in found if complaint is not None] == []
+
+
+WRONG = """
+(cpl:composite-failures 1)
+(cpl:composite-failures nil)
+(cpl:envelop-error "a")
+(cut:lazy-car 1)
+(cut:lazy-cdr :k)
+(cut:lazy-elt :k 1)
+(cut:lazy-skip 1 :k)
+(cut:lazy-mapcar (function 1+) 5)
+(cut:lazy-mapcan (function list) 5)
+(cut:lazy-filter (function evenp) 5)
+(cut:lazy-fold (function +) 5)
+(cut:pool-value 1 2)
+(cut:new-pool-value nil 2)
+(cut:delete-pool-value nil 2)
+(cut:equalize-two-list-lengths :k 1)
+(cut:equalize-lists-of-lists-lengths '(1) '(2))
+(cpm:input 1)
+(cpm:cancel nil)
+(cpm:caller "a")
+(actionlib:goal 1)
+(actionlib:feedback nil)
+(desig:get-equal-designators 1)
+(desig:designator-solutions nil)
+"""
+
+
+@pytest.mark.parametrize("form", WRONG.strip().splitlines())
+def test_functions_of_cram_refuse_arguments_of_wrong_types_in_lisp(session, form):
+    (answer,) = session.evaluate_text(f"(handler-case {form} (type-error (problem) (list :refused (type-error-expected-type problem))))")
+    assert isinstance(answer, Cons) and str(answer.car) == ":REFUSED"

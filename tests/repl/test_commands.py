@@ -252,4 +252,6 @@ class TestFilesThatAreMissing:
         monkeypatch.chdir(tmp_path)
         with Image():
             assert cli.main(["run", name]) == 1
-        assert f'ASDF:MISSING-COMPONENT\n  Component "{name}" not found' in "".join(capfd.readouterr())
+        shown = "".join(capfd.readouterr())
+        assert f'ASDF:MISSING-COMPONENT\n  Component "{name}" not found' in shown
+        assert f"  There is no file {name} in {tmp_path}, and no system of that name: " in shown

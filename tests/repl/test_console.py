@@ -6,6 +6,8 @@ import re
 
 import pytest
 
+from cramhy_runtime.session import Image
+
 ABORT = """\
 restarts (type a number to choose one, or a form to evaluate):
   0: [ABORT] Exit debugger, returning to top level.
@@ -149,6 +151,52 @@ def test_forms_are_evaluated_in_the_debugger_and_errors_there_nest(type_in):
     ) in text
 
 
+@pytest.mark.parametrize(
+    "bound, typed, shown",
+    [
+        ("(*read-suppress* t)", "(list 1 2)", "(1 2)"),
+        ("(*read-base* 16)", "(list 10 20)", "(10 20)"),
+        ("(*read-eval* nil)", "#.(+ 1 2)", "3"),
+        ("(*print-readably* t)", "(find-package :keyword)", '#<PACKAGE "KEYWORD">'),
+        ("(*readtable* (let ((r (copy-readtable nil))) (setf (readtable-case r) :preserve) r))", "(list 10 20)", "(10 20)"),
+        ("(*readtable* (let ((r (copy-readtable nil))) (set-syntax-from-char #\\( #\\a r) r))", "(list 10 20)", "(10 20)"),
+    ],
+)
+def test_the_debugger_can_be_used_whatever_the_program_has_bound(type_in, bound, typed, shown):
+    text = type_in(f'(let ({bound}) (error "stop ~a" (find-package :cl)))\n{typed}\n0\n5')
+    assert f"0] {typed}\n{shown}\n0] 0\nCPL-USER> 5\n5\n" in text
+
+
+@pytest.mark.parametrize(
+    "body",
+    ["(case 1 (1 check-it))", "(cond (check-it 1))", "(let ((x check-it) (check-it)) (list x check-it))", "(flet ((f (check-it))) #'f)"],
+)
+def test_a_variable_of_a_method_may_be_called_as_a_macro_is(type_in, body):
+    """Where ``(check-it)`` is no call, it is not an error that it would be none; a file with such a method could be loaded, not typed."""
+    text = type_in(f"(defmacro check-it (name) name)\n(defmethod look-at ((check-it integer)) {body})\n(list 5)")
+    assert "debugger invoked" not in text and text.endswith("(5)\n")
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        "(cl:in-package :bare-of-lisp)\n(cl-utilities:split-sequence 1 '(2 1 3))\n(cl:in-package :cl-user)",
+        "(let ((*read-base* 16)) (find-package :lisp-unit))",
+        "(let ((*readtable* (let ((r (copy-readtable nil))) (setf (readtable-case r) :preserve) r))) (find-package :closer-mop))",
+        "(let ((*read-suppress* t)) (find-package :trivial-garbage))",
+        "(let ((*package* (find-package :keyword))) (find-package :trivial-gray-streams))",
+    ],
+)
+def test_a_library_is_loaded_whatever_is_bound_where_its_package_is_named(type_in, form):
+    with Image():
+        text = type_in(f"(defpackage :bare-of-lisp (:use))\n{form}\n(list 5)")
+    assert "debugger invoked" not in text and text.endswith("(5)\n")
+
+
+def test_what_is_set_in_the_debugger_stays(type_in):
+    assert type_in('(defvar *set-there* 1)\n(error "x")\n(setf *set-there* 3)\n0\n(list *set-there* :a)').endswith("(3 :A)\n")
+
+
 def test_the_outermost_restart_leaves_all_levels(type_in):
     assert type_in("(car 1)\n(car 2)\n(car 3)\n2\n5").endswith("2] 2\nCPL-USER> 5\n5\n")
 
@@ -197,6 +245,20 @@ debugger invoked on a CRAM-LANGUAGE-IMPLEMENTATION:SIMPLE-PLAN-FAILURE:
 {ABORT}0] 0""",
         type_in('(top-level\n  (par (sleep 1)\n       (fail "No ~a." \'cup)))\n0', backend=backend),
     )
+
+
+@pytest.mark.parametrize(
+    "defined, call",
+    [
+        ("(def-cram-function drive (x) x)", "(drive 1)"),
+        ("(progn (declare-goal drive (x)) (def-goal (drive ?x) ?x))", "(drive 1)"),
+        ("(def-cram-function drive (x) (par x x))", "(list (drive 1))"),
+    ],
+)
+def test_a_plan_function_outside_of_a_plan_is_an_error_at_its_call(type_in, defined, call):
+    column = 1 + call.index("(drive")
+    text = type_in(f"{defined}\n{call}\n0")
+    assert f"  at <repl 2>:1:{column}\n    {call}\n" in text
 
 
 def test_a_plan_form_outside_of_a_plan_says_what_to_write(type_in):

@@ -4,7 +4,7 @@ import pytest
 
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for
-from cramhy_runtime.repl.completion import completions
+from cramhy_runtime.session.completion import completions
 
 PAR = "(par form...)  All at once until all have ended; the value of the first."
 

@@ -41,7 +41,7 @@ def test_help_tells_what_every_word_is():
 
 def test_every_command_that_has_a_time_takes_the_same_option():
     found = {command: parser.parse_args([*needed, "--time", "virtual"]).time for command, parser, needed in _with_time()}
-    assert found == dict.fromkeys(["repl", "run", "eval", "test", "turtlesim", "view"], "virtual")
+    assert found == dict.fromkeys(["repl", "swank", "run", "eval", "test", "turtlesim", "view"], "virtual")
 
 
 def _with_time():
@@ -50,7 +50,7 @@ def _with_time():
             yield command, parser, ["x"] if command in ("run", "test") else []
 
 
-@pytest.mark.parametrize("command", ["repl", "run x", "eval", "test x", "turtlesim", "view"])
+@pytest.mark.parametrize("command", ["repl", "swank", "run x", "eval", "test x", "turtlesim", "view"])
 def test_a_wrong_time_in_the_environment_is_told(command, monkeypatch, capsys):
     monkeypatch.setenv("CRAMHY_TIME", "slow")
     assert cli.main(command.split()) == 2

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from cramhy_runtime import cpl
+from cramhy_runtime import cpl, kernel
 
 pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
 
@@ -153,6 +153,28 @@ def test_without_the_extra_one_line_names_it():
     assert "The kitchen needs MuJoCo, which is not installed" in done.stderr.splitlines()[-1]
 
 
-def test_another_mode_than_the_kinematic_one_is_told():
-    with pytest.raises(ValueError, match="controllers and friction are not simulated yet"):
-        robot.world(mode="physical")
+def test_another_mode_is_told():
+    with pytest.raises(ValueError, match="The mode of a world is 'kinematic' or 'physical', not 'dreamt'"):
+        robot.world(mode="dreamt")
+
+
+def test_in_a_physical_world_time_passes_and_friction_holds(session):
+    made = robot.world(mode="physical")
+    made.spawn("bottle", (1.45, 0.6, 0.96))
+    made.settle(3)
+    before = kernel.now()
+
+    @robot.run
+    def plan():
+        robot.go(robot.at(0.7, 0.6))
+        robot.look((1.45, 0.6, 0.95))
+        bottle = robot.pick_up(robot.detect("bottle"))
+        held = made.held(), made.place("bottle-1")
+        robot.place(bottle, (1.45, 0.9, 0.96))
+        return held
+
+    (held, there), seconds = plan, kernel.now() - before
+    assert list(held) == ["bottle-1"] and there[2] > 0.97 and made.held() == {}
+    assert made.place("bottle-1") == pytest.approx((1.45, 0.9, 0.95), abs=0.04)
+    assert 10 < seconds < 90
+    assert robot.world().core.copy().__class__ is made.core.copy().__class__

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 import sys
 from itertools import combinations
 from math import cos, dist, pi, sin
@@ -76,6 +77,14 @@ def ask(session):
     return asked
 
 
+@pytest.fixture
+def physical(session, ask):
+    """As `ask`, in a world with controllers, contacts and friction."""
+    session.evaluate_text("(setf btr-belief:*world-mode* :physical) (cram-occasions-events:clear-belief)")
+    yield ask
+    session.evaluate_text("(setf btr-belief:*world-mode* :kinematic)")
+
+
 def spawn(ask, name, kind, x, y, turn="(0 0 0 1)"):
     ask(f"(progn (btr-utils:spawn-object '{name} :{kind} :pose '(({x} {y} 0.96) {turn})) (btr:simulate btr:*current-bullet-world* 100))")
 
@@ -122,6 +131,68 @@ def test_a_bottle_goes_from_the_sink_to_the_table(ask, seed):
 def test_of_a_hundred_bottles_ninety_eight_arrive_and_none_is_lost(ask):
     failed = [seed for seed in range(100) if not transported(ask, seed)]
     assert len(failed) <= 2, failed
+
+
+def carried(ask, seed):
+    """As `transported`, in a physical world, in which the bottle may come to stand some centimetres away, and may fall."""
+    (x, y), (to_x, to_y) = scene(ask, seed)
+    answer = ask(f"(transport '({x} {y} 0.95) '({to_x} {to_y} 0.823))")
+    where, held = ask("(place-of 'bottle)"), ask("(held)")
+    place = [float(number) for number in where.strip("()").split()]
+    assert -4 < place[0] < 4 and -4 < place[1] < 4 and 0 < place[2] < 2, f"seed {seed}: the bottle is lost: {where}"
+    if answer != "NIL":
+        assert re.match(r"(OBJECT|NAVIGATION|MANIPULATION|GRIPPER|PERCEPTION|LOOKING|DESIGNATOR)-[A-Z-]+: ", answer), (
+            f"seed {seed}: {answer}"
+        )
+        return False
+    return max(abs(place[0] - to_x), abs(place[1] - to_y), abs(place[2] - 0.82)) < 0.05 and held == "NIL"
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_friction_carries_a_bottle_from_the_sink_to_the_table(physical, seed):
+    before = kernel.now()
+    assert carried(physical, seed)
+    assert kernel.now() - before > 15
+
+
+@takes_long
+def test_of_a_hundred_bottles_held_by_friction_ninety_arrive(physical):
+    failed = [seed for seed in range(100) if not carried(physical, seed)]
+    assert len(failed) <= 10, failed
+
+
+def test_a_check_does_not_touch_a_physical_world(physical):
+    spawn(physical, "bottle", "bottle", 1.42, 0.7)
+    form = """(with-simulated-robot
+      (let* ((?bottle (see 'bottle '((0.6 0.7 0) (0 0 0 1)))) (before (place-of 'bottle))
+             (robot (cl-transforms:origin (btr:pose (btr:get-robot-object)))) (joints (btr:joint-states (btr:get-robot-object))))
+        (pr2-proj-reasoning:check-picking-up-collisions (an action (type picking-up) (object ?bottle)))
+        (let ((?there (at 0.3 0.3 0))) (pr2-proj-reasoning:check-navigating-collisions (a location (pose ?there))))
+        (list (equal before (place-of 'bottle)) (< (cl-transforms:v-dist robot (cl-transforms:origin (btr:pose (btr:get-robot-object)))) 1e-9)
+              (equal joints (btr:joint-states (btr:get-robot-object))))))"""
+    assert physical(form) == "(T T T)"
+
+
+def test_what_moves_in_a_physical_world_is_hindered_with_cram_s_failures(physical):
+    spawn(physical, "bottle", "bottle", 1.42, 0.7)
+    drive = "(with-simulated-robot (let ((?to (at 1.5 0.7 0))) (perform (a motion (type going) (target (a location (pose ?to)))))))"
+    assert physical(drive).startswith("NAVIGATION-POSE-UNREACHABLE: The robot would touch ")
+    grip = "(with-simulated-robot (perform (a motion (type gripping) (gripper left))))"
+    assert physical(grip) == "GRIPPER-CLOSED-COMPLETELY: There was no object to grip"
+    reach = """(with-simulated-robot
+      (let ((?far (cl-transforms-stamped:make-pose-stamped "base_footprint" 0.0 (cl-transforms:make-3d-vector 3 0 1)
+                                                           (cl-transforms:make-identity-rotation))))
+        (perform (a motion (type moving-tcp) (left-target (a location (pose ?far)))))))"""
+    assert physical(reach).startswith("MANIPULATION-POSE-UNREACHABLE: ")
+
+
+def test_a_world_has_one_of_two_modes(session):
+    session.evaluate_text("(setf btr-belief:*world-mode* :dreamt)")
+    try:
+        answer = session.evaluate_text('(handler-case (cram-occasions-events:clear-belief) (error (e) (format nil "~a" e)))')[0]
+    finally:
+        session.evaluate_text("(setf btr-belief:*world-mode* :kinematic)")
+    assert str(answer) == "The mode of a world is :KINEMATIC or :PHYSICAL, not :DREAMT."
 
 
 def test_what_is_not_there_is_nowhere_to_be_found(ask):

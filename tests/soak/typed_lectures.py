@@ -44,7 +44,7 @@ def answers(transcript):
     pairs = []
     for part in PROMPT.split(transcript)[1:]:
         head, _, rest = part.partition("\n")
-        while head.count("(") > head.count(")"):  # a form of several lines
+        while rest and head.count("(") > head.count(")"):  # a form of several lines; the last one may be cut off
             line, _, rest = rest.partition("\n")
             head += "\n" + line
         pairs.append((head, rest))

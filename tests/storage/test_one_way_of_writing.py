@@ -42,6 +42,8 @@ EXCEPT = {
     ("turtlesim/stills.py", "save"): "into the file that storage gave",
     ("languages/commonlisp/faces/turtlesim/package.py", "save"): "pictures.save, of this room",
     ("cli/servers.py", "save"): "pictures.save",
+    ("robot_world/pictures/stills.py", "save"): "into memory, from which storage writes it",
+    ("languages/commonlisp/faces/robot_world/picture_calls.py", "save"): "Movie.save, which writes by way of storage",
 }
 MEMORY = {"np", "copy", "each"}
 

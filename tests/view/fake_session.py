@@ -28,6 +28,7 @@ TOPICS = {
     "tasks": "/cramhy/tasks",
     "fluents": "/cramhy/fluents",
     "modules": "/cramhy/process_modules",
+    "robots": "/cramhy/robot_world",
     "pace": "/cramhy/pace",
 }
 PEN = (179, 184, 255)
@@ -101,6 +102,7 @@ class FakeSession:
             "tasks": {"stamp": 0.0, "complete": True, "tasks": [], "removed": []},
             "fluents": {"stamp": 0.0, "complete": True, "fluents": [], "removed": []},
             "modules": {"stamp": 0.0, "modules": []},
+            "robots": {"stamp": 0.0, "complete": True, "things": [], "removed": [], "steps": [], "marks": []},
             "pace": {
                 "stamp": 0.0,
                 "virtual": True,
@@ -242,6 +244,21 @@ class FakeSession:
         self.state["modules"] = {"stamp": self.stamp, "modules": [dict(zip(names, module)) for module in modules]}
         self.publish(TOPICS["modules"], self.state["modules"])
 
+    def robots(self, things=(), steps=(), removed=(), marks=()):
+        """What has happened in the robot's world; steps: pairs of seconds and a list of WorldStates."""
+        told = self.state["robots"]
+        gone = {*removed, *(one["name"] for one in things)}
+        states = {state["name"]: state for step in told["steps"] for state in step["states"]}
+        states |= {state["name"]: state for _, moved in steps for state in moved}
+        told["things"] = [one for one in told["things"] if one["name"] not in gone] + list(things)
+        told["steps"] = [{"seconds": 0.0, "states": [state for name, state in states.items() if name not in removed]}]
+        told["marks"] = list(marks) or told["marks"]
+        news = [{"seconds": seconds, "states": list(moved)} for seconds, moved in steps]
+        self.publish(
+            TOPICS["robots"],
+            {"stamp": self.stamp, "complete": False, "things": list(things), "removed": list(removed), "steps": news, "marks": list(marks)},
+        )
+
     def pace(self, **changes):
         """Another pace."""
         self.state["pace"] = {**self.state["pace"], "stamp": self.stamp, **changes}
@@ -303,8 +320,8 @@ class FakeSession:
             "newest": newest,
             "begin": begin,
             "end": end,
-            **{kind: copy.deepcopy(state[kind]) for kind in ("world", "tasks", "fluents", "modules")},
-            **{f"later_{kind}": later.get(kind, []) for kind in ("world", "tasks", "fluents", "modules")},
+            **{kind: copy.deepcopy(state[kind]) for kind in ("world", "tasks", "fluents", "modules", "robots")},
+            **{f"later_{kind}": later.get(kind, []) for kind in ("world", "tasks", "fluents", "modules", "robots")},
         }
 
     # --------------------------------------------------------------------------------------------------------- what came

@@ -8,6 +8,7 @@ import subprocess
 import pytest
 from test_page import wait_for_text
 from test_page_access import filled
+from test_page_room import kitchen
 
 VERSION = "4.14.1"
 LIVE = """() => [...document.querySelectorAll("[aria-live], [role=status], [role=alert], [role=log], [role=timer], output")]
@@ -47,6 +48,15 @@ def test_axe_finds_nothing(fake, visit, axe, scheme):
             page.set_viewport_size({"width": width, "height": height})
             assert look() == []
         page.locator("#projector").click()
+    kitchen(fake)  # and the robot's room
+    page.wait_for_selector("#room")
+    for width, height in ((1280, 800), (390, 844)):
+        page.set_viewport_size({"width": width, "height": height})
+        if width > 1000:
+            page.get_by_role("button", name="bottle").click()
+        else:
+            page.locator("#turtle-tab").click()
+        assert look() == []
 
 
 def test_axe_would_find_something(fake, visit, axe):

@@ -193,3 +193,33 @@ def test_the_page_comes_though_strangers_take_all_the_connections_they_can_get(r
     finally:
         program.kill()
         program.communicate()
+
+
+ROOM = """(asdf:load-system :cram-bullet-reasoning)
+(btr:add-object btr:*current-bullet-world* :static-plane :ground '((0 0 0) (0 0 0 1)) :normal '(0 0 1) :constant 0)
+(btr:add-object btr:*current-bullet-world* :box :table '((0 0 0.35) (0 0 0 1)) :size '(2 2 0.7) :mass 0)
+(btr:add-object btr:*current-bullet-world* :cylinder :bottle '((0.5 0.2 0.85) (0 0 0 1)) :size '(0.2 0.2 0.3) :mass 0.5 :color '(0.9 0.05 0.05))"""
+WAITS = """(cpl:top-level (loop until (< (cl-transforms:y (cl-transforms:origin (btr:pose (btr:object btr:*current-bullet-world* :bottle)))) 0)
+                 do (cpl:sleep 0.5)
+                 finally (return :it-was-moved)))"""
+
+
+def test_an_object_that_is_dragged_arrives_in_the_world_while_a_plan_runs(repl, visit):
+    pytest.importorskip("mujoco", reason="pip install 'cramhy[robot]'")
+    from test_page_room import Picture, drag, red
+
+    session = repl("--time", "virtual")
+    page = visit(session.url, 1020, 600)
+    session.type(ROOM)
+    page.wait_for_selector("#room")
+    page.get_by_role("button", name="bottle").wait_for()
+    page.locator("#room").focus()
+    session.type(WAITS)
+    wait_for_text(page, "#doing", "a form runs")
+    page.keyboard.press("0")
+    start = Picture(page).middle(red)[:2]
+    drag(page, start, (start[0] + 60, start[1] + 40))
+    page.mouse.up()
+    session.wait_for(":IT-WAS-MOVED")
+    page.wait_for_function("() => parseFloat(document.querySelector('[data-reading=room-y]').textContent.replace('−', '-')) < 0")
+    assert page.locator("[data-reading=room-z]").text_content() == "0.85"

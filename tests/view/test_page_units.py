@@ -17,11 +17,8 @@ def test_the_modules_of_the_page_pass_their_unit_tests(tmp_path):
     version = subprocess.run([NODE, "--version"], capture_output=True, text=True).stdout
     if int(version.lstrip("v").partition(".")[0]) < 20:
         pytest.skip(f"node {version.strip()} has no mock timers; 20 or later has")
-    for file in resources.files("cramhy_runtime.view").joinpath("static").iterdir():
-        if file.name.endswith(".js"):
-            (tmp_path / file.name).write_bytes(file.read_bytes())
+    shutil.copytree(resources.files("cramhy_runtime.view").joinpath("static"), tmp_path, dirs_exist_ok=True)
     (tmp_path / "package.json").write_text('{"type": "module"}')
-    test = tmp_path / "units.test.mjs"
-    test.write_bytes((Path(__file__).parent / "units.test.mjs").read_bytes())
-    done = subprocess.run([NODE, "--test", test], capture_output=True, text=True, cwd=tmp_path, timeout=120)
+    tests = [Path(shutil.copy(file, tmp_path)) for file in sorted(Path(__file__).parent.glob("*.test.mjs"))]
+    done = subprocess.run([NODE, "--test", *tests], capture_output=True, text=True, cwd=tmp_path, timeout=120)
     assert done.returncode == 0, done.stdout + done.stderr

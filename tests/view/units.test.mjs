@@ -475,6 +475,7 @@ const STATE = (stamp, strokes = []) => ({
   tasks: { stamp, tasks: [task("a")], removed: [] },
   fluents: { stamp, fluents: [], removed: [] },
   modules: { stamp, modules: [] },
+  robots: { stamp, things: [], removed: [], steps: [], marks: [] },
   pace: { stamp, virtual: true, paused: false, speed: 1, busy: false, recording: "", begin: 0, end: 0 },
 });
 
@@ -530,7 +531,7 @@ test("chapters of the past are fetched one by one", async (t) => {
   const { session, sockets, seen, answer } = await visiting(t, STATE(20, [line(1), line(2), line(3)]));
   const chapter = (number, begin, end, strokes, later) => ({
     chapter: number, oldest: 1, newest: 2, begin, end, ...STATE(begin, strokes), later_world: later,
-    later_tasks: [{ stamp: end, tasks: [task(`t${number}`)], removed: [] }], later_fluents: [], later_modules: [],
+    later_tasks: [{ stamp: end, tasks: [task(`t${number}`)], removed: [] }], later_fluents: [], later_modules: [], later_robots: [],
   });
   await answer("/cramhy/get_history", chapter(2, 10, 19, [line(1)], [world(12, 1, [line(2)]), world(19, 1, [line(3)])]));
   sockets[0].hear({ op: "publish", topic: "/cramhy/world", msg: world(21, 1, [line(4)]) });

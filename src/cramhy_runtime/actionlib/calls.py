@@ -44,14 +44,18 @@ class FeedbackSignal(Condition):
         return f"Feedback of an action: {self.feedback!r}"
 
 
+def _signal(thing):
+    return thing if isinstance(thing, FeedbackSignal) else conditions.type_error(thing, "FEEDBACK-SIGNAL")
+
+
 def goal(signal):
     """The goal that a ``feedback-signal`` is about."""
-    return signal.goal
+    return _signal(signal).goal
 
 
 def feedback(signal):
     """The feedback message of a ``feedback-signal``."""
-    return signal.feedback
+    return _signal(signal).feedback
 
 
 class GoalHandle:

@@ -18,9 +18,16 @@ from .fluents import Fluents
 from .modules import Modules
 from .plans import Plans
 from .merge import State
+from .robots import Robots
 from .world import World
 
-NAMES = {"world": "the turtles", "tasks": "the tasks of plans", "fluents": "fluents", "modules": "process modules"}
+NAMES = {
+    "world": "the turtles",
+    "tasks": "the tasks of plans",
+    "fluents": "fluents",
+    "modules": "process modules",
+    "robots": "the robot's world",
+}
 
 _active = Cell(None, fresh=True)
 
@@ -31,7 +38,7 @@ class Chronicler:
     def __init__(self):
         self.kernel, self.graph = kernel.active(), graph.active()
         now = self.kernel.now
-        self.sources = {"world": World(now), "tasks": Plans(), "fluents": Fluents(now), "modules": Modules(now)}
+        self.sources = {"world": World(now), "tasks": Plans(), "fluents": Fluents(now), "modules": Modules(now), "robots": Robots(now)}
         self.state = State()
         self.listeners = []
         self.board = None
@@ -41,6 +48,7 @@ class Chronicler:
         self.sources["tasks"].begin(self.look)
         self.sources["fluents"].begin()
         self.sources["modules"].begin()
+        self.sources["robots"].begin()
         self.kernel.watch_instants(self._instant)
 
     def open_board(self):
@@ -131,6 +139,12 @@ class Chronicler:
 
     def step(self, seconds):
         kernel.pace().step(seconds)
+
+    def move_thing(self, name, x, y, z):
+        """Put an object of the robot's world somewhere by hand; where it lies then. Errors: ValueError."""
+        if "robots" not in self.sources:
+            raise ValueError("Changes of the robot's world can be told no more, so nothing is moved by hand.")
+        return self.sources["robots"].move(name, x, y, z)
 
     def seek(self, stamp):
         raise ValueError(

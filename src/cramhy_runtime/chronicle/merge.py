@@ -11,6 +11,8 @@ from cramhy_runtime.ros.messages import message_class_exact
 from cramhy_runtime.turtlesim.strokes import PIECE, Ink
 from cramhy_runtime.turtlesim.dimensions import EXTENT
 
+from . import robot_sums
+
 
 class Things:
     """The sum of messages that hold things with an ``id``, and the ids of those that are ``removed``.
@@ -184,22 +186,35 @@ class WorldState:
         return 0 if self.last is None else len(self.last.turtles) + self.amount // 10 + len(self.recent) // 3
 
 
-KINDS = ("world", "tasks", "fluents", "modules")
-TOPICS = {"world": "/cramhy/world", "tasks": "/cramhy/tasks", "fluents": "/cramhy/fluents", "modules": "/cramhy/process_modules"}
+KINDS = ("world", "tasks", "fluents", "modules", "robots")
+TOPICS = {
+    "world": "/cramhy/world",
+    "tasks": "/cramhy/tasks",
+    "fluents": "/cramhy/fluents",
+    "modules": "/cramhy/process_modules",
+    "robots": robot_sums.TOPIC,
+}
 TYPES = {
     "world": "cramhy_msgs/World",
     "tasks": "cramhy_msgs/TaskTree",
     "fluents": "cramhy_msgs/Fluents",
     "modules": "cramhy_msgs/ProcessModules",
+    "robots": robot_sums.TYPE,
 }
-CHANGES = {"world": WorldChanges, "tasks": TaskTrees, "fluents": FluentLists, "modules": Latest}
+CHANGES = {"world": WorldChanges, "tasks": TaskTrees, "fluents": FluentLists, "modules": Latest, "robots": robot_sums.RobotChanges}
 
 
 class State:
     """Everything as it is now: the sum of all messages of each kind."""
 
     def __init__(self):
-        self.sums = {"world": WorldState(), "tasks": TaskTrees(whole=True), "fluents": FluentLists(whole=True), "modules": Latest()}
+        self.sums = {
+            "world": WorldState(),
+            "tasks": TaskTrees(whole=True),
+            "fluents": FluentLists(whole=True),
+            "modules": Latest(),
+            "robots": robot_sums.RobotState(),
+        }
 
     def add(self, kind, message):
         self.sums[kind].add(message)

@@ -126,6 +126,10 @@ class Player:
         self._publish_until(self.position + seconds)
         self._publish_now()
 
+    def move_thing(self, name: str, x: float, y: float, z: float) -> None:
+        """What is past stays as it was. Errors: ValueError."""
+        raise ValueError("This is a recording: its objects stay where they were, and cannot be moved by hand.")
+
     def seek(self, stamp: float) -> None:
         """Go to the time ``stamp``, or the nearest that there is, and publish everything as it was then."""
         if stamp != stamp:

@@ -23,7 +23,7 @@ from cramhy_runtime.ground.condition_types import SimpleWarning
 from cramhy_runtime.ground.conditions import warn
 from ..ros import graph
 from ..ros.message_json import MessageJsonError, to_json
-from . import chronicler, scene
+from . import chronicler, robot_scene, scene
 from .chunk_index import pack_indexes
 from .recordings import RecordingError, needs_mcap
 from .schemas import schema_text
@@ -55,6 +55,7 @@ class Recorder:
         self._flushed = self._now()
         self._channels = {}  # (topic, type) -> [id, messages so far]
         self._subscriptions = {}
+        self._robots = None
         self._scene = scene.Scene()
         for recovered in storage.tidy(os.path.dirname(os.path.realpath(self.path))):
             warn(SimpleWarning("A recording was cut off when its process was killed. It is now ~a.", recovered))
@@ -138,10 +139,23 @@ class Recorder:
         self._write(TOPICS[kind], message)
         if kind == "world":
             self._draw(self._scene.update(message, self._now()))
+        elif kind == "robots":
+            self._draw_robots(message)
 
     def _draw(self, update):
         if update is not None:
             self._put(scene.TOPIC, scene.TYPE, update, scene.schema_text)
+
+    def _draw_robots(self, message):
+        if self._robots is None:
+            self._robots = robot_scene.RobotScene()
+        update, frames, joints = self._robots.update(message, self._now())
+        if update is not None:
+            self._put(robot_scene.TOPIC, scene.TYPE, update, scene.schema_text)
+        if frames is not None:
+            self._put(robot_scene.FRAMES_TOPIC, robot_scene.FRAMES_TYPE, frames, robot_scene.frames_schema_text)
+        for one in joints:
+            self._write(robot_scene.JOINTS_TOPIC, one)
 
     # -------------------------------------------------------------------------------------------------------------- the file
 

@@ -31,12 +31,12 @@ class Scene:
         self.ink_time = self.turtle_time = -math.inf
 
     def update(self, world, nanoseconds):
-        stamp, entities, deletions = _time(nanoseconds), [], []
+        stamp, entities, deletions = time_of(nanoseconds), [], []
         if world.complete or world.clears != self.clears:
             self.clears, self.waiting, self.turtles = world.clears, [], {}
             self.turtle_time = -math.inf
             deletions.append({"timestamp": stamp, "type": 1, "id": ""})
-            entities.append(_entity(stamp, "paper", cubes=[_paper(world)]))
+            entities.append(entity(stamp, "paper", cubes=[_paper(world)]))
         self.waiting += world.strokes
         if self.waiting and world.stamp - self.ink_time >= INK_PERIOD:
             entities.append(self._ink(stamp, world.stamp))
@@ -45,13 +45,13 @@ class Scene:
             here = {turtle.name: _turtle(turtle) for turtle in world.turtles if math.isfinite(turtle.x + turtle.y + turtle.theta)}
             deletions += [{"timestamp": stamp, "type": 0, "id": f"turtle {name}"} for name in self.turtles if name not in here]
             moved = {name: arrow for name, arrow in here.items() if arrow != self.turtles.get(name)}
-            entities += [_entity(stamp, f"turtle {name}", arrows=[arrow]) for name, arrow in moved.items()]
+            entities += [entity(stamp, f"turtle {name}", arrows=[arrow]) for name, arrow in moved.items()]
             self.turtles = here
         return {"deletions": deletions, "entities": entities} if deletions or entities else None
 
     def rest(self, nanoseconds):
         """The lines that have not been told yet."""
-        return {"deletions": [], "entities": [self._ink(_time(nanoseconds), math.inf)]} if self.waiting else None
+        return {"deletions": [], "entities": [self._ink(time_of(nanoseconds), math.inf)]} if self.waiting else None
 
     def _ink(self, stamp, now):
         pens = {}
@@ -73,14 +73,16 @@ class Scene:
             }
             for (*colour, width), points in pens.items()
         ]
-        return _entity(stamp, f"ink {self.pieces}", lines=lines)
+        return entity(stamp, f"ink {self.pieces}", lines=lines)
 
 
-def _time(nanoseconds):
+def time_of(nanoseconds):
+    """A time as Foxglove's messages have it."""
     return {"sec": nanoseconds // 1_000_000_000, "nsec": nanoseconds % 1_000_000_000}
 
 
-def _entity(stamp, name, **shapes):
+def entity(stamp, name, **shapes):
+    """A ``foxglove.SceneEntity`` of these shapes."""
     return {
         "timestamp": stamp,
         "frame_id": FRAME,

@@ -1,13 +1,14 @@
 """The hidden node ``/cramhy``: topics and services for whoever looks on, a page above all.
 
-Topics: ``/cramhy/world``, ``/cramhy/tasks``, ``/cramhy/fluents``, ``/cramhy/process_modules`` tell what has changed, each at most 60 times
-a second of the wall, merged (`sums`); ``/cramhy/pace`` tells how plan time passes, and keeps its last message for late subscribers.
+Topics: ``/cramhy/world``, ``/cramhy/tasks``, ``/cramhy/fluents``, ``/cramhy/process_modules``, ``/cramhy/robot_world`` tell what has
+changed, each at most 60 times a second of the wall, merged (`sums`); ``/cramhy/pace`` tells how plan time passes, and keeps its last
+message for late subscribers.
 Services: ``/cramhy/get_state`` gives everything as it is, ``/cramhy/get_history`` what was published before, ``/cramhy/set_pace`` and
 ``/cramhy/step`` hold plan time back, ``/cramhy/seek`` goes to a time of a recording.
 
 What is told comes from an owner, a session with plans (`chronicler`) or a recording that is replayed (`player`); it has ``state``, the
-`sums.State` of now; ``look()``, to bring that up to date; ``pace_message()``; and ``set_pace(paused, speed)``, ``step(seconds)`` and
-``seek(stamp)``, which raise ValueError or KernelError for what cannot be.
+`sums.State` of now; ``look()``, to bring that up to date; ``pace_message()``; and ``set_pace(paused, speed)``, ``step(seconds)``,
+``seek(stamp)`` and ``move_thing(name, x, y, z)``, which raise ValueError or KernelError for what cannot be.
 """
 
 from __future__ import annotations
@@ -44,6 +45,7 @@ class Board:
             ("set_pace", "SetPace", self._set_pace),
             ("step", "Step", self._step),
             ("seek", "Seek", self._seek),
+            ("move_thing", "MoveThing", self._move_thing),
         ):
             self._serve(name, service_type_exact(f"cramhy_msgs/{kind}"), handler)
 
@@ -130,6 +132,12 @@ class Board:
     def _seek(self, request):
         self.owner.seek(as_float(request.stamp))
         return self._pace_response()
+
+    def _move_thing(self, request):
+        place = self.owner.move_thing(request.name, *map(as_float, (request.x, request.y, request.z)))
+        self.next = -1.0  # who moved it sees it at once
+        self.owner.look()
+        return dict(zip("xyz", place))
 
     def _pace_response(self):
         self.tell_pace()

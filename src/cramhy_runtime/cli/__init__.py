@@ -1,4 +1,4 @@
-"""The command line: ``cramhy repl | run | eval | test | turtlesim | teleop | view | replay | ros-shims | ros`` and ``roslisp_repl``.
+"""The command line: ``cramhy repl | swank | run | eval | test | turtlesim | teleop | view | replay | ros-shims | ros``, ``roslisp_repl``.
 
 `options` says which words there are, `servers` what a session opens to the outside, `standalone_commands` has the commands that are no
 session of Lisp's, `shims` the ROS commands, which `workspace`, `programs`, `launch`, `keyboard` and the room ``ros_tools`` carry out.
@@ -62,11 +62,31 @@ def session(options, closings, opened=True):
         made.load(system)
     if options.package:
         made.package = options.package.upper()
+    if options.command in ("repl", "swank"):
+        offer_swank(made, getattr(options, "swank", None))
     if options.command == "repl":
         evaluate_before_prompt(made, options.forms)
     elif options.command != "run":
         evaluate_forms(made, options.forms)
     return made
+
+
+def offer_swank(made, port):
+    """Let SLIME find the packages that it calls. With a port, listen for Emacs there, too."""
+    from cramhy_runtime.ground.packages import on_demand
+    from cramhy_runtime.languages.commonlisp.systems import program_files
+
+    def define(*loader):
+        from cramhy_runtime.swank import package
+
+        package.stand_in(*loader)
+
+    on_demand.update(dict.fromkeys(("SWANK-LOADER", "SWANK", "SLYNK-LOADER", "SLYNK"), define))
+    program_files.stand_ins.update(dict.fromkeys(("swank-loader.lisp", "slynk-loader.lisp"), define))
+    if port is not None:
+        from . import swank_command
+
+        swank_command.listen(made, port or None)
 
 
 def evaluate_forms(made, forms):
@@ -119,7 +139,7 @@ def _main(arguments):
                 return 2
         from .options import DEFAULT_TIMES, parser
 
-        options = parser().parse_args(arguments)
+        options = parser().parse_args(arguments or ["repl"])  # what Emacs types for a Lisp: its name alone
         if hasattr(options, "time") and (complaint := _wrong_time()):
             print(f"cramhy: {complaint}", file=sys.stderr)
             return 2
@@ -185,6 +205,13 @@ def _repl(options):
 
             return hy_prompt.run(lambda: session(options, closings), banner.of_hy() if greets else "" if options.quiet else None)
         return Console(lambda: session(options, closings), banner=banner.of_lisp() if greets else "").run()
+
+
+def _swank(options):
+    from . import swank_command
+
+    with ExitStack() as closings:
+        return _status(lambda: swank_command.run(lambda: session(options, closings, opened=False), options))
 
 
 def _eval(options):

@@ -29,7 +29,7 @@ def _features(text):
 _features.__name__ = "list of features"  # what argparse calls it in its complaint
 
 
-DEFAULT_TIMES = {"repl": "wall", "run": "virtual", "eval": "virtual", "test": "virtual"}
+DEFAULT_TIMES = {"repl": "wall", "swank": "wall", "run": "virtual", "eval": "virtual", "test": "virtual"}
 """The commands with a session, and the time in which it lives when nothing else is said (see ``session/time_setting.py``)."""
 
 
@@ -174,6 +174,19 @@ def parser():
         help="begin in plain Hy, after (require cramhy *), where (in-package ...) leads to Lisp (begin in Lisp)",
     )
     repl.add_argument("--quiet", action="store_true", help="begin without a banner (two lines, where somebody sits at a terminal)")
+    repl.add_argument(
+        "--swank",
+        nargs="?",
+        type=_port,
+        const=0,
+        default=None,
+        metavar="PORT",
+        help="let Emacs connect, too: M-x slime-connect. Without PORT at a free one (nobody)",
+    )
+    swank = commands.add_parser("swank", parents=[common["swank"]], help="a session for Emacs: M-x slime-connect")
+    swank.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens on loopback (4005)")
+    swank.add_argument("--socket", default=None, metavar="FILE", help="listen at this Unix socket instead (at a port)")
+    swank.add_argument("--port-file", default=None, metavar="FILE", help="write the port into FILE when it listens (no file)")
     run = commands.add_parser("run", parents=[common["run"], openings], help="load a .lisp, .hy or .asd file and run it")
     run.add_argument("file", help="a .lisp, .hy or .asd file")
     run.add_argument(

@@ -109,9 +109,13 @@ def newest_effective_designator(desig):
     return member
 
 
+def _designator(thing):
+    return thing if isinstance(thing, Designator) else type_error(thing, "DESIGNATOR")
+
+
 def get_equal_designators(d):
     """The other members of the chain of ``d``: its ancestors oldest first, then its successors youngest first."""
-    members = chain(d)
+    members = chain(_designator(d))
     here = members.index(d)
     return list_from(members[:here] + members[:here:-1])
 
@@ -121,6 +125,7 @@ def designator_solutions(desig, from_root=None):
 
     With ``from_root``, it begins with the oldest member of the chain.
     """
+    _designator(desig)
 
     def solutions():
         member = oldest(desig) if from_root is not None else desig

@@ -44,6 +44,7 @@ EVERYBODY = ("every handler on its way",)
 """The mark of an exception that a handler raised: whoever was to be asked was asked when it left the handler."""
 
 _debugger = Cell(None)
+_router = Cell(None)
 _root = Cell(None)
 
 
@@ -51,6 +52,15 @@ def install_debugger(function):
     """Make ``function(condition)`` the debugger of last resort; ``None`` means: raise the condition. Returns the old one."""
     old, _debugger.value = _debugger.value, function
     return old
+
+
+def install_router(find):
+    """Ask ``find()`` at each error for the debugger of the task that runs; where it returns ``None`` the installed one is called."""
+    _router.value = find
+
+
+def _debugger_at_hand():
+    return _router.value is not None and _router.value() or _debugger.value
 
 
 def install_root(handler):
@@ -338,8 +348,9 @@ def enter_debugger(condition):
         if truth(hook):
             with binding(variable, None):
                 (hook.function if isinstance(hook, Symbol) else hook)(condition, hook)
-    if _debugger.value is not None:
-        _debugger.value(condition)
+    debugger = _debugger_at_hand()
+    if debugger is not None:
+        debugger(condition)
 
 
 def invoke_debugger(condition: types.Condition) -> NoReturn:
@@ -479,7 +490,7 @@ def signal_exception(exception):
     signal_condition(condition)
     if _root.value is not None:
         _root.value(condition)
-    if _debugger.value is not None or truth(DEBUGGER_HOOK.value):
+    if _debugger_at_hand() is not None or truth(DEBUGGER_HOOK.value):
         invoke_debugger(condition)
     note_asked(exception)
 

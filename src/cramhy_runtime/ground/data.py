@@ -47,6 +47,9 @@ UNSUPPLIED = _Marker("#<unsupplied>")
 STRETCH = range(256)
 """So many elements of a list a loop passes between two checkpoints: a circular list must not keep Ctrl-C from its plan."""
 
+LONG = 20_000
+"""A list of more elements is made in parts, with a checkpoint before each."""
+
 
 class Symbol:
     """A name with a value, a function, a property list and a home package.
@@ -214,8 +217,14 @@ def lisp_list(*items: object) -> Cons | None:
 
 def list_from(iterable: Iterable[object], tail: Any = None) -> Any:
     """The list of the elements of ``iterable``, ending in ``tail``."""
-    head = tail
-    for item in reversed(iterable if isinstance(iterable, (list, tuple)) else list(iterable)):
+    head, items = tail, iterable if isinstance(iterable, (list, tuple)) else list(iterable)
+    if len(items) > LONG:
+        rest = len(items) % LONG
+        for start in range(len(items) - LONG, rest - 1, -LONG):
+            checkpoint()
+            head = list_from(items[start : start + LONG], head)
+        items = items[:rest]
+    for item in reversed(items):
         cell = new_object(Cons)  # made without its constructor, which would be a call of a Python function
         cell.car, cell.cdr = item, head
         head = cell
@@ -225,8 +234,15 @@ def list_from(iterable: Iterable[object], tail: Any = None) -> Any:
 def python_list(lst: Any) -> list[Any]:
     """The elements of the Lisp list ``lst`` as a Python list."""
     if lst.__class__ is not Cons:
-        return [] if lst is None else list(lst)
+        return [] if lst is None else list(_iterator(lst))
     return list_parts(lst)[0]
+
+
+def _iterator(thing):
+    try:
+        return iter(thing)
+    except TypeError:
+        return PORTS.signals.type_error(thing, "LIST")
 
 
 def list_parts(cell):

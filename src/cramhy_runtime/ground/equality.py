@@ -15,7 +15,7 @@ from math import copysign
 
 from .arrays import LispArray, is_bit_vector
 from cramhy_runtime.kernel.active import checkpoint
-from .data import WRITABLE_STRINGS, Character, Cons, DoubleFloat, FreshString, Keyword, LispString, Symbol, is_ratio, list_parts
+from .data import LONG, WRITABLE_STRINGS, Character, Cons, DoubleFloat, FreshString, Keyword, LispString, Symbol, is_ratio, list_parts
 
 from .ports import PORTS
 
@@ -186,7 +186,11 @@ def equal_key(x):
 
 def _cons_key(cell, key):
     items, end = list_parts(cell)
-    return ("cons", *map(key, items), key(end))
+    keys = []
+    for start in range(0, len(items), LONG):
+        checkpoint()
+        keys += map(key, items[start : start + LONG])
+    return ("cons", *keys, key(end))
 
 
 def equalp_key(x):

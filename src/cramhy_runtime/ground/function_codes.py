@@ -71,3 +71,9 @@ def _inside(code: CodeType, name: str) -> Iterator[CodeType]:
         if code.co_qualname == name:
             yield code
         waiting += [constant for constant in code.co_consts if isinstance(constant, CodeType)]
+
+
+def files_noted() -> list[str]:
+    """The names of the files that living functions were compiled from, each once, in the order in which they were noted."""
+    found = {code.co_filename: None for reference in _noted.references if (code := reference()) is not None}
+    return list(found)

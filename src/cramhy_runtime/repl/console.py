@@ -15,7 +15,7 @@ from cramhy_runtime.ground.conditions import Condition
 
 from .line_input import standard_lines
 from .listener import Listener
-from .session import Interruption
+from cramhy_runtime.session.session import Interruption
 
 
 def exit_status(leaving):

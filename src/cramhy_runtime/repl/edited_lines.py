@@ -23,7 +23,7 @@ from prompt_toolkit.layout.utils import explode_text_fragments
 from cramhy_runtime.kernel.standard_input import drop_unfinished
 from cramhy_runtime.kernel.terminals import ctrl_c_as_a_key, typed_ahead
 
-from .completion import completions
+from cramhy_runtime.session.completion import completions
 from .file_names import begun_string, file_names
 from .history import History, place
 from .line_input import BROKEN_OFF, Lines

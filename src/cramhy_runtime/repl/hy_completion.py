@@ -26,7 +26,7 @@ from cramhy_runtime.languages.hy.brackets import open_brackets
 from cramhy_runtime.languages.hy.lisp_data import package_of
 from cramhy_runtime.languages.operators import DESIGNATORS, PROLOG
 
-from .completion import Keywords, completions, keywords_at_hand, keywords_of_symbol
+from cramhy_runtime.session.completion import Keywords, completions, keywords_at_hand, keywords_of_symbol
 from .readline_lines import LISP_DELIMITERS, Tab, in_string
 
 HY_DELIMITERS = " \t\n()[]{}`~"

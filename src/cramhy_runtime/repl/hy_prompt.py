@@ -48,7 +48,7 @@ from .hy_lines import HyLines
 from .line_input import BROKEN_OFF, Lines
 from .listener import Listener, at_the_prompt
 from .open_forms import OpenForms, of_lisp
-from .session import Interruption, Session
+from cramhy_runtime.session.session import Interruption, Session
 
 IN_PACKAGE = sym("IN-PACKAGE")
 _IN_PACKAGE = Symbol("in-package")

@@ -24,7 +24,7 @@ from cramhy_runtime.ground.packages import COMMON_LISP, symbol_name, symbol_pack
 from cramhy_runtime.ground.source_places import describe
 
 
-from .session import Interruption, condition_of, signalled_here
+from cramhy_runtime.session.session import Interruption, condition_of, signalled_here
 
 
 def serve(session, lines=None, out=None):

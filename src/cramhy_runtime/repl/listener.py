@@ -17,6 +17,7 @@ from contextlib import contextmanager, nullcontext
 from cramhy_runtime import kernel
 from cramhy_runtime.cpl import current_task
 from cramhy_runtime.ground import conditions
+from cramhy_runtime.languages.commonlisp.printer.printing_support import with_readable_input
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.tools import backtrace
 from cramhy_runtime.languages.commonlisp.tools.advice import explanation
@@ -31,7 +32,7 @@ from . import commands, prompt_words
 from .line_input import BROKEN_OFF, Lines
 from .open_forms import of_lisp
 from .progress import Progress
-from .session import Interruption, leave, signalled_here
+from cramhy_runtime.session.session import Interruption, leave, signalled_here
 
 
 ABORT = sym("ABORT")
@@ -295,11 +296,15 @@ class Listener:
     def debug(self, condition):
         """The debugger: on top of the stack that signalled ``condition``. It is left by a restart."""
         if not at_the_prompt() and current_task() is None:
-            return  # a task of the machine's: what it fails with is reported
+            return None  # a task of the machine's: what it fails with is reported
         signalled_here(condition)
         restarts = conditions.compute_restarts(condition)
         if not restarts:
-            return
+            return None
+        return with_readable_input(lambda: self.dialogue(condition, restarts))
+
+    def dialogue(self, condition, restarts):
+        """Tell of ``condition`` and answer what the user types, until a restart leaves it."""
         self.announce(condition, restarts)
         self.level += 1
         try:

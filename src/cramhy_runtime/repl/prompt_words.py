@@ -11,7 +11,7 @@ from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.tools.advice import elsewhere, is_operator
 
-from .session import leaving
+from cramhy_runtime.session.session import leaving
 
 _QUOTES = (sym("QUOTE"), sym("FUNCTION"))
 LEAVING = ("exit", "quit", "bye")

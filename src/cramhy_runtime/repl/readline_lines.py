@@ -18,7 +18,7 @@ from cramhy_runtime.kernel.standard_input import StandardInput
 from cramhy_runtime.kernel.terminals import INTERRUPT, ctrl_c_as_a_key
 from cramhy_runtime.languages.commonlisp.streams import streams
 
-from .completion import completions
+from cramhy_runtime.session.completion import completions
 from .file_names import begun_string, file_names
 from .history import History, place
 from .line_input import BROKEN_OFF, PlainLines

@@ -50,11 +50,12 @@ def _free(world: World, stand: PoseStamped) -> bool:
     """Whether the robot touches nothing there but what it holds. It is put there and back, and nobody sees it."""
     core, robot = world.core, world.robot
     before = robot.placement
-    core.put(robot.name, of_pose(stand))
-    try:
-        return all(thing.name in robot.holds for thing in core.touching(robot.name))
-    finally:
-        core.put(robot.name, before)
+    with core.trial():
+        core.put(robot.name, of_pose(stand))
+        try:
+            return all(thing.name in robot.holds for thing in core.touching(robot.name))
+        finally:
+            core.put(robot.name, before)
 
 
 def ways_to_hold(thing: Object) -> list[tuple[str, str]]:

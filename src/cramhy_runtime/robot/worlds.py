@@ -20,6 +20,8 @@ from .poses import Place, at, pose_of
 Name = str | Symbol
 Point = tuple[float, float, float]
 Camera = tuple[Point, Point] | str | None
+MODES = ("kinematic", "physical")
+"""How a world may be; see `world`."""
 
 
 class World:
@@ -168,12 +170,14 @@ def world(description: str | None = None, mode: str = "kinematic") -> World:
     """Begin with a new world: the kitchen, and the robot with its arms parked at the origin.
 
     description: the system that describes the robot, such as ``"cram_porter_description"``; by default that of the PR2. mode:
-    ``"kinematic"``, in which motions happen at once and what is let go falls; there is no other one yet. Errors: ImportError without the
-    extra ``robot``; ValueError, when this image has another robot, and for another mode.
+    ``"kinematic"``, in which motions happen at once and what is let go falls, or ``"physical"``, in which controllers move the joints in
+    the kernel's time, fingers hold by friction, and what slips falls. Errors: ImportError without the extra ``robot``; ValueError, when
+    this image has another robot, and for another mode.
     """
-    if mode != "kinematic":
-        raise ValueError(f'The mode of a world is "kinematic", not {mode!r}: controllers and friction are not simulated yet.')
+    if mode not in MODES:
+        raise ValueError(f"The mode of a world is {' or '.join(map(repr, MODES))}, not {mode!r}.")
     load(description)
+    sym("CRAM-BULLET-REASONING-BELIEF-STATE::*WORLD-MODE*").value = keyword(mode.upper())
     lisp("CRAM-OCCASIONS-EVENTS", "clear_belief")()
     return World()
 

@@ -10,6 +10,8 @@
 ``scene``                 the same for MuJoCo: contacts, falls, rays
 ``vision``                what a camera sees
 ``shown``                 which world is the current one, and who is told when it changes
+``notes``                 motions one after the other, for whoever shows a world
+``remarks``               what a plan considers, for whoever looks on
 ``pictures/``             pictures and movies of a world, without a screen
 ``simulated_robot``       the motions of a robot in such a world
 ``data/``                 the PR2 and the kitchen of Bremen, as URDF of our own

@@ -86,6 +86,10 @@ class Reach:
             if found is not None:
                 yield found
 
+    def near(self, position: np.ndarray, rotation: np.ndarray, first: np.ndarray) -> np.ndarray | None:
+        """As `solve`, but only what the posture ``first`` leads to."""
+        return self._descend(position, rotation, np.clip(np.asarray(first, float), self.skeleton.lower, self.skeleton.upper))
+
     def recall(self, position: np.ndarray, rotation: np.ndarray, number: int = 0) -> np.ndarray | None:
         """The answer of that number, counted from 0, of those that differ; ``None`` when there are not so many.
 

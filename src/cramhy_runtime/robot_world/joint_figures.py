@@ -13,7 +13,7 @@ from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import Cons, DoubleFloat, list_from
 from cramhy_runtime.ground.packages import near_names
 
-from . import urdf
+from . import description_files
 from .descriptions import Description, DescriptionError
 
 DATA = Path(__file__).parent / "data"
@@ -23,9 +23,9 @@ DATA = Path(__file__).parent / "data"
 def description(source: str) -> Description:
     """The description in a URDF text or file. A name in no folder is that of a file of ours. Errors: `DescriptionError`, OSError."""
     if source.lstrip().startswith("<"):
-        return urdf.read_text(source, "robot_description")
+        return description_files.read_text(source, "robot_description")
     path = Path(source)
-    return urdf.read_file(path if path.is_file() else DATA / source)
+    return description_files.read_file(path if path.is_file() else DATA / source)
 
 
 def joint_figures(source: str, name: str) -> Cons:

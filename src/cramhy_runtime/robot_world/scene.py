@@ -93,11 +93,11 @@ class Scene:
             self._part_of_geom[part.geoms.start : part.geoms.stop] = number
         numbers = {id(thing): number for number, thing in enumerate(self.things)}
         self._thing_of_geom = np.array([-1 if part < 0 else numbers[id(self.parts[part].thing)] for part in self._part_of_geom])
-        self._planes = model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE
-        self._middle = np.where(self._planes[:, None], 0.0, model.geom_aabb[:, :3])
-        self._half = np.where(self._planes[:, None], 0.0, model.geom_aabb[:, 3:])
+        self.is_plane = model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE
+        self._middle = np.where(self.is_plane[:, None], 0.0, model.geom_aabb[:, :3])
+        self._half = np.where(self.is_plane[:, None], 0.0, model.geom_aabb[:, 3:])
         standing = [part.body for part in self.parts if isinstance(part.thing, Machine) and part.thing.fixed]
-        self._fixed = np.isin(model.geom_bodyid, standing) | self._planes
+        self._fixed = np.isin(model.geom_bodyid, standing) | self.is_plane
         self._machines, self._items = [], []
         for thing in self.things:
             parts = [part for part in self.parts if part.thing is thing]
@@ -200,7 +200,7 @@ class Scene:
         near = np.ones((len(mine), len(lowest)), bool)
         for axis in range(3):
             near &= (lowest[:, axis] <= high[:, axis, None]) & (highest[:, axis] >= low[:, axis, None])
-        for plane in np.flatnonzero(self._planes):
+        for plane in np.flatnonzero(self.is_plane):
             normal = self.data.geom_xmat[plane].reshape(3, 3)[:, 2]
             corners = np.where(normal > 0, lowest[mine], highest[mine])
             near[:, plane] = (corners - self.data.geom_xpos[plane]) @ normal <= distance
@@ -215,23 +215,30 @@ class Scene:
     # ------------------------------------------------------------------------------------------------------------------ falls
 
     def settle(self, seconds: float) -> float:
-        """Let the free items fall for so long, or until all are at rest; the seconds that it took. The things have moved then."""
+        """Let the free items fall for so long, or until all are at rest; the seconds that it took. The things have moved then.
+
+        Other tasks may run meanwhile. What they, or a hand from outside, put elsewhere stays there.
+        """
         free, model, data = self._free, self.model, self.data
         if not free:
             return 0.0
         steps, done, resting, step = max(1, round(seconds / STEP)), 0, 0, mujoco.mj_step
-        velocities = data.qvel
+        velocities, before = data.qvel, [part.thing.placement for part in free]
         while done < steps and resting < _REST_STEPS:
             count = min(_TOGETHER, steps - done)
             step(model, data, count)
             done += count
             resting = resting + count if max(velocities.max(), -velocities.min()) < _AT_REST else 0
             checkpoint()
-        for part in free:
+        self.write_back(part for part, place in zip(free, before, strict=True) if part.thing.placement is place)
+        return done * STEP
+
+    def write_back(self, parts: Iterable[Part] | None = None) -> None:
+        """Write into the free items where they are in the scene; parts: into these only."""
+        for part in self._free if parts is None else parts:
             start = self.model.jnt_qposadr[self.model.body_jntadr[part.body]]
             now = self.data.qpos[start : start + 7].copy()
             part.thing.placement = Placement(now[:3], now[3:])
-        return done * STEP
 
     def free_all(self) -> list[tuple[Item, Item | Machine | None]]:
         """Lift the free items out of what stands and they are inside of; the items that cannot be freed, each with what it is in.
@@ -271,7 +278,7 @@ class Scene:
         """(how deep a geom is inside of what stands, the geom that this is)."""
         lowest, highest = self.boxes()
         near = self._near(lowest, highest, np.array([geom]), 0.0)[0]
-        numbers = np.flatnonzero(near & ((self.model.geom_contype == _STANDING) | self._planes))
+        numbers = np.flatnonzero(near & ((self.model.geom_contype == _STANDING) | self.is_plane))
         distances = [mujoco.mj_geomDistance(self.model, self.data, geom, int(other), 0.0, None) for other in numbers]
         if not distances:
             return 0.0, 0

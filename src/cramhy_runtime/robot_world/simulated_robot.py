@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from . import remarks
 from .placements import Placement
 from .reaching import pan_and_tilt, solver_of
 from .things import Item, Machine
@@ -110,10 +111,12 @@ class SimulatedRobot:
     def drive(self, to: Placement) -> None:
         """Put the base there. Errors: `Blocked`, when the robot would touch anything but what it holds; then it stays where it is."""
         before = self.machine.placement
-        self.world.put(self.name, to)
-        touched = self.collisions()
+        with self.world.trial():
+            self.world.put(self.name, to)
+            touched = self.collisions()
+            if touched:
+                self.world.put(self.name, before)
         if touched:
-            self.world.put(self.name, before)
             raise Blocked(touched)
 
     def collisions(self, but: Sequence[Hashable] = ()) -> list[Item | Machine]:
@@ -163,25 +166,34 @@ class SimulatedRobot:
         joints."""
         self.world.bend(self.name, dict(zip(self.parts.arms[arm].joints, positions, strict=True)))
 
-    def move_tools(self, goals: Mapping[Hashable, Placement]) -> None:
+    def move_tools(self, goals: Mapping[Hashable, Placement], lenient: bool = False) -> None:
         """Bring the tool points of arms to poses in the frame of the base.
 
         The torso stays where it is if the arms can reach from there, else it goes to the highest place from which they can: every sixth
         step is tried first, then those above the first that will do. Where the arms, but for the hands, would touch something, other
-        heights and postures are tried; if none is better, the first is taken. Errors: `OutOfReach`; then nothing has
-        moved.
+        heights and postures are tried; if none is better, the first is taken. lenient: matters in a physical world, where hands meet what
+        they touch. Errors: `OutOfReach`; then nothing has moved.
         """
         first = None
-        for posture in islice(self._postures(goals), _POSTURES):
-            first = first or posture
-            self.world.bend(self.name, posture)
-            if not self._arms_touch():
+        with self.world.trial():
+            for posture in islice(self._postures(goals), _POSTURES):
+                first = first or posture
+                self.world.bend(self.name, posture)
+                if not self._arms_touch():
+                    self._remark(goals, True)
+                    return
+            self._remark(goals, first is not None)
+            if first is not None:
+                self.world.bend(self.name, first)
                 return
-        if first is None:
-            heights = self._heights()
-            arms = (arm for arm, goal in goals.items() if self.reach(arm, goal, heights[-1]) is None)
-            raise OutOfReach(next(arms, next(iter(goals))), len(heights) // _COARSE + 3)
-        self.world.bend(self.name, first)
+        heights = self._heights()
+        arms = (arm for arm, goal in goals.items() if self.reach(arm, goal, heights[-1]) is None)
+        raise OutOfReach(next(arms, next(iter(goals))), len(heights) // _COARSE + 3)
+
+    def _remark(self, goals: Mapping[Hashable, Placement], reached: bool) -> None:
+        if remarks.heard():
+            for goal in goals.values():
+                remarks.grasp(self.machine, goal, reached)
 
     def posture_for(self, goals: Mapping[Hashable, Placement]) -> dict[str, float] | None:
         """Positions of the joints of the torso and of the arms that bring the tools there; ``None`` when that is out of reach."""
@@ -253,8 +265,11 @@ class SimulatedRobot:
     def close_gripper(self, arm: Hashable) -> None:
         self.set_fingers(arm, 0.0)
 
-    def grip(self, arm: Hashable) -> list[Item | Machine]:
-        """Close a gripper; what its hand touches then. Errors: `NothingGripped`; the fingers stay closed."""
+    def grip(self, arm: Hashable, newtons: float | None = None) -> list[Item | Machine]:
+        """Close a gripper; what its hand touches then. newtons: matters in a physical world.
+
+        Errors: `NothingGripped`; the fingers stay closed.
+        """
         self.close_gripper(arm)
         hand = set(self.parts.arms[arm].hand)
         touched = [other.thing for own, other in self.world.contacts(self.name) if own.link in hand and other is not None]

@@ -8,6 +8,7 @@ Law: after each function the things are consistent: what is held is where its li
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
@@ -25,7 +26,7 @@ from .skeleton import Skeleton, skeleton_of
 from .things import GREY, Colour, Grip, Item, Machine, Thing
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Mapping, Sequence
+    from collections.abc import Hashable, Iterator, Mapping, Sequence
 
     from .descriptions import Description, Shape
 
@@ -50,6 +51,21 @@ class World:
         self.stuck: list[tuple[Item, Thing | None]] = []  # items that the last `simulate` could not free, and what they are in
         self._scene: Scene | None = None
         self._placed = False
+        self._trials = 0
+
+    @contextmanager
+    def trial(self) -> Iterator[None]:
+        """During the block nobody is told of changes: what is only tried, and taken back, is not seen."""
+        self._trials += 1
+        try:
+            yield
+        finally:
+            self._trials -= 1
+            self._tell()
+
+    def _tell(self) -> None:
+        if not self._trials:
+            shown.changed(self)
 
     # ----------------------------------------------------------------------------------------------------------------- things
 
@@ -94,7 +110,7 @@ class World:
         self.things[thing.name] = thing
         thing.world = self
         self._scene = None
-        shown.changed(self)
+        self._tell()
         return thing
 
     def remove(self, name: Hashable) -> None:
@@ -105,7 +121,7 @@ class World:
         for machine in self.machines():
             machine.holds.pop(name, None)
         self._scene = None
-        shown.changed(self)
+        self._tell()
 
     def thing(self, name: Hashable) -> Thing:
         """The thing of that name. Errors: `WorldError`, when there is none."""
@@ -145,7 +161,7 @@ class World:
             thing.stand(at)
             self._carry(thing)
         self._placed = False
-        shown.changed(self)
+        self._tell()
 
     def bend(self, name: Hashable, joints: Mapping[str, float]) -> None:
         """Set joints of a machine, whatever their limits. Errors: `WorldError`, for joints that it has not."""
@@ -156,7 +172,7 @@ class World:
         machine.bend(joints)
         self._carry(machine)
         self._placed = False
-        shown.changed(self)
+        self._tell()
 
     def link(self, name: Hashable, link: str) -> Placement:
         """Where a link of a machine is. Errors: `WorldError`, for a link that it has not."""
@@ -177,7 +193,7 @@ class World:
         machine, held = self.machine(name), self.item(item)
         machine.holds.setdefault(item, []).append(Grip(link, self.link(name, link).inverse() @ held.placement, loose))
         self._scene = None
-        shown.changed(self)
+        self._tell()
 
     def detach(self, name: Hashable, item: Hashable, link: str | None = None) -> None:
         """Let an item go, by default all links. It stays where it is until the world is simulated."""
@@ -186,7 +202,7 @@ class World:
         if grips:
             machine.holds[item] = grips
         self._scene = None
-        shown.changed(self)
+        self._tell()
 
     def holders(self, item: Hashable) -> list[tuple[Machine, str]]:
         """The machines and links that hold an item."""
@@ -241,7 +257,7 @@ class World:
             scene.free_all()
         took = scene.settle(seconds)
         self._placed = False
-        shown.changed(self)
+        self._tell()
         return took
 
     def stable(self, name: Hashable, metres: float = 0.005, radians: float = 0.15) -> bool:

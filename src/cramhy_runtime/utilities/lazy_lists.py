@@ -11,7 +11,7 @@ a second task that asks for a tail while a first one computes it waits for the f
 from __future__ import annotations
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import STRETCH, UNSUPPLIED, Cons, Symbol, all_values, lisp_list, list_from, list_parts, one, truth
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.functions import function_of
@@ -214,16 +214,20 @@ def lazy_list(initial, body, restarts=False):
 # ---------------------------------------------------------------------------------------------------------------- functions
 
 
+def _cons(thing):
+    return thing if thing.__class__ is Cons else type_error(thing, "LIST")
+
+
 def lazy_car(ll):
     """The first element; ``nil`` for ``nil``."""
-    return None if ll is None else ll.car
+    return None if ll is None else _cons(ll).car
 
 
 def lazy_cdr(ll):
     """The rest, computed if need be; ``nil`` for ``nil``."""
     if ll is None:
         return None
-    rest = ll.cdr
+    rest = _cons(ll).cdr
     if isinstance(rest, LazyTail):
         rest = ll.cdr = rest.force()
     return rest
@@ -278,7 +282,7 @@ def lazy_mapcar(fun, list_1, *more_lists):
     def step(lists):
         if any(ll is None for ll in lists):
             return None
-        return Cons(one(function(*(ll.car for ll in lists))), tail(lambda: step([lazy_cdr(ll) for ll in lists])))
+        return Cons(one(function(*(lazy_car(ll) for ll in lists))), tail(lambda: step([lazy_cdr(ll) for ll in lists])))
 
     return beginning(lambda: step([list_1, *more_lists]))
 
@@ -290,7 +294,7 @@ def lazy_mapcan(fun, list_1, *more_lists):
     def step(lists):
         while not any(ll is None for ll in lists):
             kernel.checkpoint()
-            heads = [ll.car for ll in lists]
+            heads = [lazy_car(ll) for ll in lists]
             part = one(function(*heads))
             if part is not None and part is not False:
                 if not isinstance(part, Cons):
@@ -320,7 +324,7 @@ def lazy_filter(pred, ll):
     def step(cell):
         while cell is not None:
             kernel.checkpoint()
-            result = all_values(function(cell.car))
+            result = all_values(function(lazy_car(cell)))
             if result and truth(result[0]):
                 if len(result) > 1 and truth(result[1]):
                     return Cons(cell.car, None)

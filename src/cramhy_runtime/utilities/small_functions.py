@@ -199,24 +199,28 @@ def make_data_pool():
     return DataPool()
 
 
+def _pool(thing):
+    return thing if isinstance(thing, DataPool) else type_error(thing, "DATA-POOL")
+
+
 def new_pool_value(pool, value=None):
     """Store ``value`` under a new id, which is returned."""
-    number, pool.next_id = pool.next_id, pool.next_id + 1
+    number, pool.next_id = _pool(pool).next_id, pool.next_id + 1
     pool.table[number] = value
     return number
 
 
 def pool_value(pool, number):
-    return pool.table[number] if number in pool.table else error(PoolValueUnbound(id=number))
+    return _pool(pool).table[number] if number in _pool(pool).table else error(PoolValueUnbound(id=number))
 
 
 def set_pool_value(value, pool, number):
-    pool.table[number] = value
+    _pool(pool).table[number] = value
     return value
 
 
 def delete_pool_value(pool, number):
-    pool.table.pop(number, None)
+    _pool(pool).table.pop(number, None)
 
 
 # ------------------------------------------------------------------------------------------------------------------ features

@@ -34,13 +34,18 @@ def files():
     """What the server gives out: a dictionary from paths, such as ``"/app.js"``, to pairs of bytes and a media type."""
     from ..turtlesim.drawing import shapes
 
-    found = {
-        f"/{file.name}": (file.read_bytes(), TYPES[file.name.rpartition(".")[2]])
-        for file in resources.files(__package__).joinpath("static").iterdir()
-    }
+    found = dict(_within(resources.files(__package__).joinpath("static"), "/"))
     found["/"] = found["/index.html"]
     found["/shapes.json"] = (json.dumps(shapes(), separators=(",", ":")).encode(), TYPES["json"])
     return found
+
+
+def _within(folder, path):
+    for file in folder.iterdir():
+        if file.is_dir():
+            yield from _within(file, f"{path}{file.name}/")
+        else:
+            yield path + file.name, (file.read_bytes(), TYPES[file.name.rpartition(".")[2]])
 
 
 class Page:

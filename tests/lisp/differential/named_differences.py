@@ -66,7 +66,7 @@ def _base_characters(question: str, theirs: str, ours: str) -> bool:
     return _same_but(theirs, ours, (r"\(SIMPLE-BASE-STRING (\d+)\)", r"(SIMPLE-ARRAY CHARACTER (\1))"), ("BASE-(CHAR|STRING)", "CHARACTER"))
 
 
-CHARACTERS = (r"#\\+([\w-]+|.)", "#")
+CHARACTERS = (r"#\\{1,2}([\w-]+|\\{1,2}|.)", "#")
 NUMBER = re.compile(r"-?\d+\.\d+(?:[esdf][+-]?\d+)?")
 
 
@@ -81,7 +81,8 @@ def _precision(question: str, theirs: str, ours: str) -> bool:
 
 def _no_object_has(question: str, theirs: str, ours: str) -> bool:
     declared = re.search(
-        r"\((the|declare \((type)?) ?(\(and |nil|\(\)|\(or *\)|\(member *\)|\(not t\)|\(eql\)|\(integer \((-?\d+)\) \4\))", question
+        r"\((the|declare \((type)?) ?(\(and |nil|\(\)|\(cons (?:\* )?nil|\(or *\)|\(member *\)|\(not t\)|\(eql\)|\(integer \((-?\d+)\) \4\))",
+        question,
     )
     return bool(declared) and "TYPE-ERROR" in _types(ours) and (not _types(theirs) or "CONTROL-ERROR" in _types(theirs))
 
@@ -94,6 +95,11 @@ def _defined_again(question: str, theirs: str, ours: str) -> bool:
 def _bounds_pass(question: str, theirs: str, ours: str) -> bool:
     crossed = any(int(start) > int(end) for start, end in re.findall(r":start (\d+) :end (\d+)", question))
     return crossed and bool(re.search(r"\((position|find)", question)) and "TYPE-ERROR" in _types(ours) and not _types(theirs)
+
+
+def _inapplicable(question: str, theirs: str, ours: str) -> bool:
+    """Whether a method may be there that the combination does not know and that does not apply."""
+    return bool(re.search(r"\(defmethod \S+ [^\s()]+ \(", question)) and _types(theirs) == {"ERROR"} and not _types(ours)
 
 
 NAMED = [
@@ -177,6 +183,11 @@ NAMED = [
         ),
     ),
     Named("A start behind the end is always an error", _bounds_pass),
+    Named("A method with qualifiers that its combination does not know", _inapplicable),
+    Named(
+        "A symbol without a function may be given to a function that never calls it",
+        lambda question, theirs, ours: "UNDEFINED-FUNCTION" in _types(theirs) and not _types(ours) and bool(re.search(r"'[a-z]", question)),
+    ),
     Named(
         "shows the parameters that its Python code has",
         lambda question, theirs, ours: _same_but(theirs, ours, (r"(?<=\(LAMBDA )\([^()]*\)", "()"), ("NIL(?= {})", "()")),

@@ -13,7 +13,7 @@ from __future__ import annotations
 from cramhy_runtime import kernel
 
 from cramhy_runtime.ground import condition_types as types
-from cramhy_runtime.ground.conditions import HandlerExit, error, handler_bind, make_condition, matches, signal_condition
+from cramhy_runtime.ground.conditions import HandlerExit, error, handler_bind, make_condition, matches, signal_condition, type_error
 from cramhy_runtime.ground.data import lisp_list, list_from
 from cramhy_runtime.ground.source_places import locate
 from cramhy_runtime.ground.classes import class_name
@@ -234,9 +234,9 @@ def assert_no_nlx(forms, thunk):
 
 def composite_failures(failure):
     """The failures in a ``composite-failure``, a Lisp list."""
-    return failure.failures
+    return failure.failures if isinstance(failure, CompositeFailure) else type_error(failure, "COMPOSITE-FAILURE")
 
 
 def envelop_error(failure):
     """The error in the envelope ``failure``."""
-    return failure.error
+    return failure.error if isinstance(failure, CommonLispErrorEnvelope) else type_error(failure, "COMMON-LISP-ERROR-ENVELOPE")

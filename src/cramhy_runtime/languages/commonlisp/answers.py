@@ -21,6 +21,7 @@ from .reader.dispatch_macros import READ_EVAL
 from .reader.reader import Reader
 from .reader.reader_functions import read_from_string
 from .printer.printer import prin1_to_string, princ_to_string
+from .printer.printing_support import with_standard_io_syntax
 from .printer.standard_printers import print_slots
 from .streams import streams
 from .tools import user_queries
@@ -105,7 +106,9 @@ class _User:
 
 
 class _Systems:
-    load = staticmethod(load_system)
+    def load(self, name):
+        """Load a library whose package was named, whatever is bound where that happens: a package without Common Lisp, a readtable."""
+        with_standard_io_syntax(lambda: load_system(name))
 
 
 class _Definitions:

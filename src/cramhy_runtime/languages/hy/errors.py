@@ -19,6 +19,7 @@ import os
 import re
 import sys
 import traceback
+from pathlib import Path
 
 import hy
 from hy import errors as hy_errors
@@ -193,7 +194,30 @@ def _spelling(name, exception):
     return written if lines and written in lines[-1] else name
 
 
+def _not_required(exception):
+    """What to try if the program uses an operator of cramhy without ``(require cramhy *)``, or ``None``."""
+    frames = [frame.filename for frame in traceback.extract_tb(exception.__traceback__) if _is_users(frame.filename)]
+    file = getattr(exception, "filename", None) or (frames[-1] if frames else None)
+    try:
+        text = Path(file_of_text(file)).read_text(encoding="utf-8")
+    except (OSError, TypeError, ValueError):
+        return None
+    if re.search(r"\(require[^()]*\bcramhy\s*(\*|:macros\s+\*)", text):
+        return None
+    named = isinstance(exception, NameError)
+    used = [exception.name] if named else [hy.mangle(head) for head in re.findall(r"\(([a-z][\w*+-]*[\w*+])(?=[\s)])", text)]
+    from .plan_macros import macros
+
+    ours = macros()
+    operator = next((name for name in used if name in ours), None)
+    if operator is None:
+        return None
+    return f"{hy.unmangle(operator)} is an operator of cramhy. Begin the file with (require cramhy *)."
+
+
 def _hint(exception, condition):
+    if isinstance(exception, (NameError, SyntaxError)) and (hint := _not_required(exception)):
+        return hint
     if isinstance(exception, NameError) and exception.name:
         return shapes.hint_for_name(exception.name, _names_known(exception))
     hint = condition.hint

@@ -19,14 +19,16 @@
           (t
            (when (and furniture (btr:object-attached furniture object))
              (btr:detach-object furniture object))
-           (btr:attach-object robot object link :loose (and (btr:object-attached robot object) t))))))
+           (btr:attach-object robot object link :loose (and (btr:object-attached robot object) t))
+           (robot-world:remark-seen (btr:name object) nil)))))
 
 (defmethod cram-occasions-events:on-event btr-detach-object ((event cpoe:object-detached))
   (let ((object (btr:object btr:*current-bullet-world* (cpoe:event-object-name event)))
         (link (end-effector (cpoe:event-arm event))))
     (when (and object link)
       (btr:detach-object (btr:get-robot-object) object link)
-      (btr::let-fall btr:*current-bullet-world* 5/3 (btr:get-robot-object))))) ; as long as (btr:simulate world 10)
+      (btr::let-fall btr:*current-bullet-world* 5/3 (btr:get-robot-object)) ; as long as (btr:simulate world 10)
+      (robot-world:remark-seen (btr:name object) (btr:pose object)))))
 
 (defun move-container (event sign)
   (let* ((furniture (btr:object btr:*current-bullet-world* (or (cpoe:environment-event-object event) :kitchen)))
@@ -42,7 +44,16 @@
 
 (defmethod cram-occasions-events:on-event btr-note-name ((event cpoe:object-perceived-event))
   (let ((designator (cpoe:event-object-designator event)))
-    (setf (gethash (desig:first-desig designator) *names*) (desig:desig-prop-value designator :name))))
+    (setf (gethash (desig:first-desig designator) *names*) (desig:desig-prop-value designator :name))
+    (when (robot-world:looked-on-p)
+      (note-place designator))))
+
+(defun note-place (designator)
+  "Tell those who look on where an object was seen."
+  (let ((pose (second (assoc :pose (desig:desig-prop-value designator :pose)))))
+    (when (typep pose 'cl-transforms-stamped:pose-stamped)
+      (robot-world:remark-seen (desig:desig-prop-value designator :name)
+                               (cram-tf:ensure-pose-in-frame pose cram-tf:*fixed-frame* :use-zero-time t)))))
 
 (defmethod cram-occasions-events:on-event btr-note-motion ((event cpoe:robot-state-changed))
   (btr:timeline-advance btr:*current-timeline*

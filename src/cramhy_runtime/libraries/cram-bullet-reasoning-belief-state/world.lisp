@@ -6,6 +6,8 @@
 (defvar *kitchen-urdf* nil "The description of the kitchen, once it was read.")
 (defvar *robot-parameter* "robot_description" "The ROS parameter with the robot's URDF.")
 (defvar *kitchen-parameter* "kitchen_description" "The ROS parameter with the kitchen's URDF.")
+(defvar *world-mode* :kinematic
+  "How `clear-belief' makes the world anew: :KINEMATIC, in which motions happen at once, or :PHYSICAL, with controllers, contacts and friction.")
 (defvar *spawn-debug-window* t "For code that sets it: there is no window.")
 
 (defvar *names* (make-hash-table :test 'eq)
@@ -49,6 +51,6 @@
   (cut:var-value '?joint (cut:lazy-car (prolog `(cram-robot-interfaces:robot-torso-link-joint ,robot ?link ?joint)))))
 
 (defmethod cram-occasions-events:clear-belief bullet-world ()
-  (setf btr:*current-bullet-world* (robot-world:make-world))
+  (setf btr:*current-bullet-world* (robot-world:make-world *world-mode*))
   (setup-world-database)
   (clrhash *names*))

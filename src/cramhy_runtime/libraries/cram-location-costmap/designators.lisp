@@ -25,6 +25,7 @@
           (progn
             (get-map-value costmap 0 0)
             (on-visualize-costmap costmap)
+            (%remark costmap)
             (costmap-samples costmap))
         (no-cost-functions-registered () nil)
         (cram-math:invalid-probability-distribution ()

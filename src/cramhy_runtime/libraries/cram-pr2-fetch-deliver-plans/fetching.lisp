@@ -31,9 +31,10 @@
   "Look at a pose, for a try."
   (pr2-proj::look-at :pose pose))
 
-(defun try-picking-up (item object arm pick-up-action)
-  "Fail unless ITEM, which OBJECT means, is seen and can be taken from where the robot is."
-  (let ((object (desig:current-desig object)))
+(defun try-picking-up (name object arm pick-up-action)
+  "Fail unless the item of that NAME, which OBJECT means, is seen and can be taken from where the robot is."
+  (let* ((object (desig:current-desig object))
+         (item (btr:object btr:*current-bullet-world* name)))
     (look-ahead-to (pose-in-room object))
     (unless (member item (pr2-proj::visible-items object))
       (cpl:fail 'common-fail:perception-object-not-found :object object :description "The object is not seen from there."))
@@ -45,8 +46,14 @@
   (let ((item (btr-belief:get-designator-object (desig:current-desig object))))
     (or (null item)
         (pr2-proj-reasoning:settle-on-place
-         location (lambda () (try-picking-up item object arm pick-up-action)))
+         location (lambda () (try-picking-up (btr:name item) object arm pick-up-action)))
         (cpl:fail 'common-fail:object-unreachable :object object :description "The object cannot be taken from any of the places ahead."))))
+
+(defun in-hand-p (object)
+  "Whether the robot holds OBJECT; true where no world knows it."
+  (let ((item (btr-belief:get-designator-object (desig:current-desig object))))
+    (or (null item)
+        (and (btr:object-attached (btr:get-robot-object) item) t))))
 
 (cpl:def-cram-function fetch (?object-designator ?arm ?pick-up-robot-location pick-up-action)
   "Go to an object, take it, and park the arms. Where it is out of reach, the robot goes to another place, ten times; where the fingers miss
@@ -71,6 +78,8 @@ it, the robot looks again, once. Returns the object as it is known then."
         (with-other-solutions (1 (fd-plans fetch) common-fail:gripper-low-level-failure)
             ((progn (pp-plans:park-arms) t)
              (cpl:fail 'common-fail:object-unreachable :object ?object-designator :description "The fingers closed beside the object."))
-          (pick-up-what-is-seen ?object-designator ?arm pick-up-action))
-        (pp-plans:park-arms))))
+          (pick-up-what-is-seen ?object-designator ?arm pick-up-action)
+          (pp-plans:park-arms)
+          (unless (in-hand-p ?object-designator)
+            (cpl:fail 'common-fail:gripper-closed-completely :description "The object slipped out of the hand."))))))
   (desig:current-desig ?object-designator))

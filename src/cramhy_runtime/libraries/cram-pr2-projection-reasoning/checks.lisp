@@ -33,7 +33,7 @@ solution, TRIES times at most. NONE-LEFT and TOO-MANY are what happens when ther
 ;;; Places.
 
 (defun check-navigating-collisions (navigation-location-desig &optional (navigation-location-samples-to-try 30))
-  "Find a solution of a location at which the robot touches nothing, and leave the robot there."
+  "Find a solution of a location at which the robot touches nothing, and leave the robot there; in a physical world it stays where it is."
   (flet ((give-up (description)
            (cpl:fail 'common-fail:navigation-goal-in-collision :description description)))
     (in-simulation
@@ -45,7 +45,9 @@ solution, TRIES times at most. NONE-LEFT and TOO-MANY are what happens when ther
                            common-fail:navigation-low-level-failure)
             (nil :none-left (give-up "No other samples in designator")
                  :too-many (give-up "Couldn't find a nav pose after all retries"))
-          (pr2-proj::drive (desig:reference location)))))
+          (btr:with-current-bullet-world (world-to-try-in)
+            (pr2-proj::drive (desig:reference location))))))
+    (btr-belief:set-tf-from-bullet)
     (desig:current-desig navigation-location-desig)))
 
 ;;; Arms.
@@ -75,14 +77,23 @@ solution, TRIES times at most. NONE-LEFT and TOO-MANY are what happens when ther
         for right = right-poses then (rest right)
         do (move-arms-to (first left) (first right) harmless (or (eq required :all) (and (eq required :last) (= count 1))))))
 
+(defun world-to-try-in ()
+  "The current world; a copy of it, in which motions happen at once, when it is a physical one."
+  (if (robot-world:physical-p btr:*current-bullet-world*)
+      (btr:copy-world btr:*current-bullet-world*)
+      btr:*current-bullet-world*))
+
 (defmacro in-world-for-now (&body body)
-  "Do BODY, and put the world back to what it was; also (BACK) does that."
-  `(let* ((world btr:*current-bullet-world*)
+  "Do BODY, and put the world back to what it was; also (BACK) does that. A physical world is not touched at all."
+  `(let* ((world (world-to-try-in))
           (state (btr:get-state world)))
      (flet ((back ()
               (btr:restore-world-state state world)
               (btr-belief:set-tf-from-bullet)))
-       (unwind-protect (progn ,@body) (back)))))
+       (unwind-protect (btr:with-current-bullet-world world
+                         (unwind-protect (progn ,@body) (back)))
+         (unless (eq world btr:*current-bullet-world*)
+           (btr-belief:set-tf-from-bullet))))))
 
 (defun try-picking-up (reference)
   "Move the arms as the plan of REFERENCE, what a picking-up action stands for, would move them."

@@ -20,7 +20,9 @@
 parked. Returns that location, or nil when none of so many SAMPLES will do, or TRY has failed TRIES times; the world is then as it was."
   (in-simulation
     (in-world-for-now
-      (pp-plans:park-arms)
+      (let ((arms (pp-plans::all-arms)))
+        (pr2-proj::move-joints (when (member :left arms) (pp-plans::parking-values :left t))
+                               (when (member :right arms) (pp-plans::parking-values :right t))))
       (loop repeat samples
             for place = (desig:current-desig location) then (next-place place)
             while (and place (plusp tries))

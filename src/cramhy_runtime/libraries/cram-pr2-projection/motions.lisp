@@ -17,9 +17,22 @@
     (btr-belief:set-tf-from-bullet))
   nil)
 
+(defun fail-if-hindered (problem unreachable not-reached)
+  "In a physical world: fail when PROBLEM, the value of a motion, tells what hindered it. UNREACHABLE and NOT-REACHED are classes of
+failures: there was no way, or the joints did not get where they were sent."
+  (when (and (consp problem) (member (first problem) '(:no-way :not-reached :slipped)))
+    (touched)
+    (destructuring-bind (kind text) problem
+      (cpl:fail (ecase kind
+                  (:no-way unreachable)
+                  (:not-reached not-reached)
+                  (:slipped 'common-fail:gripper-closed-completely))
+                :description (format nil "In the physical world ~a." text)))))
+
 (defun drive (pose-stamped)
   "Put the base at a pose in the room."
   (let ((things (robot-world:drive (robot) (parts) (cram-tf:ensure-pose-in-frame pose-stamped cram-tf:*fixed-frame* :use-zero-time t))))
+    (fail-if-hindered things 'common-fail:navigation-pose-unreachable 'common-fail:navigation-goal-not-reached)
     (when things
       (cpl:fail 'common-fail:navigation-pose-unreachable
                 :description (format nil "The robot would touch ~{~a~^, ~} at ~a." (mapcar #'btr:name things) pose-stamped)))
@@ -43,6 +56,7 @@
 (defun move-torso (height)
   "Raise or lower the torso."
   (let ((beyond (robot-world:move-torso (robot) (parts) height)))
+    (fail-if-hindered beyond 'common-fail:torso-goal-unreachable 'common-fail:torso-goal-not-reached)
     (touched)
     (when beyond
       (cpl:fail 'common-fail:torso-goal-not-reached :description (format nil "Torso goal ~a was out of joint limits" height)))))
@@ -56,6 +70,7 @@
                    (unless (eq goal :forward)
                      (error "~a direction is unknown for PR2 projection PTU" goal))
                    (robot-world:look-forward (robot) (parts))))))
+    (fail-if-hindered beyond 'common-fail:ptu-goal-unreachable 'common-fail:ptu-goal-not-reached)
     (touched)
     (when beyond
       (cpl:fail 'common-fail:ptu-goal-not-reached :description "Look action wanted to twist the neck"))))
@@ -71,28 +86,27 @@
       (cpl:fail failure :description (format nil "The robot has no ~(~a~) arm; it has ~{~(~a~)~^, ~}." arm arms)))))
 
 (defun gripper-action (action arm &optional effort)
-  "Open, close or grip with an arm, or with several; ACTION may be a width in metres."
-  (declare (ignore effort))
+  "Open, close or grip with an arm, or with several; ACTION may be a width in metres. EFFORT, in newtons, matters in a physical world."
   (if (listp arm)
-      (dolist (each arm) (gripper-action action each))
+      (dolist (each arm) (gripper-action action each effort))
       (let ((found (etypecase (progn (check-arm arm 'common-fail:gripper-goal-not-reached) action)
                      ((eql :open) (robot-world:set-fingers (robot) (parts) arm) t)
                      ((eql :close) (robot-world:set-fingers (robot) (parts) arm 0) t)
-                     ((eql :grip) (robot-world:grip (robot) (parts) arm))
+                     ((eql :grip) (robot-world:grip (robot) (parts) arm effort))
                      (number (robot-world:set-fingers (robot) (parts) arm action) t))))
         (touched)
         (unless found
           (cpl:fail 'common-fail:gripper-closed-completely :description "There was no object to grip")))))
 
 (defun move-tcp (left-pose right-pose &optional collision-mode)
-  "Bring the tools of the arms to poses in the frame of the base."
-  (declare (ignore collision-mode))
+  "Bring the tools of the arms to poses in the frame of the base. In a physical world COLLISION-MODE tells whether hands may touch things."
   (let ((goals (loop for (arm pose) in `((:left ,left-pose) (:right ,right-pose))
                      when pose
                        do (check-arm arm 'common-fail:manipulation-pose-unreachable)
                        and collect (cons arm (tool-pose pose)))))
     (when goals
-      (let ((failed (robot-world:move-tools (robot) (parts) goals)))
+      (let ((failed (robot-world:move-tools (robot) (parts) goals :lenient collision-mode)))
+        (fail-if-hindered failed 'common-fail:manipulation-pose-unreachable 'common-fail:manipulation-goal-not-reached)
         (touched)
         (when failed
           (destructuring-bind (arm heights) failed
@@ -116,8 +130,10 @@
   (loop for (arm values) in `((:left ,left) (:right ,right))
         when values
           do (check-arm arm 'common-fail:manipulation-pose-unreachable)
-             (unless (robot-world:move-arm-joints (robot) (parts) arm values)
-               (error "[PROJECTION MOVE-JOINTS] length of joints list is incorrect.")))
+             (let ((moved (robot-world:move-arm-joints (robot) (parts) arm values)))
+               (fail-if-hindered moved 'common-fail:manipulation-pose-unreachable 'common-fail:manipulation-goal-not-reached)
+               (unless moved
+                 (error "[PROJECTION MOVE-JOINTS] length of joints list is incorrect."))))
   (touched))
 
 (defun move-with-constraints (constraints)

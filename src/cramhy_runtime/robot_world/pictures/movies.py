@@ -1,8 +1,7 @@
 """A run as an animation: what the things of a world did, each motion for as long as it would take.
 
-While a `Movie` records, it notes the world after each motion: the motions of projection take no time, and what a plan does in one instant
-shall be seen one after the other. Changes of different joints that follow each other are one motion. The frames between two notes are made
-when the movie is written, from joints and places in between, so that arms keep their length. Nobody's run is changed by it.
+While a `Movie` records, it notes the world after each motion (``notes.py``). The frames between two notes are made when the movie is
+written, from joints and places in between, so that arms keep their length. Nobody's run is changed by it.
 
 A movie is of the world that is shown when it begins; it goes on with the one that takes its place (`shown.current`).
 """
@@ -20,6 +19,7 @@ from cramhy_runtime.ground.condition_types import SimpleError
 from cramhy_runtime.ground.conditions import error
 
 from .. import shown
+from ..notes import Notes, same, seconds
 from ..placements import Placement
 from ..things import Item
 from .stills import picture, write
@@ -37,8 +37,6 @@ WIDTH, HEIGHT = 400, 300  # pixels
 RATE = 10
 """Frames a second."""
 MOST_NOTES, MOST_FRAMES = 2000, 900
-_BASE, _TURN, _JOINT = 1.0, 1.5, 1.2  # m/s, rad/s: how fast things seem to go
-_LEAST, _LONGEST = 0.2, 2.0  # seconds of a motion
 _REST = 1.0  # seconds for which the last frame stands
 _COLOURS = 128
 _SHADES = (0.55, 0.75, 1.0)  # of items' colours
@@ -54,15 +52,18 @@ class Movie:
         self, world: World | None = None, view: View | None = None, width: int = WIDTH, height: int = HEIGHT, most_frames: int = MOST_FRAMES
     ) -> None:
         self._world, self._view, self.width, self.height, self.most_frames = world, view, width, height, most_frames
-        self.notes: list[World] = []
-        self._touched: set = set()
+        self._noted: Notes | None = None
+
+    @property
+    def notes(self) -> list[World]:
+        return [] if self._noted is None else self._noted.worlds
 
     def begin(self) -> None:
         """Record from now on. Errors: a simple error, when there is no world."""
         world = self._world or shown.current()
         if world is None:
             error(SimpleError("There is no world to make a movie of."))
-        self.notes.append(world.copy())
+        self._noted = Notes(world, MOST_NOTES)
         shown.watch(self._note)
 
     def end(self) -> None:
@@ -70,28 +71,12 @@ class Movie:
         shown.unwatch(self._note)
 
     def _note(self, world: World) -> None:
-        if world is not (self._world or shown.current()):
-            return
-        now = world.copy()
-        moved = set(_moved(self.notes[-1], now))
-        if not moved:
-            return
-        if self._touched and self._together(moved):
-            self.notes[-1] = now
-            self._touched |= moved
-        else:
-            self.notes.append(now)
-            self._touched = moved
-        if len(self.notes) > MOST_NOTES:
-            del self.notes[1:-1:2]
-
-    def _together(self, moved: set) -> bool:
-        """Whether what has ``moved`` can be shown as one motion with what the last note shows."""
-        return not moved & self._touched and {kind for kind, *_ in moved | self._touched} == {"joint"}
+        if world is (self._world or shown.current()):
+            self._noted.add(world)
 
     def frames(self) -> Iterator[World]:
         """The worlds that the frames show: the run at even intervals, in `most_frames` of them or less, and its end."""
-        steps = [max(1, ceil(_seconds(one, other) * RATE)) for one, other in zip(self.notes, self.notes[1:])]
+        steps = [max(1, ceil(seconds(one, other) * RATE)) for one, other in zip(self.notes, self.notes[1:])]
         ends = list(accumulate(steps))
         count = min(sum(steps), self.most_frames)
         yield self.notes[0]
@@ -145,43 +130,6 @@ def _with_palette(pictures: list[Picture], world: World) -> list[Picture]:
 # -------------------------------------------------------------------------------------------------------------- between two worlds
 
 
-def _moved(one: World, other: World) -> Iterator[tuple]:
-    """What differs: ("item", name), ("root", name), ("joint", name, number), ("things",)."""
-    if one.things.keys() != other.things.keys():
-        yield ("things",)
-    held = {item for machine in other.machines() for item in machine.holds}
-    for name, now in other.things.items():
-        before = one.things.get(name)
-        if before is None:
-            continue
-        if isinstance(now, Item):
-            if name not in held and not _same(before.placement, now.placement):
-                yield ("item", name)
-            continue
-        if not _same(before.placement, now.placement):
-            yield ("root", name)
-        if before.joints is not now.joints and len(before.joints) == len(now.joints):
-            yield from (("joint", name, int(number)) for number in np.flatnonzero(before.joints != now.joints))
-
-
-def _same(one: Placement, other: Placement) -> bool:
-    return one is other or (np.array_equal(one.position, other.position) and np.array_equal(one.rotation, other.rotation))
-
-
-def _seconds(one: World, other: World) -> float:
-    """How long the motion from one world to the other seems to take."""
-    longest = _LEAST
-    for name, now in other.things.items():
-        before = one.things.get(name)
-        if before is None:
-            continue
-        turn = 2 * float(np.arccos(np.clip(abs(before.placement.rotation @ now.placement.rotation), 0, 1)))
-        longest = max(longest, float(np.linalg.norm(now.placement.position - before.placement.position)) / _BASE, turn / _TURN)
-        if not isinstance(now, Item) and len(before.joints) == len(now.joints):
-            longest = max(longest, float(np.abs(now.joints - before.joints).max(initial=0.0)) / _JOINT)
-    return min(longest, _LONGEST)
-
-
 def _between(one: World, other: World, share: float) -> World:
     """The world on the way from one to the other; what is held is where its holder is."""
     world = one.copy()
@@ -201,7 +149,7 @@ def _between(one: World, other: World, share: float) -> World:
 
 
 def _blend(one: Placement, other: Placement, share: float) -> Placement:
-    if _same(one, other):
+    if same(one, other):
         return one
     turn = one.rotation * (1 - share) + other.rotation * (share if one.rotation @ other.rotation >= 0 else -share)
     return Placement(one.position + (other.position - one.position) * share, turn / np.linalg.norm(turn))

@@ -13,6 +13,7 @@ import { offerPanes } from "./panes.js";
 import { Pictures } from "./paper.js";
 import { Session } from "./session.js";
 import { offerSwitch } from "./settings.js";
+import { Stage } from "./stage.js";
 import { StatusView } from "./status.js";
 import { offerThemes } from "./theme.js";
 import { Timeline } from "./timeline.js";
@@ -59,9 +60,14 @@ async function start() {
   const modules = new ModulesView({ list: byId("modules") });
   const log = new LogView({ scroller: byId("log"), list: byId("log").firstElementChild, level: byId("level") });
   const call = (service, args) => session.bridge.call(service, args);
+  const stage = new Stage({
+    stage: byId("easel"), controls: byId("controls"), worlds: byId("worlds"), title: byId("stage-title"), tab: byId("turtle-tab"),
+    live: () => session.live, failed, say: (...text) => status.say(...text),
+    move: (name, [x, y, z]) => call("/cramhy/move_thing", { name, x, y, z }),
+  });
   const pace = new PaceView({ pause: byId("pause"), step: byId("step"), size: byId("step-size"), speed: byId("speed"), call, failed });
   const timeline = new Timeline({ slider: byId("moment"), strip: byId("strip"), button: byId("live"), seek, live });
-  const wheel = new Drive({ pad: byId("pad"), publish: drive, call, turtle: () => world.chosen });
+  const wheel = new Drive({ pad: byId("pad"), publish: drive, call, turtle: () => (stage.showsRoom ? null : world.chosen) });
   for (const name of ["clear", "reset"]) byId(name).addEventListener("click", () => call(wheel.namespace + name).catch(failed));
   byId("earlier").addEventListener("click", () => session.earlier());
   for (const what of ["grid", "goals", "way"]) offerSwitch(byId(`show-${what}`), `show-${what}`, (on) => world.show(what, on));
@@ -73,7 +79,10 @@ async function start() {
   const shown = () => past.state ?? session.live;
   const moment = () => past.stamp ?? session.time;
   const panels = [
-    () => world.read(shown().modules),
+    () => {
+      world.read(shown().modules);
+      stage.read();
+    },
     () => tree.render(shown(), moment()),
     () => fluents.render(shown(), moment(), past.state && session.history),
     () => modules.render(shown()),
@@ -97,7 +106,8 @@ async function start() {
     if (sample) {
       world.tick(sample, performance.now());
       if (message.simulator !== wheel.simulator) wheel.enter(message.simulator);
-    } else if (kind === "fluents") fluents.note(message);
+    } else if (kind === "robots") stage.hear(message);
+    else if (kind === "fluents") fluents.note(message);
     else if (kind === "tasks" && message.complete && session.live.pace?.recording) { // somebody sought
       log.forget();
       world.way.forget();
@@ -138,6 +148,7 @@ async function start() {
     world.showPast(session.worldAt(stamp, past.state));
     byId("past").hidden = false;
     setText(byId("past"), `as it was at ${clock(stamp)}`);
+    stage.showPast(past.state.robots, `as it was at ${clock(stamp)}`);
     document.body.classList.add("looking-back");
     hurry();
     if (stamp <= session.start + 0.02 * (session.time - session.start)) session.earlier();
@@ -146,6 +157,7 @@ async function start() {
   function live() {
     past.stamp = past.state = null;
     world.showPast(null);
+    stage.showPast(null);
     byId("past").hidden = true;
     document.body.classList.remove("looking-back");
     hurry();
@@ -158,7 +170,8 @@ async function start() {
 
   function frame(now) {
     requestAnimationFrame(frame);
-    world.frame(now);
+    if (stage.showsRoom) stage.frame(now);
+    else world.frame(now);
     let waiting = null;
     for (const panel of panels) if (now - panel.last >= PANEL_PAUSE && (!waiting || panel.last < waiting.last)) waiting = panel;
     if (!waiting) return;

@@ -9,7 +9,7 @@ const SCALE = 2; // m/s and rad/s, the original's, unless the parameters say oth
 const PARAMETERS = ["scale_linear", "scale_angular"];
 const FIRST_REPEAT = 500; // ms
 const REPEAT = 50;
-const OWN_ARROWS = "input, select, [role=radiogroup], .scroll"; // these use the arrow keys themselves
+const OWN_ARROWS = "input, select, [role=radiogroup], .scroll, .room, .room-controls"; // these use the arrow keys themselves
 const BUTTONS = [
   ["ArrowUp", "forward", "M6 2.5 10.5 8h-9z"],
   ["ArrowLeft", "turn left", "M2.5 6 8 1.5v9z"],
@@ -18,7 +18,7 @@ const BUTTONS = [
 ];
 
 export class Drive {
-  // publish(topic, type, message) sends; call(service, arguments) asks; turtle() names the turtle that is driven.
+  // publish(topic, type, message) sends; call(service, arguments) asks; turtle() names the turtle that is driven, with null none.
   constructor({ pad, publish, call, turtle }) {
     Object.assign(this, { publish, call, turtle });
     this.scales = [SCALE, SCALE];
@@ -62,7 +62,7 @@ export class Drive {
   }
 
   #key(event) {
-    if (!(event.key in KEYS) || event.ctrlKey || event.altKey || event.metaKey || event.target.closest?.(OWN_ARROWS)) return;
+    if (!(event.key in KEYS) || event.ctrlKey || event.altKey || event.metaKey || event.target.closest?.(OWN_ARROWS) || !this.turtle()) return;
     event.preventDefault();
     this.buttons.get(event.key).classList.add("held");
     this.press(event.key);

@@ -104,5 +104,6 @@ function weight(kind, message) {
   if (kind === "world") return 1 + message.turtles.length;
   if (kind === "tasks") return 1 + message.tasks.length;
   if (kind === "fluents") return 1 + message.fluents.length;
+  if (kind === "robots") return 2 + 20 * (message.things?.length ?? 0) + (message.steps?.length ?? 0);
   return 2;
 }

@@ -11,6 +11,7 @@ const TOPICS = {
   tasks: ["/cramhy/tasks", "cramhy_msgs/TaskTree"],
   fluents: ["/cramhy/fluents", "cramhy_msgs/Fluents"],
   modules: ["/cramhy/process_modules", "cramhy_msgs/ProcessModules"],
+  robots: ["/cramhy/robot_world", "cramhy_msgs/RobotWorld"],
   pace: ["/cramhy/pace", "cramhy_msgs/Pace"],
 };
 const KINDS = Object.keys(TOPICS);

@@ -1,5 +1,7 @@
-// The session as it was at one moment: tasks, fluents, process modules, pace and turtles. It is built by applying the messages of
+// The session as it was at one moment: tasks, fluents, process modules, pace, turtles and the robot's world. It is built by applying the messages of
 // the topics one after the other; messages are never changed, so a copy shares them and costs little.
+
+import { NOTHING, learned } from "./space/news.js";
 
 export class State {
   constructor() {
@@ -9,6 +11,7 @@ export class State {
     this.modules = [];
     this.pace = null;
     this.world = null; // {stamp, turtles, simulator}
+    this.robots = NOTHING; // what is known of the robot's world, see space/news.js
   }
 
   copy() {
@@ -19,12 +22,13 @@ export class State {
     return other;
   }
 
-  // kind: "world", "tasks", "fluents", "modules" or "pace".
+  // kind: "world", "tasks", "fluents", "modules", "robots" or "pace".
   apply(kind, message) {
     if (message.stamp != null) this.stamp = Math.max(this.stamp, message.stamp);
     if (kind === "tasks") merge(this.tasks, message.tasks, message);
     else if (kind === "fluents") merge(this.fluents, message.fluents, message);
     else if (kind === "modules") this.modules = message.modules;
+    else if (kind === "robots") this.robots = learned(this.robots, message);
     else this[kind] = message;
     return this;
   }

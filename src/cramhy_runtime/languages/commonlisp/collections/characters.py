@@ -66,6 +66,7 @@ _NAMES = {
     "\x7f": "Rubout",
     **{chr(128 + index): name for index, name in enumerate(_HIGH_NAMES)},
 }
+CHARACTER_NAMES = list(_NAMES.values())
 _BY_NAME = {name.upper(): char for char, name in _NAMES.items()}
 _BY_NAME.update(
     ALTMODE="\x1b",

@@ -18,6 +18,7 @@ from cramhy_runtime.ground.equality import eql
 from cramhy_runtime.ground.functions import equal_to, key_of, match_of, predicate_of, test_of
 from cramhy_runtime.ground.packages import is_symbol, redefined
 from .lists import items_of, not_a_list
+from .sequence_types import in_turns
 
 LISP_NAMES = """
 member member-if member-if-not assoc assoc-if assoc-if-not rassoc rassoc-if rassoc-if-not
@@ -146,9 +147,15 @@ def _contains(items, key, compare):
         keys = {eql_key(item if key is None else key(item)) for item in items}
         return lambda item: eql_key(item if key is None else key(item)) in keys
     if key is None:
-        return lambda item: any(compare(item, other) for other in items)
+        return lambda item: any(compare(item, other) for other in _each(items))
     keyed = [key(other) for other in items]
-    return lambda item: any(compare(key(item), other) for other in keyed)
+    return lambda item: any(compare(key(item), other) for other in _each(keyed))
+
+
+def _each(items):
+    """``items`` with a checkpoint: a search for each of many elements takes long."""
+    checkpoint()
+    return in_turns(items)
 
 
 def union(first, second, *, key=None, test=None, test_not=None):

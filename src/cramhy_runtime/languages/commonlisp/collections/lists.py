@@ -319,8 +319,10 @@ def nthcdr(n, lst):
     index_of(n)
     if not isinstance(lst, Cons) and lst is not None and lst is not False:
         not_a_list(lst, "\nwhen binding LIST")
-    for _ in range(n):
+    for step in range(n):
         if isinstance(lst, Cons):
+            if not step & 255:
+                checkpoint()
             lst = lst.cdr
         elif lst is None or lst is False:
             return None
@@ -335,6 +337,8 @@ def nth(n, lst):
     while n > 0 and isinstance(lst, Cons):
         lst = lst.cdr
         n -= 1
+        if not n & 255:
+            checkpoint()
     if isinstance(lst, Cons):
         return lst.car
     return None if lst is None or lst is False else not_a_list(lst)

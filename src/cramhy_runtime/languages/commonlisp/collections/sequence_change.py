@@ -11,7 +11,8 @@ from __future__ import annotations
 from cramhy_runtime.ground.data import Cons, LispString
 from cramhy_runtime.ground.equality import eql_key
 from cramhy_runtime.ground.functions import key_of, match_of, predicate_of, test_of
-from .sequence_types import elements, limit, same_kind, span, store_all
+from cramhy_runtime.kernel.active import checkpoint
+from .sequence_types import elements, in_turns, limit, same_kind, span, store_all
 from cramhy_runtime.ground.arrays import Vector
 
 LISP_NAMES = """
@@ -27,9 +28,9 @@ def _chosen(match, sequence, from_end, start, end, count):
     backwards = from_end is not None and from_end is not False
     order = range(end - 1, start - 1, -1) if backwards else range(start, end)
     if most is None:
-        return items, {index for index in order if match(items[index])}
+        return items, {index for index in in_turns(order) if match(items[index])}
     chosen = set()
-    for index in order:
+    for index in in_turns(order):
         if len(chosen) >= most:
             break
         if match(items[index]):
@@ -39,9 +40,9 @@ def _chosen(match, sequence, from_end, start, end, count):
 
 def _removed(match, sequence, from_end, start, end, count):
     if count is None and end is None and start == 0 and from_end is None:
-        return same_kind(sequence, [item for item in elements(sequence) if not match(item)])
+        return same_kind(sequence, [item for item in in_turns(elements(sequence)) if not match(item)])
     items, chosen = _chosen(match, sequence, from_end, start, end, count)
-    return same_kind(sequence, [item for index, item in enumerate(items) if index not in chosen])
+    return same_kind(sequence, [item for index, item in enumerate(in_turns(items)) if index not in chosen])
 
 
 def _deleted(match, sequence, from_end, start, end, count):
@@ -61,7 +62,7 @@ def _without(sequence, items, chosen):
                 previous = cell
             cell, index = cell.cdr, index + 1
         return head.cdr
-    kept = [item for index, item in enumerate(items) if index not in chosen]
+    kept = [item for index, item in enumerate(in_turns(items)) if index not in chosen]
     if isinstance(sequence, (Vector, LispString)) and sequence.fill_pointer is not None:
         store_all(sequence, 0, kept)
         sequence.fill_pointer = len(kept)
@@ -106,7 +107,7 @@ def _duplicates(sequence, from_end, test, test_not, start, end, key, among_all=F
     """(elements, set of the indices of those that occur again); the last one of equals stays, or the first if ``from_end``."""
     compare, key = test_of(test, test_not), key_of(key)
     items, start, end = span(sequence, start, end)
-    keyed = items[start:end] if key is None else [key(item) for item in items[start:end]]
+    keyed = items[start:end] if key is None else [key(item) for item in in_turns(items[start:end])]
     first_stays = from_end is not None and from_end is not False
     if compare is None:
         return items, _repeated(keyed, start, first_stays)
@@ -114,7 +115,11 @@ def _duplicates(sequence, from_end, test, test_not, start, end, key, among_all=F
     if first_stays:
         chosen = _later_ones(keyed, compare, among_all)
     else:
-        chosen = {index for index in range(count) if any(compare(keyed[index], keyed[other]) for other in range(index + 1, count))}
+        chosen = set()
+        for index in range(count):
+            checkpoint()
+            if any(compare(keyed[index], keyed[other]) for other in in_turns(range(index + 1, count))):
+                chosen.add(index)
     return items, {start + index for index in chosen}
 
 
@@ -122,7 +127,8 @@ def _later_ones(keyed, compare, among_all):
     # As SBCL asks: the later element first, and on vectors and in delete-duplicates only against those that stay.
     chosen, others = set(), []
     for index, one in enumerate(keyed):
-        if any(compare(one, other) for other in others):
+        checkpoint()
+        if any(compare(one, other) for other in in_turns(others)):
             chosen.add(index)
             if not among_all:
                 continue
@@ -132,7 +138,7 @@ def _later_ones(keyed, compare, among_all):
 
 def _repeated(keyed, start, first_stays):
     chosen, seen = set(), set()
-    for index in range(len(keyed)) if first_stays else range(len(keyed) - 1, -1, -1):
+    for index in in_turns(range(len(keyed)) if first_stays else range(len(keyed) - 1, -1, -1)):
         name = eql_key(keyed[index])
         if name in seen:
             chosen.add(start + index)
@@ -144,7 +150,7 @@ def remove_duplicates(sequence, *, from_end=None, test=None, test_not=None, star
     """``remove-duplicates``: a sequence in which no two elements match; the last of equals stays, unless ``from_end``."""
     among_all = isinstance(sequence, Cons)
     items, chosen = _duplicates(sequence, from_end, test, test_not, start, end, key, among_all)
-    return same_kind(sequence, [item for index, item in enumerate(items) if index not in chosen])
+    return same_kind(sequence, [item for index, item in enumerate(in_turns(items)) if index not in chosen])
 
 
 def delete_duplicates(sequence, *, from_end=None, test=None, test_not=None, start=0, end=None, key=None):
@@ -157,14 +163,14 @@ def delete_duplicates(sequence, *, from_end=None, test=None, test_not=None, star
 
 def _substituted(new, match, sequence, from_end, start, end, count):
     items, chosen = _chosen(match, sequence, from_end, start, end, count)
-    return same_kind(sequence, [new if index in chosen else item for index, item in enumerate(items)])
+    return same_kind(sequence, [new if index in chosen else item for index, item in enumerate(in_turns(items))])
 
 
 def _nsubstituted(new, match, sequence, from_end, start, end, count):
     items, chosen = _chosen(match, sequence, from_end, start, end, count)
     if sequence.__class__ is str:
-        return same_kind(sequence, [new if index in chosen else item for index, item in enumerate(items)])
-    store_all(sequence, 0, [new if index in chosen else item for index, item in enumerate(items)])
+        return same_kind(sequence, [new if index in chosen else item for index, item in enumerate(in_turns(items))])
+    store_all(sequence, 0, [new if index in chosen else item for index, item in enumerate(in_turns(items))])
     return sequence
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from cramhy_runtime.ground.data import UNSUPPLIED, Cons, LispString, MultipleValues
 from cramhy_runtime.ground.functions import function_of, holds, key_of, primary
 from .lists import cells
-from .sequence_types import elements, part, sequence_type, store_all
+from .sequence_types import elements, in_turns, part, sequence_type, store_all
 from cramhy_runtime.ground.arrays import Vector
 
 LISP_NAMES = "map map-into reduce every some notany notevery"
@@ -17,10 +17,10 @@ LISP_NAMES = "map map-into reduce every some notany notevery"
 def _rows(first, more, context=""):
     """Iterate over the argument lists for a function on several sequences."""
     if more:
-        return zip(elements(first, context), *map(elements, more))  # noqa: B905  the shortest decides
+        return zip(in_turns(elements(first, context)), *map(elements, more))  # noqa: B905  the shortest decides
     if isinstance(first, Cons):
         return _cars(first)
-    return zip(elements(first, context))  # noqa: B905
+    return zip(in_turns(elements(first, context)))  # noqa: B905
 
 
 def _cars(lst):
@@ -50,7 +50,7 @@ def map_into(target, function, *sequences):
         whole = len(target.chars) if isinstance(target, LispString) else len(elements(target))
     sources = [elements(sequence) for sequence in sequences]
     count = min([whole, *map(len, sources)])
-    results = [function(*(source[index] for source in sources)) for index in range(count)]
+    results = [function(*(source[index] for source in sources)) for index in in_turns(range(count))]
     if getattr(target, "fill_pointer", None) is not None:
         target.fill_pointer = count
     store_all(target, 0, results)
@@ -67,7 +67,7 @@ def reduce(function, sequence, *, key=None, from_end=None, start=0, end=None, in
         combine = _swapped(function)
     else:
         combine = function
-    remaining = iter(items) if key is None else map(key, items)
+    remaining = iter(in_turns(items)) if key is None else map(key, in_turns(items))
     if initial_value is UNSUPPLIED:
         if not items:
             return function()

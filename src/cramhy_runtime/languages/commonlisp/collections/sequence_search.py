@@ -12,7 +12,7 @@ from cramhy_runtime.ground.data import TEXTS, Character, Cons
 from cramhy_runtime.ground.equality import eql
 from cramhy_runtime.ground.functions import key_of, match_of, predicate_of, test_of
 from .lists import cells
-from .sequence_types import bounds, elements, part, span
+from .sequence_types import bounds, elements, in_turns, part, span
 
 LISP_NAMES = """
 find find-if find-if-not position position-if position-if-not count count-if count-if-not search mismatch
@@ -42,9 +42,9 @@ def _first(match, sequence, from_end, start, end):
             end = size
     start, end = bounds(start, end, size)
     if backwards and isinstance(sequence, Cons):  # a list is walked from its beginning, as in SBCL
-        matching = [index for index in range(start, end) if match(items[index])]
+        matching = [index for index in in_turns(range(start, end)) if match(items[index])]
         return (items[matching[-1]], matching[-1]) if matching else None
-    for index in range(end - 1, start - 1, -1) if backwards else range(start, end):
+    for index in in_turns(range(end - 1, start - 1, -1) if backwards else range(start, end)):
         if match(items[index]):
             return items[index], index
     if end is not wanted_end and wanted_end is not None:
@@ -96,7 +96,7 @@ def _count(match, sequence, from_end, start, end):
     items = part(sequence, start, end)
     if from_end is not None and from_end is not False:
         items = items[::-1]
-    return sum(1 for item in items if match(item))
+    return sum(1 for item in in_turns(items) if match(item))
 
 
 def count(item, sequence, *, from_end=None, test=None, test_not=None, start=0, end=None, key=None):
@@ -120,7 +120,7 @@ def _comparison(test, test_not):
 
 def _keyed(items, key):
     key = key_of(key)
-    return items if key is None else [key(item) for item in items]
+    return items if key is None else [key(item) for item in in_turns(items)]
 
 
 def search(pattern, sequence, *, from_end=None, test=None, test_not=None, key=None, start1=0, end1=None, start2=0, end2=None):
@@ -133,8 +133,8 @@ def search(pattern, sequence, *, from_end=None, test=None, test_not=None, key=No
     places = range(start, end - len(wanted) + 1)
     backwards, found = from_end is not None and from_end is not False, None
     keep_on = backwards and (test is not None or test_not is not None)  # SBCL asks forwards, too, and takes the last: a test may notice
-    for place in reversed(places) if backwards and not keep_on else places:
-        if all(compare(one, items[place + offset]) for offset, one in enumerate(wanted)):
+    for place in in_turns(places[::-1] if backwards and not keep_on else places):
+        if all(compare(one, items[place + offset]) for offset, one in enumerate(in_turns(wanted))):
             found = place
             if not keep_on:
                 break
@@ -148,11 +148,11 @@ def mismatch(first, second, *, from_end=None, test=None, test_not=None, key=None
     items, compare = _keyed(items[first_start:first_end], key), _comparison(test, test_not)
     shorter = min(len(items), len(others))
     if from_end is not None and from_end is not False:
-        for back in range(1, shorter + 1):
+        for back in in_turns(range(1, shorter + 1)):
             if not compare(items[-back], others[-back]):
                 return first_end - back + 1
         return None if len(items) == len(others) else first_end - shorter
-    for index in range(shorter):
+    for index in in_turns(range(shorter)):
         if not compare(items[index], others[index]):
             return first_start + index
     return None if len(items) == len(others) else first_start + shorter

@@ -12,9 +12,13 @@ from __future__ import annotations
 from cramhy_runtime.ground.equality import is_number
 from cramhy_runtime.ground.functions import function_of, holds, key_of
 from cramhy_runtime.ground.packages import sym
-from .sequence_types import elements, same_kind, sequence_type, store_all
+from cramhy_runtime.kernel.active import checkpoint
+from .sequence_types import elements, in_turns, same_kind, sequence_type, store_all
 
 LISP_NAMES = "sort stable-sort merge"
+
+RUN = 20_000
+"""So many numbers Python sorts at once: nothing can interrupt it meanwhile."""
 
 _CONTEXT = "\nwhen binding SB-IMPL::PREDICATE"
 
@@ -22,11 +26,11 @@ _CONTEXT = "\nwhen binding SB-IMPL::PREDICATE"
 def _ordered(items, predicate, key):
     """A new Python list of ``items`` in the order of the predicate."""
     key = key_of(key)
-    keys = items if key is None else [key(item) for item in items]
+    keys = items if key is None else [key(item) for item in in_turns(items)]
     if predicate is sym("<").function or predicate is sym(">").function:
-        if all(is_number(one) and one.__class__ is not complex and one == one for one in keys):
-            indices = sorted(range(len(items)), key=keys.__getitem__, reverse=predicate is sym(">").function)
-            return [items[index] for index in indices]
+        if all(is_number(one) and one.__class__ is not complex and one == one for one in in_turns(keys)):
+            indices = _numbered(keys, predicate is sym(">").function)
+            return [items[index] for index in in_turns(indices)]
 
     class Place:
         __slots__ = ("key", "item")
@@ -35,9 +39,26 @@ def _ordered(items, predicate, key):
             self.key, self.item = key, item
 
         def __lt__(self, other):
+            checkpoint()
             return holds(predicate(self.key, other.key))
 
     return [place.item for place in sorted(map(Place, keys, items))]
+
+
+def _numbered(keys, descending):
+    """The indices of the numbers ``keys`` in their order. Many are sorted in runs, which are merged, with a checkpoint after each."""
+    order = {"key": keys.__getitem__, "reverse": descending}
+    runs = []
+    for start in range(0, len(keys), RUN):
+        checkpoint()
+        runs.append(sorted(range(start, min(start + RUN, len(keys))), **order))
+    while len(runs) > 1:  # Python's sort finds two runs and merges them
+        merged = []
+        for pair in range(0, len(runs), 2):
+            checkpoint()
+            merged.append(sorted(runs[pair] + runs[pair + 1], **order) if pair + 1 < len(runs) else runs[pair])
+        runs = merged
+    return runs[0] if runs else []
 
 
 def sort(sequence, predicate, *, key=None):
@@ -62,6 +83,7 @@ def merge(result_type, first, second, predicate, *, key=None):
     predicate, key = function_of(predicate, _CONTEXT), key_of(key)
     result, i, j = [], 0, 0
     while i < len(left) and j < len(right):
+        checkpoint()
         x, y = (left[i], right[j]) if key is None else (key(left[i]), key(right[j]))
         if holds(predicate(y, x)):
             result.append(right[j])

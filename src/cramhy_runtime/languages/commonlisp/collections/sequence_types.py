@@ -15,6 +15,7 @@ from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, Cons, FreshString, LispString, Symbol, list_from
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.kernel.active import checkpoint
 from .element_types import check_element, upgraded_element_type
 from .lists import items_of
 from cramhy_runtime.ground.arrays import BIT, CHARACTER, LispArray, TypedVector, Vector, array_type, is_simple
@@ -62,9 +63,24 @@ class IndexTooLarge(TypeError_):
 # ----------------------------------------------------------------------------------------------------------------- elements
 
 
+TURN = 2000
+"""So many elements are handled between two checkpoints: a long vector must not keep Ctrl-C, or other tasks, from their turn."""
+
+
+def in_turns(items):
+    """Iterate over ``items``, a Python list, string or range, with checkpoints. Few items are given as they are."""
+    return items if len(items) <= TURN else _turns(items)
+
+
+def _turns(items):
+    for start in range(0, len(items), TURN):
+        checkpoint()
+        yield from items[start : start + TURN]
+
+
 def characters(string):
     """The `Character` objects of a Python string."""
-    return [Character(char) for char in string]
+    return [Character(char) for char in in_turns(string)]
 
 
 def elements(sequence, context=""):

@@ -47,6 +47,8 @@ def elt(sequence, index):
         while left and isinstance(cell, Cons):
             cell = cell.cdr
             left -= 1
+            if not left & 255:
+                checkpoint()
         if isinstance(cell, Cons):
             return cell.car
         return not_a_list(cell) if cell is not None else error(IndexTooLarge(index, sequence, length(sequence)))

@@ -17,7 +17,7 @@ from cramhy_runtime.ground.packages import is_symbol, symbol_name
 from cramhy_runtime.ground.heap import check_room
 from .arrays import InvalidArrayIndex
 from .characters import downcased, is_alphanumeric, upcased
-from .sequence_types import INDEX_TYPE, bounds, constant_changed, elements
+from .sequence_types import INDEX_TYPE, bounds, constant_changed, elements, in_turns
 
 LISP_NAMES = """
 string string= string/= string< string> string<= string>= string-equal string-not-equal string-lessp string-greaterp
@@ -180,16 +180,16 @@ string_not_lessp = _order("string_not_lessp", True, False, True)
 
 
 def _upper(text):
-    return text.upper() if text.isascii() else "".join(map(upcased, text))
+    return text.upper() if text.isascii() else "".join(map(upcased, in_turns(text)))
 
 
 def _lower(text):
-    return text.lower() if text.isascii() else "".join(map(downcased, text))
+    return text.lower() if text.isascii() else "".join(map(downcased, in_turns(text)))
 
 
 def _capital(text):
     result, inside = [], False
-    for one in text:
+    for one in in_turns(text):
         word = is_alphanumeric(one)
         result.append((downcased(one) if inside else upcased(one)) if word else one)
         inside = word

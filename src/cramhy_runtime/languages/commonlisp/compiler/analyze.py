@@ -116,7 +116,7 @@ class Analyzer(Scrutiny):
 
     def _compound(self, form, env):
         head = form.car
-        if isinstance(head, Symbol):
+        if isinstance(head, Symbol) or (head is None or head is True) and env.function(head) is not None:
             local = env.function(head)
             if local is None:
                 special = SPECIAL_FORMS.get(head)

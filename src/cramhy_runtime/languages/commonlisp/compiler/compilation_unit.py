@@ -249,17 +249,23 @@ def expansion_place():
 
 
 def signalling_position():
-    """Where in the user's text the code is that runs now: its innermost frame, or the macro call that is expanded further inside."""
+    """Where in the user's text the code is that runs now: its innermost frame, or the macro call that is expanded further inside.
+
+    A frame in code that a macro made of nothing the user wrote has column 0; then the one that called it tells more.
+    """
     unit = CURRENT.value
     _, place, compiling = unit.expansions[-1] if unit is not None and unit.expansions else (None, None, None)
-    frame = sys._getframe(1)
+    frame, made_by_macro = sys._getframe(1), None
     while frame is not None:
         if frame is compiling and place is not None:
             return place
         if is_user_file(frame.f_code.co_filename):
-            return frame_position(frame)
+            position = frame_position(frame)
+            if position[2] != 0:
+                return position
+            made_by_macro = made_by_macro or position
         frame = frame.f_back
-    return None
+    return made_by_macro
 
 
 def mention_type(specifier):
@@ -316,6 +322,7 @@ class _Reporting:
 
     def __init__(self):
         self.usual = self.report = lambda conditions: None
+        self.failed = lambda problem: None
 
 
 REPORTING = _Reporting()
@@ -324,6 +331,12 @@ REPORTING = _Reporting()
 def report_to(function):
     """Let ``function(conditions)`` have the warnings of units, ``None``: the usual one; returns the one before."""
     before, REPORTING.report = REPORTING.report, function or REPORTING.usual
+    return before
+
+
+def report_errors_to(function):
+    """Let ``function(condition)`` hear of the errors that ``compile-file`` meets and goes past; returns the one before."""
+    before, REPORTING.failed = REPORTING.failed, function
     return before
 
 
@@ -339,4 +352,4 @@ def muffle(types, quiet=True):
         MUFFLED.value = (*without, specifier) if quiet else without
 
 
-__all__ = ["CompilationUnit", "compilation_unit", "current", "muffle", "report_to", "with_compilation_unit"]
+__all__ = ["CompilationUnit", "compilation_unit", "current", "muffle", "report_errors_to", "report_to", "with_compilation_unit"]

@@ -222,7 +222,7 @@ def _locally(analyzer, form, env):
 
 
 LOCAL_NAMES = {sym(name) for name in "CALL-NEXT-METHOD NEXT-METHOD-P LOOP-FINISH PPRINT-POP PPRINT-EXIT-IF-LIST-EXHAUSTED".split()}
-"""Functions of Common Lisp that exist only locally: macros of the standard define them."""
+"""Functions and macros of Common Lisp that exist only locally: macros of the standard define them."""
 
 
 def _check_lock(analyzer, name, what):
@@ -245,8 +245,8 @@ def _check_lock(analyzer, name, what):
 
 def _names_function(symbol, setter):
     """Whether ``symbol``, or ``(setf symbol)`` if ``setter``, names a function, a macro or a special operator."""
-    if not isinstance(symbol, Symbol):  # nil and t: SBCL takes them
-        return True
+    if not isinstance(symbol, Symbol):  # nil and t name no function
+        return False
     if setter:
         return symbol.setf_function is not None or "setf-expander" in (symbol.compiler_data or {})
     return symbol.macro is not None or symbol in SPECIAL_FORMS or not isinstance(symbol.function, UndefinedFunction)

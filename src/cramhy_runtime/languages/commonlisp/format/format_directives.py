@@ -9,6 +9,7 @@ from __future__ import annotations
 from cramhy_runtime.ground.conditions import Error, handler_bind, type_error
 from cramhy_runtime.ground.data import Character, Cons, list_from, truth
 from cramhy_runtime.ground.packages import find_package
+from cramhy_runtime.kernel.active import checkpoint
 from ..printer import print_controls as controls
 from ..printer.pretty import call_logical_block, pprint_indent, pprint_newline, pprint_tab
 from ..printer.print_controls import PRINT_BASE, PRINT_RADIX, bound
@@ -402,6 +403,7 @@ def _loop(directive, state, once, limit):
     try:
         while (at_least_once or not state.exhausted) and (limit is None or count < limit):
             count += 1
+            checkpoint()
             if sublists:
                 arg = list_arguments(directive, state.next(directive))
                 try:

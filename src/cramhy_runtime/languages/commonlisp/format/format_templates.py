@@ -52,6 +52,8 @@ def template(control):
 
 def princ_atom(obj):
     """What ``~A`` makes of an atom; ``None`` for other objects."""
+    if obj.__class__ is str:
+        return obj
     if isinstance(obj, str):
         return str(obj)
     return _atom(obj, False)

@@ -26,6 +26,7 @@ class ClassNotFoundError(CellError):
 
     lisp_name = "SB-PCL::CLASS-NOT-FOUND-ERROR"
     initargs = {"NAME": "name"}
+    undefined = "type"
 
     def report(self):
         return f"There is no class named {qualified(self.name)}."

@@ -140,18 +140,25 @@ class Plan:
 
 
 def _check_finalized(cls):
+    if vars(cls).get("lisp_forward_reference"):
+        error(_undefined_class(SimpleError("FINALIZE-INHERITANCE was called on a forward referenced class:~%~S", cls), cls))
     for base in cls.__mro__:
         if vars(base).get("lisp_forward_reference"):
-            error(
-                SimpleError(
-                    "While computing the class precedence list of the class named ~A.~%The class named ~A is a forward "
-                    "referenced class.~%The class named ~A is a direct superclass of the class named ~A.",
-                    qualified(class_name(cls)),
-                    qualified(class_name(base)),
-                    qualified(class_name(base)),
-                    qualified(class_name(_child(cls, base))),
-                )
+            problem = SimpleError(
+                "While computing the class precedence list of the class named ~A.~%The class named ~A is a forward "
+                "referenced class.~%The class named ~A is a direct superclass of the class named ~A.",
+                qualified(class_name(cls)),
+                qualified(class_name(base)),
+                qualified(class_name(base)),
+                qualified(class_name(_child(cls, base))),
             )
+            error(_undefined_class(problem, base))
+
+
+def _undefined_class(problem, cls):
+    """``problem``, told with the names that are like that of ``cls``."""
+    problem.name, problem.undefined = class_name(cls), "type"
+    return problem
 
 
 def _child(cls, base):

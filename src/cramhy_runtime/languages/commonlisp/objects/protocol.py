@@ -140,15 +140,13 @@ def make_load_form_saving_slots(object, *, slot_names=UNSUPPLIED, environment=No
     quote = sym("QUOTE")
     wanted = names_of_slots(object) if slot_names is UNSUPPLIED else python_list(slot_names)
     creation = lisp_list(sym("ALLOCATE-INSTANCE"), lisp_list(sym("FIND-CLASS"), lisp_list(quote, class_name(type(object)))))
-    setters = [
-        lisp_list(
-            sym("SETF"),
-            lisp_list(sym("SLOT-VALUE"), lisp_list(quote, object), lisp_list(quote, slot)),
-            lisp_list(quote, slots.slot_value(object, slot)),
-        )
-        for slot in wanted
-        if slots.slot_boundp(object, slot)
-    ]
+    setters = []
+    for slot in wanted:
+        place = object, lisp_list(quote, slot)
+        if slots.slot_boundp(object, slot):
+            setters.append(lisp_list(sym("SETF"), lisp_list(sym("SLOT-VALUE"), *place), lisp_list(quote, slots.slot_value(object, slot))))
+        else:  # `allocate-instance` may have methods that give it a value
+            setters.append(lisp_list(sym("SLOT-MAKUNBOUND"), *place))
     return MultipleValues((creation, lisp_list(sym("PROGN"), *setters)))
 
 

@@ -13,6 +13,7 @@ import unicodedata
 from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.packages import COMMON_LISP, KEYWORD
+from cramhy_runtime.kernel.active import checkpoint
 from ..reader.readtables import READTABLE
 from ..reader.tokens import CASES, downcase, invert, looks_numeric, upcase
 from .print_controls import CAPITALIZE, DOWNCASE, PACKAGE, PRINT_BASE, PRINT_CASE, PRINT_GENSYM, PRINT_RADIX, PRINT_READABLY, UPCASE
@@ -44,6 +45,7 @@ def digits_in_base(number, base):
         return format(number, {2: "b", 8: "o", 16: "X"}[base])
     sign, number, figures = "-" if number < 0 else "", abs(number), []
     while True:
+        checkpoint()
         number, digit = divmod(number, base)
         figures.append(_DIGITS[digit])
         if not number:
@@ -54,6 +56,7 @@ def _decimal(number):
     try:
         return int.__repr__(number)
     except ValueError:  # Python refuses to print integers of more than 4300 digits in one go
+        checkpoint()
         sign, number = "-" if number < 0 else "", abs(number)
         half = number.bit_length() * 3 // 20
         high, low = divmod(number, 10**half)

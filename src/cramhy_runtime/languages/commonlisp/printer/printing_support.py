@@ -97,3 +97,18 @@ def with_standard_io_syntax(thunk):
         standard[sym(name)] = None
     with controls.bound(*(part for pair in standard.items() for part in pair)):
         return thunk()
+
+
+def with_readable_input(thunk):
+    """The value of ``thunk``, the debugger's dialogue: whatever the program has bound, a form can be typed and its value is shown.
+
+    SBCL's debugger binds all variables of the reader and the printer to their standard values but for ``*package*`` and ``*print-pretty*``.
+    Here the user's limits of printing stay.
+    """
+    from ..reader.readtables import READTABLE, STANDARD, SUPPRESS
+
+    controls = print_controls
+    with controls.bound(
+        SUPPRESS, None, sym("*READ-BASE*"), 10, sym("*READ-EVAL*"), True, READTABLE, STANDARD, controls.PRINT_READABLY, None
+    ):
+        return thunk()

@@ -265,18 +265,7 @@ def _print_synonym(stream_object, stream):
 
 def _print_comma(comma, stream):
     if PRINT_PRETTY.value is None:
-        stream.write("#S(")
-        output_object(COMMA, stream)
-        stream.write(" ")
-        stream.write(symbol_text(keyword("EXPR")))
-        stream.write(" ")
-        output_object(comma.form, stream)
-        stream.write(" ")
-        stream.write(symbol_text(keyword("KIND")))
-        stream.write(" ")
-        output_object(COMMA_KINDS.index(comma.kind), stream)
-        stream.write(")")
-        return
+        return print_slots(COMMA, [(keyword("EXPR"), comma.form), (keyword("KIND"), COMMA_KINDS.index(comma.kind))], stream)
     stream.write(comma.kind)
     if comma.kind == "," and is_symbol(comma.form) and symbol_text(comma.form, escaping())[:1] in "@.":
         stream.write(" ")  # else it would be read as ",@" or ",."

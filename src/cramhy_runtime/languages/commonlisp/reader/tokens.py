@@ -8,7 +8,7 @@ literal (see ``ground/data.py``) but not a magnitude that a single-float cannot 
 
 from __future__ import annotations
 
-from ..collections.sequence_types import BoundingIndicesBad
+from ..collections.sequence_types import TURN, BoundingIndicesBad, in_turns
 from cramhy_runtime.ground.condition_types import SimpleParseError
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.conditions import type_error
@@ -21,6 +21,7 @@ from fractions import Fraction
 from cramhy_runtime.ground.data import DoubleFloat, LispString, MultipleValues
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.kernel.active import checkpoint
 
 _DECIMAL = re.compile(
     r"([+-]?[0-9]+)(?:(\.)|/([0-9]+))?"
@@ -57,6 +58,7 @@ def integer(digits, base=10):
 def _long_integer(digits, base):
     if len(digits) <= 1000:
         return int(digits, base)
+    checkpoint()
     low = len(digits) // 2
     return _long_integer(digits[:-low], base) * base**low + _long_integer(digits[-low:], base)
 
@@ -198,11 +200,13 @@ def parse_integer(string_, *, start=0, end=None, radix=10, junk_allowed=None):
     digits_from = index
     while index < end and _digit(whole[index], radix):
         index += 1
+        if not index % TURN:
+            checkpoint()
     if index == digits_from:
         if junk_allowed is not None:
             return MultipleValues((None, index))
         return _no_digits(whole[start:end]) if index == end else _junk(whole[start:end])
-    value = integer("".join([_ascii_digit(character) for character in whole[first:index]]), radix)
+    value = integer("".join([_ascii_digit(character) for character in in_turns(whole[first:index])]), radix)
     if junk_allowed is None:
         while index < end and whole[index] in WHITESPACE:
             index += 1

@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 import importlib
 
-from cramhy_runtime.ground.conditions import CompileError, error, type_error
+from cramhy_runtime.ground.conditions import CompileError, Error, error, handler_case, type_error
 from cramhy_runtime.ground.data import Cons, Symbol, one
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, our_own, sym
@@ -75,10 +75,7 @@ def mentions(form, symbols):
     while isinstance(form, Cons):
         head = form.car
         if isinstance(head, Symbol) and hasattr(head.macro, "__lisp_lambda_list__") and head.package is not COMMON_LISP:
-            try:
-                expansion = head.macro(form, None)
-            except Exception:  # no call, or one of a macrolet; what is wrong with it the compiler will say
-                expansion = None
+            expansion = _tried(head.macro, form)
             if expansion is not form and mentions(expansion, symbols):
                 return True
         if mentions(head, symbols):
@@ -89,6 +86,12 @@ def mentions(form, symbols):
     if type(form) is list:
         return any(mentions(item, symbols) for item in form)
     return isinstance(form, Symbol) and form in symbols
+
+
+def _tried(macro, form):
+    """What ``macro`` makes of ``form``; ``None`` after an error: it is no call, as the ``(test)`` of the clause ``(1 test)``, or one of a
+    macrolet. What is wrong with a call the compiler will say, so the error enters no debugger."""
+    return handler_case([(Error, lambda condition: None)], lambda: macro(form, None))
 
 
 def macroexpand(form, environment=None):

@@ -18,7 +18,7 @@ from cramhy_runtime.ground.function_codes import note_code
 from cramhy_runtime.ground.conditions import Error, SimpleFileError, StyleWarning, Warning_, error, handler_bind, type_error
 from cramhy_runtime.ground.data import UNSUPPLIED, Cons, LispString, MultipleValues, Symbol, boolean, lisp_list
 from cramhy_runtime.ground.dynamic import binding, special
-from ..compiler.compilation_unit import compilation_unit
+from ..compiler.compilation_unit import REPORTING, compilation_unit
 from ..evaluation.evaluator import EVAL_WHEN, LOCALLY, MACROLET, PACKAGE, PROGN, SYMBOL_MACROLET, Unit, compiler, evaluate, new_namespace
 from cramhy_runtime.ground.packages import keyword, sym
 from ..printer.printer import prin1_to_string
@@ -52,6 +52,11 @@ def _flag(value, variable):
 # --------------------------------------------------------------------------------------------------------------- loading
 
 
+stand_ins: dict = {}
+"""Names of files, ``swank-loader.lisp``, which a room above has parts of its own for: a function of the path is called, and no file is
+loaded or needs to be there."""
+
+
 def load(designator, *, verbose=UNSUPPLIED, print=UNSUPPLIED, if_does_not_exist=True, external_format=None):
     """``load``: run the forms of a file, source or compiled, or of a stream. Returns T.
 
@@ -64,6 +69,10 @@ def load(designator, *, verbose=UNSUPPLIED, print=UNSUPPLIED, if_does_not_exist=
         return _load_stream(designator, show)
     if not isinstance(designator, (str, LispString, os.PathLike)):
         return type_error(designator, "(OR STRING PATHNAME STREAM)")
+    stand_in = stand_ins.get(os.path.basename(path_of(designator)))
+    if stand_in is not None:
+        stand_in(path_of(designator))
+        return True
     found = _file_to_load(designator)
     if found is None:
         if if_does_not_exist is None:
@@ -262,6 +271,7 @@ class _Compilation:
 
     def _complain(self, what, problem):
         self.warned = self.failed = True
+        REPORTING.failed(problem)
         output = output_stream(ERROR_OUTPUT.value)
         output.fresh_line()
         place = getattr(problem, "position", None)

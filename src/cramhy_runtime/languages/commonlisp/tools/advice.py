@@ -207,6 +207,8 @@ def _class(symbol, root):
     """Which classes below ``root``, or types, have a name like that of ``symbol``, here or exported by another package."""
 
     def fits(other):
+        if other is symbol:  # a class that others have named, and nobody has defined
+            return False
         cls = PORTS.classes.find(other, False)
         return isinstance(cls, type) and issubclass(cls, root) or root is object and PORTS.types.known(other)
 

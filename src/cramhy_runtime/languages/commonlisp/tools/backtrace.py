@@ -67,7 +67,7 @@ def running_calls(frame):
 
 def _user_calls(frames):
     return [
-        (_name(frame.f_code), frame_position(frame, lasti))
+        (name_of(frame.f_code), frame_position(frame, lasti))
         for frame, _, lasti in frames
         if is_user_file(frame.f_code.co_filename) and frame.f_code.co_name != "<module>"
     ]
@@ -101,7 +101,7 @@ def _stack(frame):
     return [(found, found.f_lineno, lasti) for found, lasti in reversed(circumstance.running(frame))]
 
 
-def _name(code):
+def name_of(code):
     """A Lisp name for the function of ``code``."""
     name = code.co_name
     if name == "toplevel":

@@ -15,6 +15,7 @@ from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.numbers import is_real
 from cramhy_runtime.ground.packages import intern, keyword, sym
 from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.robot_world import remarks
 from cramhy_runtime.robot_world.costmaps import costmap, costs, generators, grids, spread
 from cramhy_runtime.robot_world.costmaps.arrays import np
 from cramhy_runtime.robot_world.costmaps.grids import PACKAGE
@@ -57,6 +58,11 @@ def grid_height(grid: Any) -> int:
 def generator_name(generator: Any) -> Any:
     """The name that a cost function was registered under."""
     return _instance(generator, costmap.CostmapGenerator, "GENERATOR").name
+
+
+def remark(map: Any) -> None:
+    """Tell those who look on that places are drawn from a costmap."""
+    remarks.costmap(_costmap(map))
 
 
 def cost_functions(map: Any) -> Any:

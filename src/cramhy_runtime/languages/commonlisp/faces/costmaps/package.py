@@ -28,7 +28,7 @@ NAMES = {
     "2d-pose-covariance": functions.two_d_pose_covariance,
 }
 INTERNAL = """occupied occupied-places pad-grid grid-of-values cached generate-by-function map-maximum heights-at has-height-generators
-    orientations-at check-metadata visible-cells why-empty"""
+    orientations-at check-metadata visible-cells why-empty remark"""
 """For the Lisp half of the library: `orientations_at` is ``%orientations-at``."""
 CLASSES = (
     grids.GridMetadata,

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import Cons, DoubleFloat, FreshString, MultipleValues, boolean, lisp_list, list_from
 from cramhy_runtime.ground.packages import is_symbol, symbol_name
-from cramhy_runtime.robot_world import models, urdf
+from cramhy_runtime.robot_world import description_files, models, remarks
 from cramhy_runtime.robot_world.descriptions import Description, DescriptionError
+from cramhy_runtime.robot_world.physical.world import PhysicalWorld
 from cramhy_runtime.robot_world.placements import of_pose
 from cramhy_runtime.robot_world.things import Item, Machine, Thing
 from cramhy_runtime.robot_world.vision import seen
@@ -27,16 +28,23 @@ if TYPE_CHECKING:
     from cramhy_runtime.transforms.poses import Pose
 
 LISP_NAMES = """
-make-world copy-world thing-color stuck-things ignored-contacts ignore-contact add-description remove-thing find-thing things thing-name
-thing-world thing-pose set-thing-pose thing-types thing-mass thing-bounds part-bounds machine-joints machine-joint set-machine-joint
-machine-links machine-link machine-description attach detach attachments contacts settle stable visibility read-description
-description-text
+make-world physical-p copy-world thing-color stuck-things ignored-contacts ignore-contact add-description remove-thing find-thing things
+thing-name thing-world thing-pose set-thing-pose thing-types thing-mass thing-bounds part-bounds machine-joints machine-joint
+set-machine-joint machine-links machine-link machine-description attach detach attachments contacts settle stable visibility
+read-description description-text looked-on-p remark-seen
 """
 
 
-def make_world() -> World:
-    """A world with nothing in it."""
-    return World()
+def make_world(mode: Any = None) -> World:
+    """A world with nothing in it: :KINEMATIC, or :PHYSICAL, in which motions take time and fingers hold by friction."""
+    word = "KINEMATIC" if mode is None else symbol_name(mode) if is_symbol(mode) else str(mode)
+    kind = {"KINEMATIC": World, "PHYSICAL": PhysicalWorld}.get(word)
+    return error("The mode of a world is :KINEMATIC or :PHYSICAL, not ~s.", mode) if kind is None else kind()
+
+
+def physical_p(world: World) -> bool | None:
+    """Whether motions in a world take time."""
+    return boolean(isinstance(world, PhysicalWorld))
 
 
 def copy_world(world: World) -> World:
@@ -211,9 +219,9 @@ def visibility(world: World, camera: Pose, thing: Thing) -> MultipleValues:
 
 
 def read_description(text: str, file: str = "") -> Description:
-    """The description in the text of a URDF file."""
+    """The description in the text of a URDF or MJCF file."""
     try:
-        return urdf.read_text(str(text), str(file))
+        return description_files.read_text(str(text), str(file))
     except DescriptionError as problem:
         return error("~a", str(problem))
 
@@ -227,3 +235,13 @@ def description_text(name: Symbol | str) -> str:
         return FreshString((path if path.is_file() else models.DATA / path).read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as problem:
         return error("the description ~a cannot be read: ~a", str(name), str(problem))
+
+
+def looked_on_p() -> bool | None:
+    """Whether anybody looks on at what a plan considers (``remarks``)."""
+    return boolean(remarks.heard())
+
+
+def remark_seen(name: Symbol | str, pose: Pose | None) -> None:
+    """Tell who looks on that the thing of a name is believed to be at a pose in the room; nil: in the hand that holds it."""
+    remarks.seen(name_of(name), None if pose is None else of_pose(pose))

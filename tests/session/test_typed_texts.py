@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import linecache
 
-from cramhy_runtime.repl import typed_texts
+from cramhy_runtime.session import typed_texts
 
 
 def kept(prefix):

@@ -1,0 +1,101 @@
+"""Calls of the inspector."""
+
+from __future__ import annotations
+
+from ..inspector import Inspector
+from ..presentations import of
+from ..rpcs import Refused, rpc, text
+from .evaluating import evaluated
+
+
+def _inspector(call):
+    if call.connection.inspector is None:
+        raise Refused("Nothing is inspected.")
+    return call.connection.inspector
+
+
+def inspect(call, obj):
+    """Begin to inspect ``obj``."""
+    call.connection.inspector = Inspector(obj)
+    return call.connection.inspector.shown()
+
+
+@rpc("init-inspector", evaluates=True)
+def init_inspector(call, source):
+    values = evaluated(call, text(source))
+    return inspect(call, values[0] if values else None)
+
+
+@rpc("inspect-presentation inspect-object")
+def inspect_presentation(call, id_, reset=None):
+    obj = of(call.connection).find(id_)
+    if call.connection.inspector is None or reset:
+        return inspect(call, obj)
+    return call.connection.inspector.go_to(obj)
+
+
+@rpc("inspect-nth-part")
+def inspect_nth_part(call, index):
+    return _inspector(call).go_to(_inspector(call).part(index))
+
+
+@rpc("inspector-nth-part")
+def inspector_nth_part(call, index):
+    return _inspector(call).text_of(_inspector(call).part(index))
+
+
+@rpc("pprint-inspector-part")
+def pprint_part(call, index):
+    return _inspector(call).text_of(_inspector(call).part(index), pretty=True)
+
+
+@rpc("inspector-call-nth-action", evaluates=True)
+def call_nth_action(call, index, *_):
+    return _inspector(call).act(index)
+
+
+@rpc("inspector-range")
+def inspector_range(call, start, end):
+    return _inspector(call).chunk(start, end)
+
+
+@rpc("inspector-pop")
+def inspector_pop(call):
+    return _inspector(call).back()
+
+
+@rpc("inspector-next")
+def inspector_next(call):
+    return _inspector(call).forth()
+
+
+@rpc("inspector-reinspect")
+def reinspect(call):
+    return _inspector(call).shown()
+
+
+@rpc("inspector-toggle-verbose")
+def toggle_verbose(call):
+    return _inspector(call).shown()
+
+
+@rpc("inspector-history")
+def history(call):
+    return _inspector(call).history()
+
+
+@rpc("inspector-eval", evaluates=True)
+def inspector_eval(call, source):
+    """A form in which ``*`` is the object that is shown."""
+    from cramhy_runtime.ground.dynamic import binding
+    from cramhy_runtime.session.session import HISTORY
+
+    from .evaluating import echo
+
+    with binding(HISTORY[0], _inspector(call).object):
+        return echo(evaluated(call, text(source)))
+
+
+@rpc("quit-inspector")
+def quit_inspector(call):
+    call.connection.inspector = None

@@ -1,0 +1,18 @@
+"""Why a call has failed, in words for the echo area of Emacs."""
+
+from __future__ import annotations
+
+from cramhy_runtime.languages.commonlisp.tools.advice import report_text
+from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of
+
+from .rpcs import Refused
+
+
+def reason_of(failure):
+    """The text of a failure for the echo area."""
+    if isinstance(failure, Refused):
+        return str(failure)
+    try:
+        return report_text(condition_of(failure))
+    except Exception:
+        return f"{type(failure).__name__}: {failure}"

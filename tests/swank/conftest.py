@@ -1,0 +1,32 @@
+"""An Emacs that speaks to a session in virtual time, without a socket."""
+
+from __future__ import annotations
+
+import pytest
+
+from cramhy_runtime import kernel
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.languages.commonlisp.streams import streams as lisp_streams
+from cramhy_runtime.session.session import Session
+from cramhy_runtime.swank import package, streams
+
+from .client import Emacs
+
+
+@pytest.fixture
+def session():
+    """A session in virtual time, without the turtle, as it was before when the test is over."""
+    made = Session(time="virtual", turtlesim=False)
+    package.stand_in()
+    saved = [(variable, variable.value) for variable in (*streams.VARIABLES, lisp_streams.STANDARD_INPUT, lisp_streams.TERMINAL_IO)]
+    yield made
+    for variable, value in saved:
+        variable.value = value
+    conditions.install_router(None)
+    kernel.stop()
+
+
+@pytest.fixture
+def emacs(session):
+    """An `Emacs` that is connected."""
+    return Emacs(session)

@@ -1,0 +1,164 @@
+"""The debugger, over the protocol."""
+
+from __future__ import annotations
+
+
+def fail(emacs, form="(broken 1 2)"):
+    emacs.repl('(defun broken (speed angle*) (let ((sum (+ speed angle*))) (error "no ~a" sum)))')
+    number = emacs.rex(f'(swank-repl:listener-eval "{form}")', thread=":repl-thread")
+    return number, *emacs.debugged()
+
+
+def test_what_is_told_first(emacs):
+    _, thread, level, condition, restarts, frames = fail(emacs)
+    assert level == 1 and condition[0].startswith("  no 3\n  at <repl ") and condition[1] == "   [Condition of type SIMPLE-ERROR]"
+    assert restarts == [["ABORT", "Return to Emacs."]]
+    assert frames == [[0, "(BROKEN 1 2)"], [1, "the form"]]
+    assert emacs.call("(swank:backtrace 0 1)", thread=thread) == [[0, "(BROKEN 1 2)"]]
+    assert emacs.call("(swank:backtrace 1 nil)", thread=thread) == [[1, "the form"]]
+    info = emacs.call("(swank:debugger-info-for-emacs 0 10)", thread=thread)
+    assert info[:3] == [condition, restarts, frames]
+
+
+def test_locals_in_the_spelling_of_the_text(emacs):
+    _, thread, *_ = fail(emacs)
+    variables, tags = emacs.call("(swank:frame-locals-and-catch-tags 0)", thread=thread)
+    assert [(entry[1], entry[5]) for entry in variables] == [("SPEED", "1"), ("ANGLE*", "2"), ("SUM", "3")] and tags is None
+    assert emacs.call("(swank:frame-locals-and-catch-tags 1)", thread=thread) == [None, None]
+    assert emacs.refused("(swank:frame-locals-and-catch-tags 9)", thread=thread) == "There is no frame 9."
+
+
+def test_forms_in_a_frame(emacs):
+    _, thread, *_ = fail(emacs)
+    assert emacs.call('(swank:eval-string-in-frame "(list sum angle* (* 2 speed))" 0 "CL-USER")', thread=thread) == "=> (3 2 2)"
+    assert emacs.call('(swank:pprint-eval-string-in-frame "(values sum 5)" 0 "CL-USER")', thread=thread) == "3\n5\n"
+    assert emacs.call("(swank:frame-package-name 0)", thread=thread) == "CL-USER"
+    assert emacs.call('(swank:inspect-in-frame "(list speed)" 0)', thread=thread)[1] == "(1)"
+    assert emacs.call("(swank:inspect-frame-var 0 2)", thread=thread)[1] == "3"
+    assert emacs.refused("(swank:inspect-frame-var 0 7)", thread=thread) == "This frame has no variable 7."
+    assert emacs.call("(swank:inspect-current-condition)", thread=thread)[1].startswith("#<SIMPLE-ERROR")
+    assert emacs.call("(swank:sdlb-print-condition)", thread=thread).startswith("  no 3")
+    assert "LOAD_FAST" in emacs.call("(swank:sldb-disassemble 0)", thread=thread)
+
+
+def test_the_place_of_a_frame(emacs, tmp_path):
+    path = tmp_path / "file.lisp"
+    path.write_text("(in-package :cl-user)\n\n(defun in-file (x)\n  (list\n    (car x)))\n")
+    emacs.call(f'(swank:load-file "{path}")')
+    emacs.rex('(swank-repl:listener-eval "(in-file 5)")', thread=":repl-thread")
+    thread, *_ = emacs.debugged()
+    where = emacs.call("(swank:frame-source-location 0)", thread=thread)
+    assert where[:3] == [":location", [":file", str(path)], [":position", path.read_text().index("(car x)") + 1]]
+
+
+def test_restarts(emacs):
+    number = emacs.rex(
+        '(swank-repl:listener-eval "(restart-case (error \\"x\\") (mine () :report \\"Take mine.\\" 17))")', thread=":repl-thread"
+    )
+    thread, _, _, restarts, _ = emacs.debugged()
+    assert restarts == [["MINE", "Take mine."], ["ABORT", "Return to Emacs."]]
+    assert emacs.refused("(swank:invoke-nth-restart-for-emacs 1 7)", thread=thread) == "There is no restart 7; they go from 0 to 1."
+    assert emacs.refused("(swank:invoke-nth-restart-for-emacs 1 0)", thread=thread) == "The debugger was left."
+    assert emacs.wait(number) == [":ok", None] and emacs.events[-1][1] == "17\n"
+    assert [":debug-return", thread, 1, None] in emacs.events
+
+
+def test_ways_out(emacs):
+    number, thread, *_ = fail(emacs)
+    assert emacs.refused("(swank:sldb-continue)", thread=thread) == "There is no restart CONTINUE here. Choose another one."
+    emacs.refused("(swank:sldb-abort)", thread=thread)
+    assert emacs.wait(number) == [":abort", "aborted"]
+    number, thread, *_ = fail(emacs)
+    emacs.refused("(swank:throw-to-toplevel)", thread=thread)
+    assert emacs.wait(number) == [":abort", "aborted"]
+    number, thread, *_ = fail(emacs, '(progn (cerror \\"go on\\" \\"stop\\") 8)')
+    emacs.refused("(swank:sldb-continue)", thread=thread)
+    assert emacs.wait(number) == [":ok", None]
+    assert emacs.refused("(swank:sldb-abort)", thread=thread) == "This call belongs to a debugger, and there is none."
+
+
+def test_levels(emacs):
+    number, thread, *_ = fail(emacs)
+    inner = emacs.rex('(swank:eval-string-in-frame "(car 5)" 0 "CL-USER")', thread=thread)
+    thread_2, level, condition, restarts, _ = emacs.debugged()
+    assert (thread_2, level) == (thread, 2) and "is not of type" in condition[0]
+    assert [text for _, text in restarts] == ["Return to level 1 of the debugger.", "Return to Emacs."]
+    emacs.refused("(swank:invoke-nth-restart-for-emacs 2 0)", thread=thread)
+    assert emacs.wait(inner) == [":abort", "aborted"]
+    assert [event for event in emacs.events if event[0].startswith(":debug")] == [
+        [":debug-return", thread, 2, None],
+        [":debug-activate", thread, 1, None],
+    ]
+    assert emacs.call("(swank:backtrace 0 1)", thread=thread) == [[0, "(BROKEN 1 2)"]]
+    emacs.refused("(swank:throw-to-toplevel)", thread=thread)
+    assert emacs.wait(number) == [":abort", "aborted"]
+
+
+def test_an_interrupt_leaves_the_debugger(emacs):
+    number, thread, *_ = fail(emacs)
+    emacs.interrupt(thread)
+    assert emacs.wait(number) == [":abort", "interrupted"]
+    assert [":debug-return", thread, 1, None] in emacs.events
+
+
+def test_what_python_cannot_do_is_refused(emacs):
+    _, thread, *_ = fail(emacs)
+    refusal = "A frame cannot be left with a value or begun anew. Take a restart, such as USE-VALUE or RETRY."
+    assert emacs.refused('(swank:sldb-return-from-frame 0 "1")', thread=thread) == refusal
+    assert emacs.refused("(swank:restart-frame 0)", thread=thread) == refusal
+    for name in ("sldb-step", "sldb-next", "sldb-out"):
+        assert emacs.refused(f"(swank:{name} 0)", thread=thread).startswith("Compiled code cannot be stopped between its forms.")
+    assert emacs.refused("(swank:sldb-break-on-return 0)", thread=thread).startswith("cramhy cannot stop where a frame returns.")
+    assert emacs.refused("(swank:sldb-break-with-default-debugger t)", thread=thread) == "The session has no other debugger than this one."
+
+
+def test_a_function_can_be_stopped_at(emacs):
+    emacs.repl("(defun stop-here (x) x)")
+    assert emacs.call('(swank:sldb-break "stop-here")').startswith("Calls of ")
+    number = emacs.rex('(swank-repl:listener-eval "(stop-here 4)")', thread=":repl-thread")
+    thread, _, condition, _, _ = emacs.debugged()
+    assert "breaking before traced call to STOP-HERE" in condition[0]
+    emacs.refused("(swank:sldb-continue)", thread=thread)
+    assert emacs.wait(number) == [":ok", None]
+    emacs.call("(swank:untrace-all)")
+
+
+def test_an_error_in_a_plan_has_the_frames_of_its_task(emacs):
+    number, thread, _, condition, _, frames = fail(emacs, "(cpl:top-level (cpl:par (sleep 1) (broken 3 4)))")
+    assert condition[0].startswith("  no 7") and frames[0] == [0, "(BROKEN 3 4)"]
+    emacs.refused("(swank:throw-to-toplevel)", thread=thread)
+    assert emacs.wait(number) == [":abort", "aborted"]
+
+
+def test_a_debugger_that_the_plan_ends(emacs):
+    """A branch stops in the debugger; the others end the plan, and the debugger with it."""
+    emacs.repl("(setf cpl-impl::*debug-on-lisp-errors* t)")
+    number = emacs.rex('(swank-repl:listener-eval "(cpl:top-level (cpl:pursue (sleep 5) (car 5)))")', thread=":repl-thread")
+    thread, *_ = emacs.debugged()
+    assert emacs.call('(swank:interactive-eval "(sleep 10)")') == "=> NIL"
+    assert emacs.wait(number) == [":ok", None]
+    assert [":debug-return", thread, 1, None] in emacs.events
+
+
+def test_two_debuggers_at_a_time(emacs):
+    number, first, *_ = fail(emacs)
+    other = emacs.rex('(swank:interactive-eval "(car 7)")')
+    second, level, *_ = emacs.debugged()
+    assert second != first and level == 1
+    emacs.refused("(swank:sldb-abort)", thread=second)
+    assert emacs.wait(other) == [":abort", "aborted"]
+    emacs.refused("(swank:sldb-abort)", thread=first)
+    assert emacs.wait(number) == [":abort", "aborted"]
+
+
+def test_errors_while_one_types_open_no_debugger(emacs):
+    assert emacs.refused('(swank:describe-symbol "no-such-symbol")') == "There is no symbol no-such-symbol in the package COMMON-LISP-USER."
+    assert not [event for event in emacs.events if event[0] == ":debug"]
+
+
+def test_break_from_emacs(emacs):
+    number = emacs.rex("(swank:simple-break)")
+    thread, _, condition, restarts, _ = emacs.debugged()
+    assert condition[0].startswith("  Break from Emacs.") and restarts[0][0] == "CONTINUE"
+    emacs.refused("(swank:sldb-continue)", thread=thread)
+    assert emacs.wait(number) == [":ok", None]
