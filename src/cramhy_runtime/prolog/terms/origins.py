@@ -1,4 +1,4 @@
-"""The code in Lisp or Hy that made something, the user's or a library's: cheap to note, and converted to a place in the text when a message needs it.
+"""The code in Lisp or Hy that made something, the user's or a library's: noted at once, and made a place when a message needs it.
 
 Finding the file, line and column of running code means counting through its instructions, which is too slow for every fact of a large
 group. So the code and the number of the instruction are noted, and looked up when a message names the place.
