@@ -5,7 +5,9 @@ import pytest
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.prolog.engine import database
 from cramhy_runtime.repl.session import Session
+from cramhy_runtime.robot_world import remarks
 
 pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
 
@@ -137,6 +139,17 @@ def test_all_names_are_exported(ask):
         # objects by their names: btr-utils:object-pose is btr's symbol, a function here and a predicate there
         ("(list (eq 'btr-utils:object-pose 'btr:object-pose) (typep (btr-utils:object-pose 'mug-1) 'cl-transforms:pose))", "(T T)"),
         ("(flet ((x () (cl-transforms:x (cl-transforms:origin (btr-utils:object-pose 'mug-1))))) (let ((before (x))) (btr-utils::translate-object 'mug-1 0.1) (near (- (x) before) 0.1)))", "T"),
+        # drawings: nothing touches them, and they hide nothing
+        ("(list (btr-utils::spawn-object-aabb-box 'mug-1) (near 0 (cl-transforms:v-dist (btr:bounding-box-dimensions (btr:aabb (named 'mug-1-aabb-box))) (btr:bounding-box-dimensions (btr:aabb (mug))))) (btr:find-objects-in-contact *world* (named 'mug-1-aabb-box)))", "(MUG-1-AABB-BOX T NIL)"),
+        ("(let ((eye (btr:ensure-pose '((-2 -0.6 0.8) (0.7071 0 0 0.7071))))) (flet ((part () (btr:calculate-object-visibility *world* eye (mug)))) (let ((before (part))) (btr-utils::spawn-object-aabb-box 'mug-1) (= before (part)))))", "T"),
+        ("(progn (setf (btr:pose (mug)) (btr:ensure-pose '((0 3 0.5) (0 0 0 1)))) (btr-utils::spawn-object-aabb-box 'mug-1 :box-name 'b) (let ((before (z-of 'b))) (btr:simulate *world* 10) (list (< (z-of 'mug-1) 0.1) (= before (z-of 'b)) (> before 0.4))))", "(T T T)"),
+        ("(btr-utils::spawn-object-aabb-box 'ghost)", 'There is no object GHOST in the world.'),
+        # poses by names
+        ("(progn (prolog:prolog '(btr-utils:assert-object-pose mug-1 ((0 3 0.7) (0 0 0 1)))) (z-of 'mug-1))", "0.7d0"),
+        ("(proves '(btr-utils:assert-object-pose ghost ((0 3 0.7) (0 0 0 1))))", "NIL"),
+        ("(let ((?there (cl-transforms-stamped:pose->pose-stamped \"map\" 0.0 (btr:ensure-pose '((0 3 0.7) (0 0 0 1)))))) (prolog:prolog `(btr-utils:assert-object-pose-on mug-1 ,(desig:a location (pose ?there)))) (near 0.7 (- (cl-transforms:z (btr:bounding-box-center (btr:aabb (mug)))) (/ (cl-transforms:z (btr:bounding-box-dimensions (btr:aabb (mug)))) 2))))", "T"),
+        # kinds of objects that a program adds
+        ("(progn (prolog:def-fact-group of-mine (btr-utils:scenario-object-shape btr-utils:scenario-object-extra-attributes) (prolog:<- (btr-utils:scenario-object-shape :brick :box)) (prolog:<- (btr-utils:scenario-object-extra-attributes :brick (:size (0.1 0.2 0.3))))) (near 0.3 (cl-transforms:z (btr:calculate-bb-dims (btr-utils:spawn-object 'brick-1 :brick :pose '((0 3 1) (0 0 0 1)))))))", "T"),
         # cl-urdf
         ("(princ-to-string (btr:urdf (named :kitchen)))", '"#<ROBOT iai_kitchen>"'),
         ("(cl-urdf:name (btr:urdf (robot)))", '"pr2"'),
@@ -187,3 +200,77 @@ def test_what_is_in_a_wall_is_warned_about(ask):
     ask("(btr:add-object *world* :box 'stone '((4 4 1) (0 0 0 1)) :size '(0.1 0.1 0.1))")
     text = ask("(handler-case (btr:simulate *world* 10) (warning (problem) (princ-to-string problem)))")
     assert "STONE is inside of WALL and cannot get out" in text
+
+
+OF_UTILITIES = """spawn-object kill-object kill-all-objects move-object object-instance object-pose object-exists item-exists respawn-object
+translate-object spawn-object-aabb-box robot-name move-robot move-robot-away park-robot visualize-designator-costmaps
+visualize-gripper"""
+OF_FACTS = """scenario-objects-init-pose scenario-objects-default-color scenario-object-color scenario-object-shape
+scenario-object-extra-attributes assert-object-pose assert-object-pose-on"""
+OF_BELIEF = """setup-world-database set-tf-from-bullet update-bullet-transforms get-designator-object-name get-designator-object
+object-pose-in-frame publish-environment-joint-state"""
+OF_BELIEF_VARIABLES = "*robot-urdf* *kitchen-urdf* *robot-parameter* *kitchen-parameter* *spawn-debug-window*"
+
+
+@pytest.mark.parametrize(
+    ("package", "names", "there"),
+    [
+        ("btr-utils", OF_UTILITIES, "(fboundp symbol)"),
+        ("btr-belief", OF_BELIEF, "(fboundp symbol)"),
+        ("btr-belief", OF_BELIEF_VARIABLES, "(boundp symbol)"),
+    ],
+)
+def test_each_name_of_the_page_is_defined(ask, package, names, there):
+    ask("(asdf:load-system :cram-bullet-reasoning-belief-state)")
+    quoted = " ".join(f'"{name.upper()}"' for name in names.split())
+    assert ask(f"(remove-if (lambda (name) (let ((symbol (find-symbol name :{package}))) (and symbol {there}))) '({quoted}))") == "NIL"
+
+
+@pytest.mark.parametrize("name", OF_FACTS.split())
+def test_each_predicate_of_the_page_has_clauses(session, ask, name):
+    assert database.functors[session.evaluate_text(f"'btr-utils:{name}")[0]].clauses
+
+
+def test_a_hand_that_is_shown_is_heard_by_those_who_look_on(ask):
+    heard = []
+    remarks.listen(listener := lambda kind, value: heard.append((kind, *value)))
+    try:
+        ask("(setf (btr:pose (robot)) (btr:ensure-pose '((1 0 0) (0 0 0 1))))")
+        ask("(asdf:load-system :cram-pr2-projection)")
+        assert ask("(btr-utils:visualize-gripper '((1.6 0.3 0.8) (0 0 0 1)) :left)") == "T"
+        assert ask("(btr-utils:visualize-gripper '((4 0.3 0.8) (0 0 0 1)) :left)") == "NIL"
+    finally:
+        remarks.unlisten(listener)
+    told = [(kind, [round(float(part), 2) for part in goal.position], reached) for kind, _, goal, reached in heard[:1] + heard[-1:]]
+    assert told == [("grasp", [0.6, 0.3, 0.8], True), ("grasp", [3.0, 0.3, 0.8], False)]
+
+
+SETTINGS = """(prolog:def-fact-group costmap-metadata (costmap:costmap-size costmap:costmap-origin costmap:costmap-resolution)
+  (prolog:<- (costmap:costmap-size 12 12)) (prolog:<- (costmap:costmap-origin -6 -6)) (prolog:<- (costmap:costmap-resolution 0.05)))"""
+
+
+def test_costmaps_are_told_as_text(ask):
+    ask("(asdf:load-system :cram-btr-spatial-relations-costmap)")
+    ask(SETTINGS)
+    at = "(desig:a location (on (desig:an object (type counter-top) (urdf-name sink-area-surface) (part-of kitchen))) (side left))"
+    lines = ask(f"(with-output-to-string (*standard-output*) (btr-utils:visualize-designator-costmaps {at}))").strip('"').splitlines()
+    told = [line for line in lines if line.startswith("[BTR-UTILS CM] ")]
+    assert told[0].startswith("[BTR-UTILS CM] 2 costmaps for #<A LOCATION")
+    assert {line for line in told[1:] if "costmap " in line} == {
+        "[BTR-UTILS CM] costmap 1: on-bounding-box.",
+        "[BTR-UTILS CM] costmap 2: side.",
+    }
+    assert "[BTR-UTILS CM] all of them: " in "\n".join(told)
+    place = [float(part) for part in told[-1].split(": ")[1].split()]
+    assert 1.2 < place[0] < 1.9 and -0.3 < place[1] < 1.4 and 0.8 < place[2] < 0.9
+
+
+def test_the_joints_of_the_kitchen_are_published(ask):
+    ask("(asdf:load-system :cram-bullet-reasoning-belief-state)")
+    assert ask('(btr-belief::publish-environment-joint-state \'(("a" 1)))') == "NIL"  # no node
+    ask("(defvar *told* nil)")
+    ask("""(roslisp:with-ros-node ("belief")
+             (roslisp:subscribe "kitchen/cram_joint_states" "sensor_msgs/JointState" (lambda (message) (push message *told*)))
+             (btr-belief::publish-environment-joint-state '(("a" 1) ("b" . 2)))
+             (cpl:sleep 0.5))""")
+    assert ask("(roslisp:with-fields (name position) (first *told*) (list name position))") == '(#("a" "b") #(1.0d0 2.0d0))'

@@ -47,6 +47,11 @@ def is_user_file(filename):
     )
 
 
+def is_lisp_text(filename):
+    """Whether code of this file name was written in Lisp or Hy, or typed: by the user, or in a library that comes with cramhy."""
+    return is_user_file(filename) or filename.startswith(_LIBRARIES)
+
+
 def frame_position(frame, lasti=None):
     """(file, line, column) of what ``frame`` is executing; the column may be ``None``."""
     return code_position(frame.f_code, frame.f_lasti if lasti is None else lasti, frame.f_lineno)

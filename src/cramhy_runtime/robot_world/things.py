@@ -41,7 +41,8 @@ class Item(Thing):
     """A rigid object.
 
     name: what the world knows it by. shapes: what it is made of, in its own frame. placement: where it is in the world. mass: kilograms; 0
-    is for what never moves by itself. types: what it is, the most special first (``("bottle",)``).
+    is for what never moves by itself. types: what it is, the most special first (``("bottle",)``). drawn: it is a drawing only; it touches
+    nothing, and hides nothing from a camera.
     """
 
     name: Hashable
@@ -50,6 +51,7 @@ class Item(Thing):
     mass: float = 0.2
     colour: Colour = GREY
     types: tuple[Hashable, ...] = ()
+    drawn: bool = False
 
     def copy(self) -> Item:
         return replace(self)

@@ -78,9 +78,10 @@ class World:
         mass: float = 0.2,
         colour: Colour = GREY,
         types: Sequence[Hashable] = (),
+        drawn: bool = False,
     ) -> Item:
         """Add a rigid object. See `Item` for the arguments. Errors: `WorldError`, when the name is taken."""
-        return self._add(Item(name, tuple(shapes), at or placement(), mass, colour, tuple(types)))
+        return self._add(Item(name, tuple(shapes), at or placement(), mass, colour, tuple(types), drawn))
 
     def add_machine(
         self,
@@ -210,6 +211,10 @@ class World:
 
     # ---------------------------------------------------------------------------------------------- what happens between things
 
+    def solids(self) -> list[Thing]:
+        """The things that can be touched: all but drawings."""
+        return [thing for thing in self.things.values() if not (isinstance(thing, Item) and thing.drawn)]
+
     def _held(self) -> frozenset[Hashable]:
         return frozenset(item for machine in self.machines() for item in machine.holds)
 
@@ -217,7 +222,7 @@ class World:
     def scene(self) -> Scene:
         """The things as MuJoCo sees them, where they are now."""
         if self._scene is None:
-            self._scene, self._placed = Scene(self.things.values(), self._held()), False
+            self._scene, self._placed = Scene(self.solids(), self._held()), False
         if not self._placed:
             self._scene.place()
             self._placed = True
@@ -234,7 +239,11 @@ class World:
 
     def bounds(self, name: Hashable, link: str | None = None) -> tuple[np.ndarray, np.ndarray]:
         """The lowest and the highest corner of the box along the axes around a thing, or around one of its links."""
-        return self.scene.bounds(self.thing(name), link)
+        thing, scene = self.thing(name), self.scene
+        if thing not in scene.things:
+            scene = Scene([thing])
+            scene.place()
+        return scene.bounds(thing, link)
 
     def simulate(self, seconds: float, without: Hashable | None = None) -> float:
         """Let free items fall for so long, or until all are at rest; the seconds that it took.
@@ -245,7 +254,7 @@ class World:
         without: the name of a machine that touches nothing meanwhile, as the fingers of a hand that has just let go.
         """
         held = self._held()
-        things = [thing for thing in self.things.values() if thing.name != without]
+        things = [thing for thing in self.solids() if thing.name != without]
         scene = self.scene
         if without is not None:
             scene = Scene(things, held)

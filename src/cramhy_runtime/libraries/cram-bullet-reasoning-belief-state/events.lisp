@@ -30,11 +30,33 @@
       (btr::let-fall btr:*current-bullet-world* 5/3 (btr:get-robot-object)) ; as long as (btr:simulate world 10)
       (robot-world:remark-seen (btr:name object) (btr:pose object)))))
 
+(defvar *joint-state-publication* nil "Where the joints of the furniture are told, once they were.")
+
+(defun forget-joint-state-publication ()
+  (setf *joint-state-publication* nil))
+
+(roslisp-utilities:register-ros-cleanup-function forget-joint-state-publication)
+
+(defun publish-environment-joint-state (joint-states)
+  "Tell ROS, on the topic kitchen/cram_joint_states, where joints of the furniture are: a list of (name position) or (name . position), or
+a hash table. Nothing is told while no node runs."
+  (let ((states (if (hash-table-p joint-states)
+                    (loop for name being the hash-keys of joint-states using (hash-value position) collect (list name position))
+                    (loop for (name . position) in joint-states collect (list name (if (consp position) (first position) position))))))
+    (when (eq (roslisp:node-status) :running)
+      (unless *joint-state-publication*
+        (setf *joint-state-publication* (roslisp:advertise "kitchen/cram_joint_states" "sensor_msgs/JointState")))
+      (roslisp:publish-msg *joint-state-publication*
+        (:stamp :header) (roslisp:ros-time)
+        :name (map 'vector #'first states)
+        :position (map 'vector (lambda (state) (coerce (second state) 'double-float)) states)))))
+
 (defun move-container (event sign)
   (let* ((furniture (btr:object btr:*current-bullet-world* (or (cpoe:environment-event-object event) :kitchen)))
          (joint (cpoe:environment-event-joint-name event)))
     (when furniture
-      (incf (btr:joint-state furniture joint) (* sign (cpoe:environment-event-distance event))))))
+      (incf (btr:joint-state furniture joint) (* sign (cpoe:environment-event-distance event)))
+      (publish-environment-joint-state `((,joint ,(btr:joint-state furniture joint)))))))
 
 (defmethod cram-occasions-events:on-event btr-open-container ((event cpoe:container-opening-event))
   (move-container event 1))

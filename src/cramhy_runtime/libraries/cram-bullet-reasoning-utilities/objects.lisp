@@ -2,7 +2,8 @@
 
 (in-package #:cram-bullet-reasoning-utilities)
 
-(def-fact-group scenario-objects (scenario-objects-init-pose scenario-objects-default-color scenario-object-color)
+(def-fact-group scenario-objects (scenario-objects-init-pose scenario-objects-default-color scenario-object-color
+                                   scenario-object-shape scenario-object-extra-attributes)
   (<- (scenario-objects-init-pose ((2 0 0) (0 0 0 1))))
   (<- (scenario-objects-default-color (0.5 0.5 0.5)))
   (<- (scenario-object-color :plate (0.8 0.58 0.35)))
@@ -12,7 +13,22 @@
   (<- (scenario-object-color :pot (0.1 0.2 0.3)))
   (<- (scenario-object-color :bowl (0 0.3 0)))
   (<- (scenario-object-color :mondamin (0.5 0.1 0)))
-  (<- (scenario-object-color :spatula (0.1 0.1 0.1))))
+  (<- (scenario-object-color :spatula (0.1 0.1 0.1)))
+  (<- (scenario-object-shape ?type ?shape)
+    (fail))
+  (<- (scenario-object-extra-attributes ?type ?attributes)
+    (fail)))
+
+(def-fact-group poses-of-objects ()
+  (<- (assert-object-pose ?name ?pose)
+    (bullet-world ?world)
+    (assert ?world (object-pose ?name ?pose)))
+
+  (<- (assert-object-pose-on ?name ?location)
+    (bullet-world ?world)
+    (current-designator ?location ?current)
+    (desig-reference ?current ?pose)
+    (assert ?world (object-pose-on ?name ?pose))))
 
 (defun answer (variable goal)
   "The value of VARIABLE in the first solution of GOAL, or nil."
@@ -45,7 +61,10 @@
   (:documentation "Put an object of TYPE into the world, and return it. One of that name that is there already is moved to POSE, if one is given.")
   (:method (name type &key pose color (mass 0.2) (world *current-bullet-world*))
     (cond ((not (object world name))
-           (add-object world :mesh name (or pose (init-pose)) :mesh type :mass mass :color (or color (color-of type))))
+           (let ((shape (or (answer '?shape `(scenario-object-shape ,type ?shape)) :mesh)))
+             (apply #'add-object world shape name (or pose (init-pose)) :mass mass :color (or color (color-of type))
+                    (or (answer '?more `(scenario-object-extra-attributes ,type ?more))
+                        (when (eq shape :mesh) (list :mesh type))))))
           (pose
            (prolog `(assert ,world (object-pose ,name ,pose)))))))
 

@@ -54,7 +54,7 @@ class PhysicalWorld(World):
         """MuJoCo's model of the things, made anew when the set of them has changed."""
         if self._engine is None:
             robots = {name: parts for name, parts in self.parts.items() if name in self.things}
-            self._engine, self._before = Engine(self.things.values(), robots, self._before), None
+            self._engine, self._before = Engine(self.solids(), robots, self._before), None
         return self._engine
 
     def drive_with(self, name: Hashable, parts: RobotParts) -> None:

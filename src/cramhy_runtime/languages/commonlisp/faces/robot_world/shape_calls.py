@@ -29,11 +29,21 @@ description-name description-links description-joints
 
 
 def add_shape(
-    world: World, name: Symbol | str, kind: Symbol, size: Cons, pose: Pose, *, mass: Any = 0.2, color: Any = None, types: Any = None
+    world: World,
+    name: Symbol | str,
+    kind: Symbol,
+    size: Cons,
+    pose: Pose,
+    *,
+    mass: Any = 0.2,
+    color: Any = None,
+    types: Any = None,
+    drawn: Any = None,
 ) -> Item:
     """Add an item of one shape: ``kind`` is :BOX, :CYLINDER, :SPHERE, :PLANE or :CONE, ``size`` the list that `Shape` tells of.
 
-    The size of a cone is its radius and its height, that of :POINTS the list of the points, vectors or lists.
+    The size of a cone is its radius and its height, that of :POINTS the list of the points, vectors or lists. What is only ``drawn`` is not
+    touched, and hides nothing.
     """
     wanted = symbol_name(kind).lower()
     try:
@@ -46,7 +56,7 @@ def add_shape(
         return error("~a", str(problem))
     if any(part <= 0 for part in shape.size):
         return error("The size of ~S is ~S; lengths are above 0.", name_of(name), size)
-    return _add(world, name, (shape,), pose, mass, color, types)
+    return _add(world, name, (shape,), pose, mass, color, types, drawn is not None)
 
 
 def _numbers(point: Any) -> tuple[float, ...]:
@@ -54,9 +64,9 @@ def _numbers(point: Any) -> tuple[float, ...]:
     return tuple(float(part) for part in parts)
 
 
-def _add(world: World, name: Any, shapes: tuple[Shape, ...], pose: Pose, mass: Any, color: Any, types: Any) -> Item:
+def _add(world: World, name: Any, shapes: tuple[Shape, ...], pose: Pose, mass: Any, color: Any, types: Any, drawn: bool = False) -> Item:
     return world.add_item(
-        name_of(name), shapes, of_pose(pose), mass=float(mass or 0), colour=colour_of(color), types=tuple(python_list(types))
+        name_of(name), shapes, of_pose(pose), mass=float(mass or 0), colour=colour_of(color), types=tuple(python_list(types)), drawn=drawn
     )
 
 

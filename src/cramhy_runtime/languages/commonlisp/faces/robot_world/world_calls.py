@@ -31,7 +31,7 @@ LISP_NAMES = """
 make-world physical-p copy-world thing-color stuck-things ignored-contacts ignore-contact add-description remove-thing find-thing things
 thing-name thing-world thing-pose set-thing-pose thing-types thing-mass thing-bounds part-bounds machine-joints machine-joint
 set-machine-joint machine-links machine-link machine-description attach detach attachments contacts settle stable visibility
-read-description description-text looked-on-p remark-seen
+read-description description-text looked-on-p remark-seen remark-grasp
 """
 
 
@@ -245,3 +245,8 @@ def looked_on_p() -> bool | None:
 def remark_seen(name: Symbol | str, pose: Pose | None) -> None:
     """Tell who looks on that the thing of a name is believed to be at a pose in the room; nil: in the hand that holds it."""
     remarks.seen(name_of(name), None if pose is None else of_pose(pose))
+
+
+def remark_grasp(machine: Machine, pose: Pose, reached: Any) -> None:
+    """Tell who looks on that a tool of a machine might go to a pose in the frame of its base, and whether it gets there."""
+    remarks.grasp(machine, of_pose(pose), reached is not None)
