@@ -29,7 +29,7 @@ _MOST_STEPS = 40
 _LARGEST_STEP = 0.7  # of a joint, radians or metres
 _REMEMBERED = 5_000  # questions
 _DIFFERENT = 0.05  # of one of the joints
-_HOPELESS = (12, 0.3)  # after so many steps an error beyond this will not go away
+_LOOK_BACK = 5  # steps, in which the squared error of a descent that leads somewhere at least halves
 
 
 class Reach:
@@ -111,7 +111,8 @@ class Reach:
         kinematics, centres, jacobian_of = mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_jacBody
         places, turns, moves, turning, qpos = data.xpos[tip], data.xquat[tip], jacobian[:3], jacobian[3:], data.qpos
         turn, solution, inverse, columns = error[3:], self._solution, self._inverse, jacobian.T
-        for step in range(_MOST_STEPS):
+        before = inf
+        for step in range(1, _MOST_STEPS + 1):
             qpos[:] = joints
             kinematics(model, data)
             np.subtract(position, places, error[:3])
@@ -121,8 +122,10 @@ class Reach:
             size = float(error @ error)
             if size < PRECISION * PRECISION:
                 return joints
-            if step == _HOPELESS[0] and size > _HOPELESS[1]:
-                return None
+            if step % _LOOK_BACK == 0:
+                if size > before / 2:
+                    return None
+                before = size
             centres(model, data)
             jacobian_of(model, data, moves, turning, tip)
             product = jacobian @ columns

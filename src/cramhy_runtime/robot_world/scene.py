@@ -33,7 +33,7 @@ _REST_STEPS = 50
 _DEEP = 5e-3  # metres
 _BELOW_ALL = -1000.0  # metres
 _MOST_LIFTS = 200
-_TOGETHER = 10  # steps that are computed in one call
+_TOGETHER = 25  # steps that are computed in one call; what is at rest is at rest after two calls
 
 
 class Part:

@@ -28,9 +28,51 @@
                   (pr2-proj-reasoning:check-placing-collisions (placing place-action object target))))
       (cpl:fail 'common-fail:object-undeliverable :object object :description "The target is out of reach from all of the places ahead.")))
 
+;;; The plan for placing passes over a failure of its last motion, as the original does, and what was pushed may fall. So the world is asked.
+
+(defparameter *most-beside* 0.05
+  "How far beside its target an object may come to stand, metres.")
+
+(defparameter *most-below* 0.1
+  "How far below its target, since a target may be a little above the table, metres.")
+
+(defparameter *most-tilted* 0.5
+  "How much an object may be tilted against its target, radians.")
+
+(defun upwards (pose)
+  (cl-transforms:rotate (cl-transforms:orientation pose) (cl-transforms:make-3d-vector 0 0 1)))
+
+(defparameter *most-pushed* 0.4
+  "How far away from its target an object is worth taking again, metres; one that fell to the floor is not.")
+
+(defun where-it-lies (object target)
+  "(the pose of OBJECT in the world, the one that TARGET, a location, has for it), or nil where no world knows the object."
+  (let ((item (btr-belief:get-designator-object (desig:current-desig object))))
+    (when item
+      (list (btr:pose item)
+            (cram-tf:ensure-pose-in-frame (desig:reference target) cram-tf:*fixed-frame* :use-zero-time t)))))
+
+(defun lies-at-p (object target)
+  "Whether OBJECT lies where TARGET, a location, has it; true where no world knows it."
+  (let ((poses (where-it-lies object target)))
+    (or (null poses)
+        (destructuring-bind (is wanted) poses
+          (let ((way (cl-transforms:v- (cl-transforms:origin is) (cl-transforms:origin wanted))))
+            (and (<= (abs (cl-transforms:x way)) *most-beside*)
+                 (<= (abs (cl-transforms:y way)) *most-beside*)
+                 (<= (- *most-below*) (cl-transforms:z way) *most-beside*)
+                 (>= (cl-transforms:dot-product (upwards is) (upwards wanted)) (cos *most-tilted*))))))))
+
+(defun worth-taking-again-p (object target)
+  "Whether OBJECT lies near to TARGET, a location, though not at it."
+  (let ((poses (where-it-lies object target)))
+    (and poses
+         (< (cl-transforms:v-dist (cl-transforms:origin (first poses)) (cl-transforms:origin (second poses))) *most-pushed*))))
+
 (cpl:def-cram-function deliver (?object-designator ?target-location ?target-robot-location place-action)
   "Go to where an object that is held shall be, and put it there. Where that is out of reach the robot goes to another place, five times,
-and takes another solution of the target, twice from the same place, and twice with places of its own."
+and takes another solution of the target, twice from the same place, and twice with places of its own. In the end the plan asks the world
+whether the object lies there."
   (flet ((give-up (description)
            (cpl:fail 'common-fail:object-undeliverable :object ?object-designator :description description))
          (next-target ()
@@ -52,5 +94,7 @@ and takes another solution of the target, twice from the same place, and twice w
         (with-other-solutions (2 (fd-plans deliver) common-fail:looking-high-level-failure common-fail:object-unreachable)
             ((next-target)
              (give-up "The target is not to be seen or reached from here."))
-          (put-down ?object-designator ?target-location place-action)))))
+          (put-down ?object-designator ?target-location place-action))))
+    (unless (lies-at-p ?object-designator ?target-location)
+      (give-up "The object was put down, but does not lie where it was to be.")))
   nil)

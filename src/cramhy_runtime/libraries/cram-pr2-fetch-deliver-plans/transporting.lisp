@@ -66,8 +66,8 @@
   (let ((container (desig:desig-prop-value location :in)))
     (and container (desig:desig-prop-value (desig:current-desig container) :type))))
 
-(defun fetch-and-deliver (?object ?target ?arm)
-  "Take an object that was seen, and bring it to ?TARGET."
+(defun fetch-and-deliver-once (?object ?target ?arm)
+  "Take an object from where it is now, and bring it to ?TARGET."
   (let ((?fetch-from (place-to-reach-from (place-of ?object) ?arm))
         (?deliver-from (place-to-reach-from ?target ?arm))
         (?pick-up (picking-up nil ?object ?arm))
@@ -80,21 +80,38 @@
                                              (robot-location ?fetch-from)
                                              (pick-up-action ?pick-up)))))
         (roslisp:ros-info (fd-plans transport) "Fetched the object.")
-        (cpl:with-failure-handling
-            ((common-fail:object-undeliverable (failure)
-               (roslisp:ros-warn (fd-plans transport) "~a~%Dropping the object at the sink." failure)
-               (drop-at-sink)))
-          (exe:perform (desig:an action
-                                 (type delivering)
-                                 (desig:when ?arm (arm ?arm))
-                                 (object ?fetched)
-                                 (target ?target)
-                                 (robot-location ?deliver-from)
-                                 (place-action ?place))))))))
+        (exe:perform (desig:an action
+                               (type delivering)
+                               (desig:when ?arm (arm ?arm))
+                               (object ?fetched)
+                               (target ?target)
+                               (robot-location ?deliver-from)
+                               (place-action ?place)))))))
+
+(defun fetch-and-deliver (?object ?target ?arm)
+  "Take an object that was seen, and bring it to ?TARGET. An object that is still held when that fails is dropped at the sink. One that was
+put down near to its place is taken again, once."
+  (let ((first-failure nil))
+    (cpl:with-retry-counters ((left 1))
+      (cpl:with-failure-handling
+          ((common-fail:object-undeliverable (failure)
+             (cond ((in-hand-p ?object)
+                    (roslisp:ros-warn (fd-plans transport) "~a~%Dropping the object at the sink." failure)
+                    (drop-at-sink))
+                   ((worth-taking-again-p ?object ?target)
+                    (cpl:do-retry left
+                      (roslisp:ros-warn (fd-plans transport) "~a~%Taking the object again." failure)
+                      (setf first-failure failure)
+                      (cpl:retry)))))
+           (common-fail:object-unfetchable (failure)
+             (when first-failure
+               (roslisp:ros-warn (fd-plans transport) "~a" failure)
+               (cpl:fail first-failure))))
+        (fetch-and-deliver-once ?object ?target ?arm)))))
 
 (cpl:def-cram-function transport (?object-designator ?search-location ?delivering-location ?arm search-location-accessible)
   "Find an object, take it, and bring it to another place. What it is in is opened before, and closed again whatever happens. An object
-that cannot be brought to its place is dropped at the sink, and the failure goes on to the caller."
+that is held and cannot be brought to its place is dropped at the sink, and the failure goes on to the caller."
   (unless search-location-accessible
     (open-or-close :accessing ?search-location ?arm))
   (unwind-protect

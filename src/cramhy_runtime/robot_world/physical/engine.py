@@ -321,13 +321,14 @@ class Engine:
         """Let so much time pass."""
         model, data, step = self.model, self.data, mujoco.mj_step
         count = max(1, round(seconds / STEP))
-        if not self.trajectories:
+        going = [(trajectory, servos) for _, trajectory, servos in self.trajectories if not trajectory.done]
+        if not going:
             step(model, data, count)
             return
+        ctrl = data.ctrl
         for _ in range(count):
-            for _, trajectory, servos in self.trajectories:
-                if not trajectory.done:
-                    data.ctrl[servos] = trajectory.after(STEP)
+            for trajectory, servos in going:
+                ctrl[servos] = trajectory.after(STEP)
             step(model, data)
 
     def at_rest(self) -> bool:
