@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fnmatch
+import gc
 import os
 import re
 from pathlib import Path
@@ -69,9 +70,14 @@ def shared():
 
 @pytest.fixture(autouse=True, scope="module")
 def image_of_its_own():
-    """Each file of tests has an image of its own, with what all files have defined when they were imported."""
+    """Each file of tests has an image of its own, with what all files have defined when they were imported.
+
+    What is there after it stays, so the collector need not look at it again: it took a third of the time of a run.
+    """
     with Image(as_now=True):
         yield
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(params=["threads", "greenlet"])

@@ -42,8 +42,11 @@ EXCEPT = {
     ("turtlesim/stills.py", "save"): "into the file that storage gave",
     ("languages/commonlisp/faces/turtlesim/package.py", "save"): "pictures.save, of this room",
     ("cli/servers.py", "save"): "pictures.save",
+    ("chronicle/chronicler.py", "move"): "a thing in a robot's world",
+    ("swank/calls/compiling.py", "mkdtemp"): "a folder for what Emacs compiles, which goes with the connection",
     ("robot_world/pictures/stills.py", "save"): "into memory, from which storage writes it",
     ("languages/commonlisp/faces/robot_world/picture_calls.py", "save"): "Movie.save, which writes by way of storage",
+    ("robot/worlds.py", "save"): "as above",
 }
 MEMORY = {"np", "copy", "each"}
 

@@ -82,11 +82,11 @@ def files(emacs, folder):
     """A file of Lisp and one of Hy, loaded."""
     lisp, hy = folder / "plans.lisp", folder / "more.hy"
     lisp.write_text(
-        "(in-package :cl-user)\n\n(defvar *where* 1)\n\n(defun far-away (x)\n  (list x *where*))\n\n(defmacro twice (form)\n  `(progn ,form ,form))\n\n"
-        "(defclass place () ())\n\n(defgeneric visit (thing))\n(defmethod visit ((thing place)) (far-away thing))\n"
-        "(defmethod visit :before ((thing place)) (setf *where* 2))\n"
+        "(in-package :cl-user)\n\n(defvar *where-in-looking* 1)\n\n(defun far-away-here (x)\n  (list x *where-in-looking*))\n\n(defmacro done-twice-here (form)\n  `(progn ,form ,form))\n\n"
+        "(defclass looked-at-place () ())\n\n(defgeneric visit-place-here (thing))\n(defmethod visit-place-here ((thing looked-at-place)) (far-away-here thing))\n"
+        "(defmethod visit-place-here :before ((thing looked-at-place)) (setf *where-in-looking* 2))\n"
     )
-    hy.write_text("(require cramhy *)\n(in-package :cl-user)\n\n(defun in-hy (x)\n  (far-away x))\n")
+    hy.write_text("(require cramhy *)\n(in-package :cl-user)\n\n(defun in-hy-here (x)\n  (far-away-here x))\n")
     for path in (lisp, hy):
         emacs.call(f'(swank:load-file "{path}")')
     return lisp, hy
@@ -102,13 +102,13 @@ def where(location):
 @pytest.mark.parametrize(
     ("name", "found"),
     [
-        ("far-away", [("(DEFUN FAR-AWAY)", "plans.lisp", "(defun far-away (x)")]),
-        ("twice", [("(DEFMACRO TWICE)", "plans.lisp", "(defmacro twice (form)")]),
-        ("*where*", [("(DEFVAR *WHERE*)", "plans.lisp", "(defvar *where* 1)")]),
-        ("place", [("(DEFCLASS PLACE)", "plans.lisp", "(defclass place () ())")]),
-        ("in-hy", [("(DEFUN IN-HY)", "more.hy", "(defun in-hy (x)")]),
-        ("#'far-away", [("(DEFUN FAR-AWAY)", "plans.lisp", "(defun far-away (x)")]),
-        ("cl-user::far-away", [("(DEFUN FAR-AWAY)", "plans.lisp", "(defun far-away (x)")]),
+        ("far-away-here", [("(DEFUN FAR-AWAY-HERE)", "plans.lisp", "(defun far-away-here (x)")]),
+        ("done-twice-here", [("(DEFMACRO DONE-TWICE-HERE)", "plans.lisp", "(defmacro done-twice-here (form)")]),
+        ("*where-in-looking*", [("(DEFVAR *WHERE-IN-LOOKING*)", "plans.lisp", "(defvar *where-in-looking* 1)")]),
+        ("looked-at-place", [("(DEFCLASS LOOKED-AT-PLACE)", "plans.lisp", "(defclass looked-at-place () ())")]),
+        ("in-hy-here", [("(DEFUN IN-HY-HERE)", "more.hy", "(defun in-hy-here (x)")]),
+        ("#'far-away-here", [("(DEFUN FAR-AWAY-HERE)", "plans.lisp", "(defun far-away-here (x)")]),
+        ("cl-user::far-away-here", [("(DEFUN FAR-AWAY-HERE)", "plans.lisp", "(defun far-away-here (x)")]),
     ],
 )
 def test_definitions_in_lisp_and_hy(emacs, files, name, found):
@@ -117,9 +117,9 @@ def test_definitions_in_lisp_and_hy(emacs, files, name, found):
 
 
 def test_definitions_of_methods(emacs, files):
-    told = emacs.call('(swank:find-definitions-for-emacs "visit")')
+    told = emacs.call('(swank:find-definitions-for-emacs "visit-place-here")')
     lines = {where(location)[1] for _, location in told}
-    assert "(defgeneric visit (thing))" in lines and "(defmethod visit :before ((thing place)) (setf *where* 2))" in lines
+    assert "(defgeneric visit-place-here (thing))" in lines and "(defmethod visit-place-here :before ((thing looked-at-place)) (setf *where-in-looking* 2))" in lines
     assert any(":BEFORE" in label for label, _ in told)
 
 
@@ -151,14 +151,14 @@ def test_definitions_of_what_was_typed_and_of_nothing(emacs):
 
 
 def test_uses(emacs, files):
-    told = emacs.call('(swank:xref \':calls "far-away")')
-    assert [(label, where(location)[0]) for label, location in told] == [("(DEFMETHOD VISIT)", "plans.lisp"), ("(DEFUN IN-HY)", "more.hy")]
-    assert [label for label, _ in emacs.call('(swank:xref \':sets "*where*")')] == ["(DEFMETHOD VISIT)"]
-    assert {label for label, _ in emacs.call('(swank:xref \':references "*where*")')} == {"(DEFUN FAR-AWAY)", "(DEFMETHOD VISIT)"}
-    assert {label for label, _ in emacs.call('(swank:xref \':specializes "place")')} == {"(DEFMETHOD VISIT)"}
-    assert emacs.call('(swank:xref \':binds "*where*")') == ":not-implemented"
+    told = emacs.call('(swank:xref \':calls "far-away-here")')
+    assert [(label, where(location)[0]) for label, location in told] == [("(DEFMETHOD VISIT-PLACE-HERE)", "plans.lisp"), ("(DEFUN IN-HY-HERE)", "more.hy")]
+    assert [label for label, _ in emacs.call('(swank:xref \':sets "*where-in-looking*")')] == ["(DEFMETHOD VISIT-PLACE-HERE)"]
+    assert {label for label, _ in emacs.call('(swank:xref \':references "*where-in-looking*")')} == {"(DEFUN FAR-AWAY-HERE)", "(DEFMETHOD VISIT-PLACE-HERE)"}
+    assert {label for label, _ in emacs.call('(swank:xref \':specializes "looked-at-place")')} == {"(DEFMETHOD VISIT-PLACE-HERE)"}
+    assert emacs.call('(swank:xref \':binds "*where-in-looking*")') == ":not-implemented"
     assert emacs.call('(swank:xref \':calls "no-such")') is None
-    assert [kind for kind, *_ in emacs.call('(swank:xrefs \'(:calls :binds :sets) "far-away")')] == [":calls", ":sets"]
+    assert [kind for kind, *_ in emacs.call('(swank:xrefs \'(:calls :binds :sets) "far-away-here")')] == [":calls", ":sets"]
 
 
 # --------------------------------------------------------------------------------------------------------------------- telling

@@ -133,7 +133,9 @@ class World:
     def _view(self, camera: Camera) -> views.View | None:
         if camera is None:
             return None
-        if camera == "robot":
+        if isinstance(camera, str):
+            if camera != "robot":
+                raise ValueError(f'The camera is "robot", or two places, the eye and where it looks, not {camera!r}.')
             return views.robots_view(self.core)
         eye, target = camera
         return views.looking_at(eye, target)
