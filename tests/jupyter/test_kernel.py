@@ -72,8 +72,13 @@ def test_an_interrupt_between_cells_does_nothing(cells):
 
 
 def test_an_interrupt_while_a_cell_reads_a_line(cells):
-    answer = cells.run("(loop)", on_message=lambda kind, content: kind == "execute_input" and cells.manager.interrupt_kernel())
-    assert answer.reply["ename"] == "Interrupted"
+    asked = cells.client.execute('(unwind-protect (read-line) (print "over"))', allow_stdin=True)
+    assert cells.client.get_stdin_msg(timeout=60)["msg_type"] == "input_request"
+    cells.manager.interrupt_kernel()
+    while (reply := cells.client.get_shell_msg(timeout=60))["parent_header"].get("msg_id") != asked:
+        pass
+    assert reply["content"]["ename"] == "Interrupted"
+    assert cells.run("(+ 1 1)").text == "2"
 
 
 def test_cells_of_hy(cells):

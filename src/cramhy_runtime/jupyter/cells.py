@@ -15,8 +15,10 @@ from cramhy_runtime import kernel, storage
 from cramhy_runtime.ground.data import Cons, Symbol
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import COMMON_LISP_USER
+from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.ground.source_places import keep_text
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
+from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.languages.commonlisp.reader.reader import incomplete
 
 LISP, HY = "lisp", "hy"
@@ -49,12 +51,13 @@ class Aborted(Exception):
 
 
 class Notebook:
-    """The cells of one notebook. session: its `Session`. ``package``: of the next cell of Lisp. ``language``: of the next cell."""
+    """The cells of one notebook. session: its `Session`. ``package``: of the next cell of Lisp. ``language``: of the next cell.
+    ``answered_in``: the language whose value the last cell had."""
 
     def __init__(self, session):
         self.session = session
         self.package = session.package or COMMON_LISP_USER
-        self.language = LISP
+        self.language = self.answered_in = LISP
         self.module = None
 
     def language_of(self, text):
@@ -84,6 +87,7 @@ class Notebook:
                 self.package = evaluator.PACKAGE.value
 
     def _forms(self, text):
+        self.answered_in = LISP
         values, reader = [], self.session.reader(text)
         for form in self.session.forms(reader):
             if isinstance(form, Cons) and isinstance(form.car, Symbol) and form.car.name == "IN-HY" and form.cdr is None:
@@ -112,7 +116,7 @@ class Notebook:
         import hy
         from hy import models
 
-        module = self.hy_module()
+        self.answered_in, module = HY, self.hy_module()
         self.session.texts += 1
         name = f"<notebook {self.session.texts}>"
         keep_text(name, text)
@@ -127,6 +131,15 @@ class Notebook:
         if kernel.current() is kernel.active().main:
             kernel.settle()
         return [] if value is None else [value]
+
+    def shown(self, value):
+        """The text of a value of the last cell: as Lisp prints it, and as Hy does where Hy has answered and the value is not ours."""
+        if self.answered_in == HY and type(value).__module__.partition(".")[0] != "cramhy_runtime":
+            import hy
+
+            return hy.repr(value)
+        with binding(PACKAGE, self.package):
+            return prin1_to_string(value)
 
     # ---------------------------------------------------------------------------------------------------------- completeness
 

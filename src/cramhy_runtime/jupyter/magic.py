@@ -60,7 +60,7 @@ def cramhy(line, cell):
     bundle, told = None, None
     with _interruptible():
         try:
-            bundle = rich.bundle(opened.evaluate(cell))
+            bundle = rich.bundle(opened.evaluate(cell), opened.shown)
         except Interruption:
             print("; Interrupted. The plan has been cleaned up.", file=sys.stderr)
         except Aborted:

@@ -23,7 +23,7 @@ from cramhy_runtime.session import requests
 from cramhy_runtime.session.requests import Mailbox, Request
 
 from . import asking, rich, streams
-from .cells import LISP, Aborted, Notebook
+from .cells import Aborted, Notebook
 from .failures import CellDebugger, told_of
 from .pictures import Watcher
 
@@ -177,23 +177,13 @@ class CramhyKernel(Kernel):
         try:
             values = self.notebook.evaluate(code)
             with binding(PACKAGE, self.notebook.package):
-                shown = None if silent else rich.bundle(values, self._shown)
+                shown = None if silent else rich.bundle(values, self.notebook.shown)
         finally:
             if not silent:
                 for picture in self.watcher.pictures():
                     self.say("display_data", {"data": picture, "metadata": {}, "transient": {}})
         if shown is not None:
             self.say("execute_result", {"execution_count": self.execution_count, "data": shown, "metadata": {}})
-
-    def _shown(self, value):
-        from cramhy_runtime.ground.printing import prin1_to_string
-
-        shown = prin1_to_string(value)
-        if self.notebook.language == LISP or not shown.startswith("#<PYTHON "):
-            return shown
-        import hy
-
-        return hy.repr(value)
 
     def _ok(self, expressions):
         return {"status": "ok", "execution_count": self.execution_count, "payload": [], "user_expressions": expressions}
@@ -208,7 +198,7 @@ class CramhyKernel(Kernel):
         """The answers to ``user_expressions``: forms beside a cell."""
         answers = {}
         for name, form in (wanted or {}).items():
-            request = await self.ask(lambda form=form: rich.bundle(self.notebook.evaluate(str(form)), self._shown), "an expression")
+            request = await self.ask(lambda form=form: rich.bundle(self.notebook.evaluate(str(form)), self.notebook.shown), "an expression")
             if request.outcome == requests.DONE:
                 answers[name] = {"status": "ok", "data": request.result or {}, "metadata": {}}
             else:
