@@ -1,6 +1,7 @@
 # make tutorial: both lectures, typed into the REPL. make view: the turtle draws a house on a page. make kitchen: a robot sets a table.
 # make test: everything.
 # make docs: the pages with what happens now. make site: the pages as a site, in site/index.html.
+# make notebooks OUT=folder: the tutorial as notebooks.
 # The first call of tutorial, view or kitchen makes a small environment in .venv; the first call of any other target adds the rest to it.
 PYTHON ?= python3
 BIN := .venv/bin
@@ -8,7 +9,7 @@ LIGHT := .venv/.light
 ROBOT := .venv/.robot
 READY := .venv/.ready
 
-.PHONY: tutorial view kitchen test interpreters docs site bench golden lint soak clean
+.PHONY: tutorial view kitchen test interpreters docs notebooks site bench golden lint soak clean
 
 tutorial: $(LIGHT)
 	@$(BIN)/python tutorials/lectures.py --png turtle.png
@@ -34,6 +35,9 @@ docs: $(READY)
 	@$(BIN)/python tests/operators/page.py
 	@$(BIN)/python tests/docs/command_line.py
 	@$(BIN)/python tests/docs/pages.py
+
+notebooks: $(READY)
+	@$(BIN)/python tests/docs/notebooks.py $(OUT)
 
 site: $(READY)
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet

@@ -5,6 +5,7 @@ Without extras the wheel is small, and its prompt does both lectures.
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import runpy
@@ -18,6 +19,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
+KERNEL = "share/jupyter/kernels/cramhy/kernel.json"
 
 
 REPOSITORY = "https://example.org/robots/cramhy"
@@ -117,7 +119,13 @@ def test_an_editable_installation_has_no_copies(tmp_path):
     )
     (path,) = tmp_path.glob("*.whl")
     with zipfile.ZipFile(path) as opened:
-        assert {name for name in opened.namelist() if ".dist-info/" not in name} == {"_cramhy.pth"}
+        names = {name for name in opened.namelist() if ".dist-info/" not in name}
+    assert {name.rpartition(".data/data/")[2] for name in names} == {"_cramhy.pth", KERNEL}
+
+
+def test_the_wheel_tells_jupyter_of_the_kernel(wheel):
+    description = json.loads(file_called(wheel, f".data/data/{KERNEL}"))
+    assert description["argv"][:5] == ["python", "-m", "cramhy_runtime.cli", "jupyter", "kernel"]
 
 
 def without_cramhy(home):

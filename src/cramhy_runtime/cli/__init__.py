@@ -1,4 +1,5 @@
-"""The command line: ``cramhy repl | swank | run | eval | test | turtlesim | teleop | view | replay | ros-shims | ros``, ``roslisp_repl``.
+"""The command line: ``cramhy repl | swank | jupyter | run | eval | test | turtlesim | teleop | view | replay | ros-shims | ros``,
+``roslisp_repl``.
 
 `options` says which words there are, `servers` what a session opens to the outside, `standalone_commands` has the commands that are no
 session of Lisp's, `shims` the ROS commands, which `workspace`, `programs`, `launch`, `keyboard` and the room ``ros_tools`` carry out.
@@ -212,6 +213,22 @@ def _swank(options):
 
     with ExitStack() as closings:
         return _status(lambda: swank_command.run(lambda: session(options, closings, opened=False), options))
+
+
+def _jupyter(options):
+    from . import jupyter_command
+
+    if jupyter_command.complain():
+        return 2
+    if options.action != "kernel":
+        return jupyter_command.install(options)
+    if options.connection_file is None:
+        sys.stderr.write("cramhy: jupyter kernel is started by Jupyter, with -f FILE. To tell Jupyter of it: cramhy jupyter install\n")
+        return 2
+    from cramhy_runtime.jupyter import launching
+
+    with ExitStack() as closings:
+        return _status(lambda: launching.run(session(options, closings, opened=False), options.connection_file))
 
 
 def _eval(options):

@@ -29,7 +29,7 @@ def _features(text):
 _features.__name__ = "list of features"  # what argparse calls it in its complaint
 
 
-DEFAULT_TIMES = {"repl": "wall", "swank": "wall", "run": "virtual", "eval": "virtual", "test": "virtual"}
+DEFAULT_TIMES = {"repl": "wall", "swank": "wall", "jupyter": "virtual", "run": "virtual", "eval": "virtual", "test": "virtual"}
 """The commands with a session, and the time in which it lives when nothing else is said (see ``session/time_setting.py``)."""
 
 
@@ -144,6 +144,19 @@ def _opening_options(by_itself=None):
     return options
 
 
+def _add_jupyter(commands, of_session):
+    """``cramhy jupyter``, whose options of a session are those of its kernel."""
+    jupyter = commands.add_parser("jupyter", parents=[of_session], help="the kernel for notebooks: install it, remove it, run it")
+    jupyter.add_argument(
+        "action", choices=["install", "uninstall", "kernel"], help="install: tell Jupyter of it; kernel: run it, as Jupyter does"
+    )
+    place = jupyter.add_mutually_exclusive_group()
+    place.add_argument("--user", action="store_true", help="for this user (for the environment of this Python)")
+    place.add_argument("--prefix", default=None, metavar="FOLDER", help="for the environment in FOLDER (that of this Python)")
+    place.add_argument("--sys-prefix", action="store_true", help="for the environment of this Python, which is what happens anyway")
+    jupyter.add_argument("-f", "--connection-file", default=None, metavar="FILE", help="of kernel: where Jupyter says how to connect")
+
+
 class _Version(argparse.Action):
     """``--version`` prints the versions of cramhy, Python and Hy, which a report of a defect needs."""
 
@@ -187,6 +200,7 @@ def parser():
     swank.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens on loopback (4005)")
     swank.add_argument("--socket", default=None, metavar="FILE", help="listen at this Unix socket instead (at a port)")
     swank.add_argument("--port-file", default=None, metavar="FILE", help="write the port into FILE when it listens (no file)")
+    _add_jupyter(commands, common["jupyter"])
     run = commands.add_parser("run", parents=[common["run"], openings], help="load a .lisp, .hy or .asd file and run it")
     run.add_argument("file", help="a .lisp, .hy or .asd file")
     run.add_argument(
