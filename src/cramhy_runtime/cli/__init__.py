@@ -1,4 +1,5 @@
-"""The command line: ``cramhy repl | swank | run | eval | test | turtlesim | teleop | view | replay | ros-shims | ros``, ``roslisp_repl``.
+"""The command line: ``cramhy repl | swank | lsp | run | eval | test | turtlesim | teleop | view | replay | ros-shims | ros``,
+``roslisp_repl``.
 
 `options` says which words there are, `servers` what a session opens to the outside, `standalone_commands` has the commands that are no
 session of Lisp's, `shims` the ROS commands, which `workspace`, `programs`, `launch`, `keyboard` and the room ``ros_tools`` carry out.
@@ -212,6 +213,12 @@ def _swank(options):
 
     with ExitStack() as closings:
         return _status(lambda: swank_command.run(lambda: session(options, closings, opened=False), options))
+
+
+def _lsp(options):
+    from . import lsp_command
+
+    return lsp_command.run()
 
 
 def _eval(options):
