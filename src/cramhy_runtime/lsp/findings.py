@@ -6,8 +6,10 @@ import re
 from typing import NamedTuple
 
 from cramhy_runtime.ground.condition_types import StyleWarning, Warning_
+from cramhy_runtime.ground.data import UNBOUND, Symbol
 from cramhy_runtime.ground.packages import all_packages, near_names
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for, report_text
+from cramhy_runtime.session.arglists import arglist
 
 ERROR, WARNING, HINT = 1, 2, 4
 """Severities, as the protocol numbers them. HINT: of style."""
@@ -39,7 +41,23 @@ def of_condition(condition, text, filename):
     severity = WARNING if isinstance(condition, Warning_) and not isinstance(condition, StyleWarning) else ERROR
     severity = HINT if isinstance(condition, StyleWarning) and not getattr(condition, "undefined", None) else severity
     severity = WARNING if isinstance(condition, StyleWarning) and getattr(condition, "undefined", None) else severity
+    if hint is None and getattr(condition, "undefined", None) in ("function", "variable") and named:
+        near = near_names(condition.name.name, _names_of(condition.name, condition.undefined))
+        hint = f"Did you mean {' or '.join(name.lower() for name in near)}?" if near else None
     return Finding(start, end, severity, f"{message}\n{hint}" if hint else message, tuple(fixes(message, hint, text, start, end)))
+
+
+def _names_of(missing, what):
+    """The names of functions or variables, as ``what`` says, that can be seen from the package of the symbol ``missing``."""
+    package = missing.package
+    for table in (package.internal, package.external, *(used.external for used in package.use)) if package is not None else ():
+        for name, symbol in table.items():
+            if (
+                isinstance(symbol, Symbol)
+                and symbol is not missing
+                and (arglist(symbol) if what == "function" else symbol.value is not UNBOUND)
+            ):
+                yield name
 
 
 def _end(text, start):

@@ -128,14 +128,12 @@ def _unknown_names(tree, text, module):
     for node in names.used:
         if node.id in known or node.id.startswith(("_", "hyx_")):
             continue
-        start = text.offset_of_reader(node.lineno, node.col_offset + 1)
         written = hy.unmangle(node.id)
-        at = text.text.find(written, start)
+        near_it = text.offset_of_reader(node.lineno, max(1, node.col_offset))  # releases of Hy count columns from 0 or from 1
+        start = text.text.find(written, near_it)
+        if start < 0:
+            continue
         end = start + len(written)
-        if not text.text.startswith(written, start):
-            if at < 0:
-                continue
-            start, end = at, at + len(written)
         if (start, written) in told:
             continue
         told.add((start, written))
