@@ -32,7 +32,7 @@ FLOORS = [
     ["languages"],
     ["session"],
     ["chronicle", "ros_tools", "testing", "robot"],
-    ["view", "repl", "swank", "jupyter"],
+    ["view", "repl", "swank", "jupyter", "lsp"],
     ["cli", "pytest_plugin", "coverage_plugin", "__init__"],
 ]
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}

@@ -1,4 +1,4 @@
-"""The command line: ``cramhy repl | swank | jupyter | run | eval | test | turtlesim | teleop | view | replay | ros-shims | ros``,
+"""The command line: ``cramhy repl | swank | jupyter | lsp | run | eval | test | turtlesim | teleop | view | replay | ros-shims | ros``,
 ``roslisp_repl``.
 
 `options` says which words there are, `servers` what a session opens to the outside, `standalone_commands` has the commands that are no
@@ -229,6 +229,12 @@ def _jupyter(options):
 
     with ExitStack() as closings:
         return _status(lambda: launching.run(session(options, closings, opened=False), options.connection_file))
+
+
+def _lsp(options):
+    from . import lsp_command
+
+    return lsp_command.run()
 
 
 def _eval(options):

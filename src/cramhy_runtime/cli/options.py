@@ -201,6 +201,7 @@ def parser():
     swank.add_argument("--socket", default=None, metavar="FILE", help="listen at this Unix socket instead (at a port)")
     swank.add_argument("--port-file", default=None, metavar="FILE", help="write the port into FILE when it listens (no file)")
     _add_jupyter(commands, common["jupyter"])
+    commands.add_parser("lsp", help="a language server for editors, at standard input and output")
     run = commands.add_parser("run", parents=[common["run"], openings], help="load a .lisp, .hy or .asd file and run it")
     run.add_argument("file", help="a .lisp, .hy or .asd file")
     run.add_argument(

@@ -24,6 +24,7 @@ NEEDS = {
     "replay": ("web,record", ("uvicorn", "websockets", "mcap")),
     "record": ("record", ("mcap",)),
     "ros": ("ros", ("roslibpy",)),
+    "lsp": ("lsp", ("pygls",)),
     "greenlet": ("fast", ("greenlet",)),
 }
 """The extra that an option needs, and its modules that have to be there."""

@@ -122,7 +122,7 @@ def load_file(path, chain="", finished=None, show=None, encoding=None, as_source
     """
     path = Path(path).absolute()
     text = decoded(path, encoding)
-    if path.suffix == ".hy" and _is_plain_hy(text):
+    if path.suffix == ".hy" and is_plain_hy(text):
         _run_hy(path)
         return chain
     fingerprint = _fingerprint(path, text, f"source {chain}" if as_source else chain)
@@ -232,7 +232,7 @@ def load_text(text, filename, stored=False, show=None, line=1, column=1, as_sour
         form = reader.read(eof_error=False, eof_value=end)
         if form is end:
             return None if reader.positions.left_out else forms  # so that it is told the next time, too
-        if _is_hy_requirement(form):
+        if is_hy_requirement(form):
             continue
         codes, wanted = [], notes.before(form, PACKAGE.value) if forms is not None and stored else {}
         try:
@@ -281,7 +281,7 @@ def locate(problem, filename, position):
             pass
 
 
-def _is_hy_requirement(form):
+def is_hy_requirement(form):
     """Whether ``form`` is ``(require cramhy *)`` or another line that only Hy itself needs."""
     return (
         isinstance(form, Cons)
@@ -297,11 +297,11 @@ def speaks_lisp(filename):
     """Whether the text of that name, a file or what was typed, is Common Lisp, and not Hy or Python."""
     filename = file_of_text(filename)
     if filename.endswith(".hy"):
-        return not _is_plain_hy("".join(linecache.getlines(filename)))
+        return not is_plain_hy("".join(linecache.getlines(filename)))
     return filename.endswith((".lisp", ".asd")) or filename.startswith("<") and not filename.startswith("<stdin>")
 
 
-def _is_plain_hy(text):
+def is_plain_hy(text):
     """Whether a ``.hy`` file stays Hy: it never goes into a package of Lisp, or comes back."""
     return bool(re.search(r"^\(in-hy\)", text, re.M | re.I)) or not re.search(r"^\((in-package|defpackage)\b", text, re.M | re.I)
 

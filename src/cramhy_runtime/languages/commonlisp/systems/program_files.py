@@ -183,7 +183,7 @@ def compile_file(input_file, *, output_file=None, verbose=UNSUPPLIED, print=UNSU
     talks = _flag(verbose, COMPILE_VERBOSE) is not None
     if talks:
         say(f"; compiling file {prin1_to_string(str(path))}:")
-    work = _Compilation(text, str(path), _flag(print, COMPILE_PRINT) is not None)
+    work = Compilation(text, str(path), _flag(print, COMPILE_PRINT) is not None)
     name = lisp_path(path)
     with (
         binding(
@@ -234,7 +234,7 @@ LOADING = {keyword("LOAD-TOPLEVEL"), sym("LOAD")}
 EXECUTING = {keyword("EXECUTE"), sym("EVAL")}
 
 
-class _Compilation:
+class Compilation:
     """A file being compiled, form by form."""
 
     def __init__(self, text, filename, shows):

@@ -1,0 +1,241 @@
+"""What an editor asks of a place in a text: completion, how a call is written, where names are defined and used.
+
+The functions of the session room answer for Common Lisp. For plain Hy the macros of ``(require cramhy *)`` and the words of the text do.
+"""
+
+from __future__ import annotations
+
+import builtins
+import os
+from pathlib import Path
+from typing import NamedTuple
+
+from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.ground.packages import is_symbol
+from cramhy_runtime.languages.commonlisp.streams.streams import StringOutputStream
+from cramhy_runtime.languages.commonlisp.systems import systems
+from cramhy_runtime.languages.commonlisp.tools.describing import describe
+from cramhy_runtime.languages.hy import shapes
+from cramhy_runtime.languages.hy.plan_macros import macros
+from cramhy_runtime.languages.operators import operator_of
+from cramhy_runtime.session import arglists, completion, fuzzy, lookup
+from cramhy_runtime.session.body_arguments import body_start
+
+from . import outlines, scopes
+from .texts import Text
+
+MOST = 300
+_DESCRIBED = 4000
+
+
+class Spot(NamedTuple):
+    """A place in a file. path: of the file, or ``None`` for the text itself. start, end: offsets in ``text``."""
+
+    path: str | None
+    text: Text
+    start: int
+    end: int
+
+
+def completions(document, offset):
+    """([(name, what is known of it)], start of the word)."""
+    text = document.text
+    if text.quiet(offset):
+        return [], offset
+    token = text.word(offset)
+    word = text.text[token.start : offset] if token is not None else ""
+    if document.kind == "hy":
+        return _of_hy(text, word), offset - len(word)
+    start = max(0, offset - 20_000)
+    form = next((each for each in text.around(offset)[::-1]), None)
+    start = max(start, form.start) if form is not None else offset - len(word)
+
+    def found():
+        package = document.package_at(offset)
+        names, _ = completion.completions(text.text[start:offset], package)
+        known = {name for name, _ in names}
+        more = [(match.name.lower(), "") for match in fuzzy.completions(word, package, MOST)] if len(names) < MOST and word else []
+        return names[:MOST] + [each for each in more if each[0] not in known][: MOST - len(names[:MOST])]
+
+    return document.in_image(found, []), offset - len(word)
+
+
+def _of_hy(text, word):
+    import hy
+
+    ours = {hy.unmangle(name) for name in macros()}
+    written = {token.text for token in text.tokens if token.kind == "word" and token.text != word and not token.text[0].isdigit()}
+    names = sorted(name for name in ours | written | set(vars(builtins)) if name.startswith(word) and not name.startswith("_"))
+    return [(name, (shapes.hint(name) or "") if name in ours else "") for name in names[:MOST]] if word else []
+
+
+def symbol_at(document, token):
+    """The symbol that a word means; to be called in the image."""
+    package = document.package_at(token.start)
+    return None if package is None else arglists.symbol_named(token.text.lstrip("#'"), package)
+
+
+def hover(document, offset):
+    """(text, start, end) of what is known of the word at ``offset``, or ``None``."""
+    token = document.text.word(offset)
+    if token is None or document.kind == "xml":
+        return None
+    if document.kind == "hy":
+        import hy
+
+        hint = shapes.hint(token.text) if hy.mangle(token.text) in macros() else None
+        return (hint, token.start, token.end) if hint else None
+
+    def described():
+        symbol = symbol_at(document, token)
+        if symbol is None:
+            return None
+        operator = operator_of(symbol)
+        if operator is not None:
+            return f"{operator.shape}\n\n{operator.documentation}"
+        if not isinstance(symbol, Symbol):
+            return None
+        output = StringOutputStream()
+        describe(symbol, output)
+        items = arglists.arglist(symbol)
+        call = f"{arglists.call_text(token.text.lower(), [item.lower() for item in items])}\n\n" if items is not None else ""
+        return call + output.take().strip()[:_DESCRIBED]
+
+    told = document.in_image(described)
+    return (told, token.start, token.end) if told else None
+
+
+def signature(document, offset):
+    """(text of the call, its parts, number of the part that is typed or ``None``) of the innermost call that is known."""
+    if document.kind in ("hy", "xml"):
+        return None
+    text = document.text
+
+    def found():
+        for form in text.around(offset):
+            head = form.items[0] if form.items else None
+            if head is None or hasattr(head, "items") or head.kind != "word" or head.end >= offset:
+                continue
+            symbol = arglists.symbol_named(head.text, document.package_at(offset))
+            items = arglists.arglist(symbol) if symbol is not None and is_symbol(symbol) else None
+            if items is None:
+                continue
+            before = [item for item in form.items[1:] if item.start < offset and getattr(item, "kind", "") != "quote"]
+            at_new = not before or before[-1].end < offset
+            index = len(before) if at_new else len(before) - 1
+            words = [item.text for item in before if not hasattr(item, "items")]
+            keyword = words[-1][1:] if words and before and words[-1].startswith(":") and before[-1] is not None else None
+            shown = [item.lower() for item in items]
+            return arglists.call_text(head.text.lower(), shown), shown, arglists.place_of_argument(items, index, keyword)
+        return None
+
+    return document.in_image(found)
+
+
+# ------------------------------------------------------------------------------------------------------------------- places
+
+
+def definitions(document, offset):
+    """The `Spot`s where the word at ``offset`` is defined: in this text as it stands, and in files as they are on the disk."""
+    token = document.text.word(offset)
+    if token is None or document.kind == "xml":
+        return []
+    local = scopes.local(document.text, token) if not token.text.startswith(":") else None
+    if local:
+        return [Spot(None, document.text, local[0].start, local[0].end)]
+    bare = token.text.lstrip("#'").rpartition(":")[2].upper()
+    found = [
+        Spot(None, document.text, start, end)
+        for _, name, _, _, start, end in outlines.definitions(document.text)
+        if name.lstrip("'#:").rpartition(":")[2].upper() == bare
+    ]
+    if found or document.kind == "hy":
+        return found
+    places = document.in_image(lambda: lookup.definitions(token.text, document.package_at(token.start)), [])
+    for place in places:
+        if os.path.isfile(place.file) and os.path.realpath(place.file) != os.path.realpath(document.filename):
+            text = Text(Path(place.file).read_text(encoding="utf-8", errors="replace"))
+            start = text.offset_of_reader(place.line, place.column)
+            found.append(Spot(place.file, text, start, start + 1))
+    return found or _in_system(document, token)
+
+
+def _files(document):
+    """The other files of the systems beside the file of ``document``."""
+    if document.path is None or document.kind == "hy":
+        return []
+
+    def paths():
+        mine = Path(document.path)
+        return [
+            component.pathname
+            for system in list(systems.systems.values())
+            if isinstance(system, systems.System) and system.file and system.file.parent in mine.parents
+            for component in systems.files_of(system)
+            if component.pathname != mine and component.pathname.is_file()
+        ]
+
+    return list(dict.fromkeys(document.in_image(paths, [])))
+
+
+def _texts(document, others):
+    """(path, `Text`) of the other files. others: {path: Text} of those that are open in the editor."""
+    for path in _files(document):
+        text = others.get(str(path))
+        yield str(path), text if text is not None else Text(path.read_text(encoding="utf-8", errors="replace"))
+
+
+def _in_system(document, token):
+    bare = token.text.lstrip("#'").rpartition(":")[2].upper()
+    return [
+        Spot(path, text, start, end)
+        for path, text in _texts(document, {})
+        for _, name, _, _, start, end in outlines.definitions(text)
+        if name.rpartition(":")[2].upper() == bare
+    ]
+
+
+def references(document, offset, others):
+    """The `Spot`s of all words that mean the same as the one at ``offset``: in its form if it is local, else in the system's files."""
+    token = document.text.word(offset)
+    if token is None or document.kind == "xml":
+        return []
+    local = scopes.local(document.text, token)
+    if local is not None:
+        return [Spot(None, document.text, each.start, each.end) for each in local]
+    bare = token.text.rpartition(":")[2]
+    found = [Spot(None, document.text, each.start, each.end) for each in scopes.free(document.text, bare)]
+    for path, text in _texts(document, others):
+        found += [Spot(path, text, each.start, each.end) for each in scopes.free(text, bare)]
+    return found
+
+
+def renaming(document, offset, others):
+    """The `Spot`s that a renaming of the word at ``offset`` changes, without prefixes; ``None`` if its definition is not the user's."""
+    token = document.text.word(offset)
+    if token is None or token.text.startswith((":", "#", "&")):
+        return None
+    if scopes.local(document.text, token) is None:
+        bare = token.text.rpartition(":")[2].upper()
+        texts = [document.text, *(text for _, text in _texts(document, others))]
+        if not any(name.rpartition(":")[2].upper() == bare for text in texts for _, name, *_ in outlines.definitions(text)):
+            return None
+    return [
+        spot._replace(start=spot.start + spot.text.text[spot.start : spot.end].rfind(":") + 1)
+        for spot in references(document, offset, others)
+    ]
+
+
+def body_starts(document):
+    """The function that `indentation.indented` asks; to be called in the image."""
+    package, known = document.package_at(len(document.text.text)), {}
+
+    def ask(name):
+        if package is None:
+            return None
+        if name not in known:
+            symbol = arglists.symbol_named(name, package)
+            known[name] = body_start(symbol) if isinstance(symbol, Symbol) else None
+        return known[name]
+
+    return ask

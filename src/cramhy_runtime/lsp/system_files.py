@@ -1,0 +1,78 @@
+"""Files that define systems: ``.asd`` files, of which only ``defsystem`` and what goes into packages takes effect."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.condition_types import Condition, SimpleWarning
+from cramhy_runtime.ground.conditions import from_python
+from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.ground.packages import is_symbol, near_names, symbol_name
+from cramhy_runtime.languages.commonlisp.evaluation.evaluator import PACKAGE, evaluate
+from cramhy_runtime.languages.commonlisp.reader.reader import Reader
+from cramhy_runtime.languages.commonlisp.systems import systems
+from cramhy_runtime.languages.commonlisp.systems.loader import locate
+from cramhy_runtime.languages.commonlisp.systems.system_definitions import define_system
+
+_EVALUATED = ("IN-PACKAGE", "DEFPACKAGE")
+
+
+def check(text, filename, fail):
+    """Read the definitions in ``text``, of the file ``filename``. Returns the package at its end. fail: called with each condition."""
+    reader, end = Reader(text, filename=filename), object()
+    while True:
+        try:
+            form = reader.read(eof_error=False, eof_value=end)
+        except (Exception, Condition) as problem:
+            fail(from_python(problem))
+            break
+        if form is end:
+            break
+        name = symbol_name(form.car) if isinstance(form, Cons) and is_symbol(form.car) else None
+        try:
+            if name == "DEFSYSTEM":
+                before = set(systems.systems)
+                system = define_system(form, Path(filename).parent, Path(filename), reader.positions, lambda *ignored, **options: None)
+                _check_system(system or _new(before), form, reader, fail)
+            elif name in _EVALUATED:
+                evaluate(form, filename, reader.positions)
+        except (Exception, Condition) as problem:
+            condition = from_python(problem)
+            locate(condition, filename, reader.positions.get(id(form)))
+            fail(condition)
+    return PACKAGE.value
+
+
+def _new(before):
+    return next((system for name, system in systems.systems.items() if name not in before), None)
+
+
+def _check_system(system, form, reader, fail):
+    if not isinstance(system, systems.System):
+        return
+    start = reader.positions.get(id(form), (1, 1))
+    known = systems.known_systems()
+    for name, _ in system.depends_on:
+        name = str(name).lower()
+        if name not in known and not systems.is_provided(name) and systems.find_asd(name) is None and name not in systems.systems:
+            near = near_names(name, known)
+            _warn(fail, f"There is no system {name}.", name, f"Did you mean {' or '.join(near)}?" if near else None, reader, start)
+    for component in systems.files_of(system):
+        if not component.pathname.is_file():
+            there = [path.stem for path in component.pathname.parent.glob("*") if path.suffix in (".lisp", ".hy")]
+            near = near_names(component.name, there)
+            hint = f"Did you mean {' or '.join(near)}?" if near else f"There is no file {component.pathname}."
+            _warn(fail, f"The file of the component {component.name} is missing.", component.name, hint, reader, start)
+
+
+def _warn(fail, message, name, hint, reader, start):
+    """Tell of ``name``, at the place where it stands in the text of ``reader`` behind ``start`` (line, column)."""
+    condition = conditions.from_python(SimpleWarning(message.replace("~", "~~")))
+    text, offset = reader.text, 0
+    for _ in range(start[0] - 1):
+        offset = text.find("\n", offset) + 1
+    at = text.lower().find(name, offset)
+    condition.position = (reader.filename, *reader.place(at if at >= 0 else offset)[:2])
+    condition.hint = hint
+    fail(condition)

@@ -1,0 +1,97 @@
+"""An editor for tests: pygls' client, which starts ``cramhy lsp`` and keeps what it is told."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+
+from lsprotocol import types as lsp
+from pygls.lsp.client import LanguageClient
+
+LONG = 300  # seconds of the wall: only a server that hangs takes so long
+
+
+class Editor:
+    """A client with one server process. Its methods are called from outside of the loop, which runs while they wait."""
+
+    def __init__(self, *words, folder=None):
+        self.loop = asyncio.new_event_loop()
+        self.client = LanguageClient("tests", "1")
+        self.told, self.arrived, self.versions = {}, None, {}
+        words = words or (sys.executable, "-m", "cramhy_runtime.cli", "lsp")
+
+        @self.client.feature(lsp.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)
+        def told(params):
+            self.told.setdefault(params.uri, []).append(params.diagnostics)
+            if self.arrived is not None:
+                self.arrived.set()
+
+        self.run(self.client.start_io(*words))
+        self.capabilities = self.run(
+            self.client.initialize_async(
+                lsp.InitializeParams(capabilities=lsp.ClientCapabilities(), root_uri=folder and folder.as_uri(), process_id=None)
+            )
+        ).capabilities
+        self.client.initialized(lsp.InitializedParams())
+
+    def run(self, work):
+        return self.loop.run_until_complete(asyncio.wait_for(work, LONG))
+
+    def open(self, uri, text, language="commonlisp"):
+        self.versions[uri] = 1
+        self.client.text_document_did_open(lsp.DidOpenTextDocumentParams(lsp.TextDocumentItem(uri, language, 1, text)))
+
+    def change(self, uri, text):
+        self.versions[uri] += 1
+        self.client.text_document_did_change(
+            lsp.DidChangeTextDocumentParams(
+                lsp.VersionedTextDocumentIdentifier(self.versions[uri], uri), [lsp.TextDocumentContentChangeWholeDocument(text)]
+            )
+        )
+
+    def close(self, uri):
+        self.client.text_document_did_close(lsp.DidCloseTextDocumentParams(lsp.TextDocumentIdentifier(uri)))
+
+    def checked(self, uri, text):
+        """The diagnostics that the compiler gives of ``text``. A save makes the server check; the last ones told are the compiler's."""
+        self.told.pop(uri, None)
+        if uri in self.versions:
+            self.change(uri, text)
+        else:
+            self.open(uri, text)
+        self.run(self._quiet(uri))
+        return self.told[uri][-1]
+
+    async def _quiet(self, uri):
+        """Wait until the server has checked: it answers what is asked behind the pause after which it checks."""
+        self.arrived = asyncio.Event()
+        while True:
+            self.arrived.clear()
+            await self.arrived.wait()
+            mark = len(self.told.get(uri, ()))
+            if not mark:
+                continue
+            await self.client.text_document_folding_range_async(lsp.FoldingRangeParams(lsp.TextDocumentIdentifier(uri)))
+            try:  # brackets are told first; the compiler's answer follows within the pause
+                await asyncio.wait_for(self.arrived.wait() if len(self.told[uri]) == mark and self._early(uri) else asyncio.sleep(0), 30)
+            except TimeoutError:
+                pass
+            return
+
+    def _early(self, uri):
+        return len(self.told[uri]) == 1 and any("closed" in each.message or "closes" in each.message for each in self.told[uri][0])
+
+    def ask(self, name, params):
+        return self.run(getattr(self.client, f"text_document_{name}_async")(params))
+
+    def end(self):
+        async def leave():
+            await self.client.shutdown_async(None)
+            self.client.exit(None)
+            await self.client._server.wait()
+
+        try:
+            self.run(leave())
+        finally:
+            self.run(self.client.stop())
+            self.loop.close()
