@@ -9,7 +9,11 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 FOLDERS = [ROOT / name for name in ("src", "hy_src", "tests", "benchmarks", "tutorials", "docs")]
 PAGES = {path.name: path for folder in ("", "tutorials", "docs", "docs/reference") for path in (ROOT / folder).glob("*.md")}
-PAGES |= {path.name: path for folder in ("tutorials", "tutorials/kitchen", "how-to", "explanation") for path in (ROOT / "docs" / folder).glob("*.md")}
+PAGES |= {
+    path.name: path
+    for folder in ("tutorials", "tutorials/kitchen", "how-to", "explanation")
+    for path in (ROOT / "docs" / folder).glob("*.md")
+}
 
 
 @functools.cache

@@ -46,6 +46,8 @@ EXCEPT = {
     ("swank/calls/compiling.py", "mkdtemp"): "a folder for what Emacs compiles, which goes with the connection",
     ("robot_world/pictures/stills.py", "save"): "into memory, from which storage writes it",
     ("languages/commonlisp/faces/robot_world/picture_calls.py", "save"): "Movie.save, which writes by way of storage",
+    ("jupyter/pictures.py", "save"): "into memory, for a notebook",
+    ("lsp/stdio.py", "fdopen"): "the standard output that the editor reads",
     ("robot/worlds.py", "save"): "as above",
 }
 MEMORY = {"np", "copy", "each"}

@@ -119,7 +119,10 @@ def test_definitions_in_lisp_and_hy(emacs, files, name, found):
 def test_definitions_of_methods(emacs, files):
     told = emacs.call('(swank:find-definitions-for-emacs "visit-place-here")')
     lines = {where(location)[1] for _, location in told}
-    assert "(defgeneric visit-place-here (thing))" in lines and "(defmethod visit-place-here :before ((thing looked-at-place)) (setf *where-in-looking* 2))" in lines
+    assert (
+        "(defgeneric visit-place-here (thing))" in lines
+        and "(defmethod visit-place-here :before ((thing looked-at-place)) (setf *where-in-looking* 2))" in lines
+    )
     assert any(":BEFORE" in label for label, _ in told)
 
 
@@ -152,9 +155,15 @@ def test_definitions_of_what_was_typed_and_of_nothing(emacs):
 
 def test_uses(emacs, files):
     told = emacs.call('(swank:xref \':calls "far-away-here")')
-    assert [(label, where(location)[0]) for label, location in told] == [("(DEFMETHOD VISIT-PLACE-HERE)", "plans.lisp"), ("(DEFUN IN-HY-HERE)", "more.hy")]
+    assert [(label, where(location)[0]) for label, location in told] == [
+        ("(DEFMETHOD VISIT-PLACE-HERE)", "plans.lisp"),
+        ("(DEFUN IN-HY-HERE)", "more.hy"),
+    ]
     assert [label for label, _ in emacs.call('(swank:xref \':sets "*where-in-looking*")')] == ["(DEFMETHOD VISIT-PLACE-HERE)"]
-    assert {label for label, _ in emacs.call('(swank:xref \':references "*where-in-looking*")')} == {"(DEFUN FAR-AWAY-HERE)", "(DEFMETHOD VISIT-PLACE-HERE)"}
+    assert {label for label, _ in emacs.call('(swank:xref \':references "*where-in-looking*")')} == {
+        "(DEFUN FAR-AWAY-HERE)",
+        "(DEFMETHOD VISIT-PLACE-HERE)",
+    }
     assert {label for label, _ in emacs.call('(swank:xref \':specializes "looked-at-place")')} == {"(DEFMETHOD VISIT-PLACE-HERE)"}
     assert emacs.call('(swank:xref \':binds "*where-in-looking*")') == ":not-implemented"
     assert emacs.call('(swank:xref \':calls "no-such")') is None
