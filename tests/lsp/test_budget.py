@@ -14,6 +14,8 @@ from cramhy_runtime.lsp import documents, surroundings
         "#.(loop)\n",
         "(eval-when (:compile-toplevel) (loop))\n",
         "(defmacro m () (ignore-errors (unwind-protect (loop) (print 1))))\n(m)\n",
+        "(defmacro m () (unwind-protect (loop) (loop)))\n(m)\n",
+        "(defmacro m () (let ((*print-base* 2)) (loop (let ((*print-base* 3)) (cpl:top-level (cpl:par (identity 1) (identity 2)))))))\n(m)\n",
     ],
 )
 def test_what_never_ends_is_stopped(monkeypatch, text):

@@ -4,14 +4,8 @@ from __future__ import annotations
 
 import signal
 from contextlib import contextmanager
-from pathlib import Path
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import dynamic
-
-_WHOLE = (str(Path(kernel.__file__).parent), dynamic.__file__)
-"""Where a task changes hands or bindings are swapped: nothing is broken off in the middle of that."""
-_LATER = 0.001  # seconds until it is tried again
 
 
 class OutOfTime(BaseException):
@@ -20,21 +14,30 @@ class OutOfTime(BaseException):
 
 @contextmanager
 def budget(seconds):
-    """Raise `OutOfTime` in the main thread if the block takes more than so many seconds of processor time. Windows has no such timer."""
+    """Raise `OutOfTime` if the block takes more than so many seconds of processor time. Windows has no such timer.
+
+    The kernel that is active then is interrupted, as by Ctrl-C: the block ends at a checkpoint, through the cleanup of what runs, and one
+    second later the cleanup is abandoned. Without a kernel nothing is interrupted.
+    """
     if not hasattr(signal, "setitimer"):
         yield
         return
+    asked = False
 
-    def over(_, frame):
-        if frame.f_code.co_filename.startswith(_WHOLE):
-            signal.setitimer(signal.ITIMER_PROF, _LATER, 1.0)
-            return
-        raise OutOfTime
+    def over(*_):
+        nonlocal asked
+        if (active := kernel.active()) is not None:
+            asked = True
+            active.interrupt()
 
     before = signal.signal(signal.SIGPROF, over)
     signal.setitimer(signal.ITIMER_PROF, seconds, 1.0)
     try:
         yield
+    except (kernel.Interrupted, kernel.Abandoned):
+        if asked:
+            raise OutOfTime from None
+        raise
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
         signal.signal(signal.SIGPROF, before)

@@ -55,18 +55,17 @@ class Document:
         found = self.parse()
         if self.too_long or self.kind == "xml":
             return found
-        try:
-            if self.kind == "hy":
-                with budget(SECONDS):
-                    more = hy_files.check(self.text, self.filename)
-            else:
-                image = self.surroundings.image_for(self.path)
+        if self.kind == "hy":  # of which no macro of the user runs
+            more = hy_files.check(self.text, self.filename)
+        else:
+            image = self.surroundings.image_for(self.path)
+            try:
                 with budget(SECONDS):
                     more, _ = checking.compiled(self.text, self.path, self.filename, image)
-                self._keep(image)
-        except OutOfTime:
-            message = f"Compiling this text was stopped after {SECONDS:.0f} s of processor time. Does a macro of it never end?"
-            return [*found, Finding(0, 1, WARNING, message)]
+            except OutOfTime:
+                message = f"Compiling this text was stopped after {SECONDS:.0f} s of processor time. Does a macro of it never end?"
+                return [*found, Finding(0, 1, WARNING, message)]
+            self._keep(image)
         brackets = bool(found)
         return found + [each for each in more if not (brackets and _of_reader(each))]
 
