@@ -8,7 +8,7 @@ import hy
 import pytest
 from hy.completer import Completer
 
-from cramhy_runtime.repl.hy_completion import HyTab
+from cramhy_runtime.repl.hy_tab import HyTab
 
 from .conftest import REQUIRE, Door
 

@@ -111,6 +111,16 @@ def test_completion(cells):
     assert cells.client.complete("(zzzzzz", reply=True, timeout=60)["content"]["matches"] == []
 
 
+@pytest.mark.parametrize(
+    ("text", "offered"), [("(cp", ["cpl:", "cpm:"]), ("(top", ["top-level"]), ("(make-fluent :na", [":name"]), ("(defn f [", [])]
+)
+def test_completion_in_hy_is_that_of_its_prompt(cells, text, offered):
+    code = f"%%hy\n{text}"
+    found = cells.client.complete(code, reply=True, timeout=60)["content"]
+    assert set(offered) <= set(found["matches"]) and len(found["matches"]) < 50
+    assert all(name.startswith(code[found["cursor_start"] : found["cursor_end"]]) for name in found["matches"])
+
+
 def test_inspection(cells):
     found = cells.client.inspect("(mapcar #'car", 3, reply=True, timeout=60)["content"]
     assert found["found"] and "(mapcar" in found["data"]["text/plain"]

@@ -12,12 +12,14 @@ from cramhy_runtime.languages.commonlisp.tools.describing import describe
 from cramhy_runtime.languages.hy.brackets import open_brackets
 from cramhy_runtime.session.arglists import arglist, call_text, symbol_named
 from cramhy_runtime.session.completion import completions
+from cramhy_runtime.session.hy_completion import completions_in_hy
 
 from .cells import HY
 
 MOST = 200
 """Completions that are sent."""
 _WORD = re.compile(r"""[^\s()\[\]{}'"`,;]""")
+_WORD_BEFORE = re.compile(r"""[^\s()\[\]{}'"`,;]*$""")
 _HEAD = re.compile(r"""\(\s*([^\s()\[\]{}'"`,;]+)""")
 
 
@@ -32,15 +34,8 @@ def completed(notebook, text, cursor):
 
 
 def _completed_in_hy(notebook, before):
-    from hy.completer import Completer
-
-    word = re.search(r"""[^\s()\[\]{}'"`,;]*$""", before).group()
-    module = notebook.hy_module()
-    names = Completer(vars(module))
-    found = []
-    while word and len(found) < MOST and (name := names.complete(word, len(found))) is not None:
-        found.append(name.rstrip(" ("))
-    found = sorted(dict.fromkeys(found))
+    word = _WORD_BEFORE.search(before)[0]
+    found = completions_in_hy(before, word, notebook.hy_module())[:MOST] if word else []
     return found, [""] * len(found), len(before) - len(word)
 
 

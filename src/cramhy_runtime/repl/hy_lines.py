@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .hy_completion import HyTab
+from .hy_tab import HyTab
 from .readline_lines import ReadlineLines
 
 
