@@ -32,9 +32,9 @@ def test_a_cell_of_lisp_or_hy_in_ipython(tmp_path):
 
 
 def test_the_extra_is_named_where_it_is_missing(monkeypatch, capsys):
-    from cramhy_runtime.cli import jupyter_command, main
+    from cramhy_runtime.cli import main, servers
 
-    monkeypatch.setattr(jupyter_command, "find_spec", lambda module: None)
+    monkeypatch.setattr(servers, "find_spec", lambda module: None)
     assert main(["jupyter", "install"]) == 2
     told = capsys.readouterr().err
     assert told.startswith("cramhy jupyter needs") and "[jupyter]" in told and told.count("\n") == 1

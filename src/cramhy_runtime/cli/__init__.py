@@ -216,9 +216,12 @@ def _swank(options):
 
 
 def _jupyter(options):
-    from . import jupyter_command
+    from . import jupyter_command, servers
 
-    if jupyter_command.complain():
+    try:
+        servers.require("jupyter", "cramhy jupyter")
+    except servers.NotPossible as problem:
+        print(problem, file=sys.stderr)
         return 2
     if options.action != "kernel":
         return jupyter_command.install(options)

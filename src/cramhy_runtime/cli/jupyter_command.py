@@ -4,27 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-from importlib.util import find_spec
-
-from cramhy_runtime.extras import install_command
-
-
-def missing():
-    """The line that names the extra, if what notebooks need is not there; else ``None``."""
-    lacking = [module for module in ("ipykernel", "jupyter_client") if find_spec(module) is None]
-    if not lacking:
-        return None
-    verb = "is" if len(lacking) == 1 else "are"
-    what = f"cramhy jupyter needs ipykernel and jupyter-client, and {' and '.join(lacking)} {verb} not installed"
-    return f"{what}. Type: {install_command('jupyter')}"
-
-
-def complain():
-    """Tell what is missing; whether something is."""
-    line = missing()
-    if line is not None:
-        print(line, file=sys.stderr)
-    return line is not None
 
 
 def install(options):

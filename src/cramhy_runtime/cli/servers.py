@@ -25,6 +25,7 @@ NEEDS = {
     "record": ("record", ("mcap",)),
     "ros": ("ros", ("roslibpy",)),
     "lsp": ("lsp", ("pygls",)),
+    "jupyter": ("jupyter", ("ipykernel", "jupyter_client")),
     "greenlet": ("fast", ("greenlet",)),
 }
 """The extra that an option needs, and its modules that have to be there."""
