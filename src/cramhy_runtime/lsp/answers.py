@@ -20,11 +20,14 @@ from cramhy_runtime.languages.hy.plan_macros import macros
 from cramhy_runtime.languages.operators import operator_of
 from cramhy_runtime.session import arglists, completion, fuzzy, lookup
 from cramhy_runtime.session.body_arguments import body_start
+from cramhy_runtime.session.lookup import bare_name
 
 from . import outlines, scopes
 from .texts import Text
 
 MOST = 300
+MOST_LOOKED_AT = 20_000
+"""So many characters before a word are looked at to complete it."""
 _DESCRIBED = 4000
 
 
@@ -46,9 +49,8 @@ def completions(document, offset):
     word = text.text[token.start : offset] if token is not None else ""
     if document.kind == "hy":
         return _of_hy(text, word), offset - len(word)
-    start = max(0, offset - 20_000)
-    form = next((each for each in text.around(offset)[::-1]), None)
-    start = max(start, form.start) if form is not None else offset - len(word)
+    around = text.around(offset)
+    start = max(offset - MOST_LOOKED_AT, around[-1].start) if around else offset - len(word)
 
     def found():
         package = document.package_at(offset)
@@ -124,7 +126,7 @@ def signature(document, offset):
             at_new = not before or before[-1].end < offset
             index = len(before) if at_new else len(before) - 1
             words = [item.text for item in before if not hasattr(item, "items")]
-            keyword = words[-1][1:] if words and before and words[-1].startswith(":") and before[-1] is not None else None
+            keyword = words[-1][1:] if words and words[-1].startswith(":") else None
             shown = [item.lower() for item in items]
             return arglists.call_text(head.text.lower(), shown), shown, arglists.place_of_argument(items, index, keyword)
         return None
@@ -143,11 +145,11 @@ def definitions(document, offset):
     local = scopes.local(document.text, token) if not token.text.startswith(":") else None
     if local:
         return [Spot(None, document.text, local[0].start, local[0].end)]
-    bare = token.text.lstrip("#'").rpartition(":")[2].upper()
+    bare = bare_name(token.text)
     found = [
         Spot(None, document.text, start, end)
         for _, name, _, _, start, end in outlines.definitions(document.text)
-        if name.lstrip("'#:").rpartition(":")[2].upper() == bare
+        if bare_name(name) == bare
     ]
     if found or document.kind == "hy":
         return found
@@ -186,12 +188,12 @@ def _texts(document, others):
 
 
 def _in_system(document, token):
-    bare = token.text.lstrip("#'").rpartition(":")[2].upper()
+    bare = bare_name(token.text)
     return [
         Spot(path, text, start, end)
         for path, text in _texts(document, {})
         for _, name, _, _, start, end in outlines.definitions(text)
-        if name.rpartition(":")[2].upper() == bare
+        if bare_name(name) == bare
     ]
 
 
@@ -216,9 +218,9 @@ def renaming(document, offset, others):
     if token is None or token.text.startswith((":", "#", "&")):
         return None
     if scopes.local(document.text, token) is None:
-        bare = token.text.rpartition(":")[2].upper()
+        bare = bare_name(token.text)
         texts = [document.text, *(text for _, text in _texts(document, others))]
-        if not any(name.rpartition(":")[2].upper() == bare for text in texts for _, name, *_ in outlines.definitions(text)):
+        if not any(bare_name(name) == bare for text in texts for _, name, *_ in outlines.definitions(text)):
             return None
     return [
         spot._replace(start=spot.start + spot.text.text[spot.start : spot.end].rfind(":") + 1)

@@ -192,12 +192,13 @@ def in_texts(name):
     found = []
     for filename in known_files():
         for line, operator, defined, _, qualifier in toplevel_forms(filename):
-            if operator.rpartition(":")[2].startswith(("DEF", "DECLARE-GOAL")) and _bare(defined) == name:
+            if operator.rpartition(":")[2].startswith(("DEF", "DECLARE-GOAL")) and bare_name(defined) == name:
                 found.append(place(f"({operator} {name}{qualifier})", filename, line))
     return found
 
 
-def _bare(word):
+def bare_name(word):
+    """The name that a word of a text stands for, without quotes and prefix."""
     return word.lstrip("'#:").rpartition(":")[2].upper()
 
 
@@ -216,7 +217,7 @@ def uses(name, calls=False, sets=False):
                 continue
             for match in wanted.finditer(f" {text.partition(';')[0]}"):
                 around = next((form for form in forms if form[0] <= number <= form[3]), None)
-                if around is not None and around[0] == number and _bare(around[2]) == name and around[1].startswith("DEF"):
+                if around is not None and around[0] == number and bare_name(around[2]) == name and around[1].startswith("DEF"):
                     continue
                 label = f"({around[1]} {around[2].upper()})" if around else "(the text)"
                 found.append(place(label, filename, number, max(1, match.start(1))))
