@@ -7,8 +7,7 @@ import re
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
-from cramhy_runtime.languages.commonlisp.streams import streams
-from cramhy_runtime.languages.commonlisp.tools.describing import describe
+from cramhy_runtime.languages.commonlisp.tools.describing import description
 from cramhy_runtime.languages.hy.brackets import open_brackets
 from cramhy_runtime.session.arglists import arglist, call_text, symbol_named
 from cramhy_runtime.session.completion import completions
@@ -69,9 +68,8 @@ def _call_around(before):
 
 
 def _described(symbol, package):
-    output = streams.StringOutputStream()
     with binding(evaluator.PACKAGE, package, PACKAGE, package):
         items = arglist(symbol)
-        describe(symbol, output)
+        told = description(symbol).strip()
     call = "" if items is None else call_text(symbol.name.lower(), items) + "\n\n"
-    return call + output.take().strip()
+    return call + told

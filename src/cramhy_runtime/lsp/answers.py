@@ -12,9 +12,8 @@ from typing import NamedTuple
 
 from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.packages import is_symbol
-from cramhy_runtime.languages.commonlisp.streams.streams import StringOutputStream
 from cramhy_runtime.languages.commonlisp.systems import systems
-from cramhy_runtime.languages.commonlisp.tools.describing import describe
+from cramhy_runtime.languages.commonlisp.tools.describing import description
 from cramhy_runtime.languages.hy import shapes
 from cramhy_runtime.languages.hy.plan_macros import macros
 from cramhy_runtime.languages.operators import operator_of
@@ -97,11 +96,9 @@ def hover(document, offset):
             return f"{operator.shape}\n\n{operator.documentation}"
         if not isinstance(symbol, Symbol):
             return None
-        output = StringOutputStream()
-        describe(symbol, output)
         items = arglists.arglist(symbol)
         call = f"{arglists.call_text(token.text.lower(), [item.lower() for item in items])}\n\n" if items is not None else ""
-        return call + output.take().strip()[:_DESCRIBED]
+        return call + description(symbol).strip()[:_DESCRIBED]
 
     told = document.in_image(described)
     return (told, token.start, token.end) if told else None

@@ -10,7 +10,6 @@ from contextlib import contextmanager
 
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import CompileError, StyleWarning
-from cramhy_runtime.ground.data import all_values
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.languages.commonlisp.compiler import compilation_unit
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
@@ -121,8 +120,7 @@ def compile_string_for_emacs(call, source, buffer, position, filename=None, poli
 
     def run():
         while (form := reader.read(eof_error=False, eof_value=end)) is not end:
-            if not _caught(notes, lambda form=form: call.session.evaluate(form, reader, top=call.debugger is None)):
-                continue
+            _caught(notes, lambda form=form: call.session.evaluate(form, reader, top=call.debugger is None))
 
     with noted(notes), binding(evaluator.PACKAGE, call.package):
         _caught(notes, lambda: aborting(call, run))
@@ -138,7 +136,7 @@ def _raise(condition):
 def _caught(notes, thunk):
     """Call ``thunk``. What the compiler or the reader cannot take becomes a note, and the rest of it is left out."""
     kinds = (CompileError, *UNREADABLE)
-    return conditions.handler_case([(kind, notes.fail) for kind in kinds], lambda: all_values(thunk()) or True)
+    conditions.handler_case([(kind, notes.fail) for kind in kinds], thunk)
 
 
 @rpc("operate-on-system-for-emacs", evaluates=True)

@@ -8,9 +8,8 @@ from cramhy_runtime.ground.packages import is_symbol, sym
 from cramhy_runtime.languages.commonlisp.evaluation.forms import SPECIAL_OPERATORS
 from cramhy_runtime.languages.commonlisp.objects.classes import registered_class
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
-from cramhy_runtime.languages.commonlisp.streams.streams import StringOutputStream
 from cramhy_runtime.languages.commonlisp.tools import apropos
-from cramhy_runtime.languages.commonlisp.tools.describing import describe
+from cramhy_runtime.languages.commonlisp.tools.describing import description
 from cramhy_runtime.languages.commonlisp.tools.documentation import documentation
 from cramhy_runtime.languages.operators import operator_of
 
@@ -22,16 +21,9 @@ FUNCTION, VARIABLE, TYPE = sym("FUNCTION"), sym("VARIABLE"), sym("TYPE")
 MOST_FOUND = 500
 
 
-def described(obj):
-    """What ``describe`` prints of an object."""
-    output = StringOutputStream()
-    describe(obj, output)
-    return output.take().lstrip("\n")
-
-
 @rpc("describe-symbol")
 def describe_symbol(call, name):
-    return described(symbol_of(call, name))
+    return description(symbol_of(call, name))
 
 
 @rpc("describe-function")
@@ -40,19 +32,19 @@ def describe_function(call, name):
     function = getattr(symbol, "macro", None) or getattr(symbol, "function", None)
     if function is None or isinstance(function, UndefinedFunction):
         raise Refused(f"{prin1_to_string(symbol)} is no function, no macro and no special operator.")
-    return described(function)
+    return description(function)
 
 
 @rpc("describe-definition-for-emacs")
 def describe_definition(call, name, kind=None):
-    return described(symbol_of(call, name))
+    return description(symbol_of(call, name))
 
 
 @rpc("describe-inspectee")
 def describe_inspectee(call):
     if call.connection.inspector is None:
         raise Refused("Nothing is inspected.")
-    return described(call.connection.inspector.object)
+    return description(call.connection.inspector.object)
 
 
 @rpc("documentation-symbol")

@@ -37,23 +37,18 @@ def echo(values):
     """The values for the echo area, as SLIME shows them."""
     if not values:
         return "; No value"
-    shown = "\n".join(map(prin1_to_string, values))
+    shown = ", ".join(map(prin1_to_string, values))
     only = values[0]
     if len(values) == 1 and isinstance(only, int) and not isinstance(only, bool):
         return f"=> {only} ({only.bit_length()} bit{'s' if only.bit_length() != 1 else ''}, #x{only:X}, #o{only:o}, #b{only:b})"
-    return f"=> {shown}" if len(values) == 1 else "=> " + ", ".join(map(prin1_to_string, values))
+    return f"=> {shown}"
 
 
 # --------------------------------------------------------------------------------------------------------------- echo area
 
 
-@rpc("interactive-eval", evaluates=True)
+@rpc("interactive-eval interactive-eval-region", evaluates=True)
 def interactive_eval(call, source):
-    return echo(evaluated(call, text(source)))
-
-
-@rpc("interactive-eval-region", evaluates=True)
-def interactive_eval_region(call, source):
     return echo(evaluated(call, text(source)))
 
 

@@ -45,7 +45,7 @@ from ..objects.structures import StructureObject
 from cramhy_runtime.ground.packages import KEYWORD, Package, is_symbol, sym, symbol_name
 from ..printer.print_controls import PACKAGE, PRINT_GENSYM, PRINT_LINES, PRINT_RIGHT_MARGIN
 from ..printer.printer import prin1_to_string
-from ..streams.streams import Stream, output_stream
+from ..streams.streams import Stream, StringOutputStream, output_stream
 from ..types import types
 from .documentation import documentation
 
@@ -134,6 +134,13 @@ def describe(obj, stream=None):
     with binding(PRINT_RIGHT_MARGIN, margin()):
         describe_object(obj, output_stream(stream))
     return NO_VALUES
+
+
+def description(obj):
+    """What `describe` prints of ``obj``, without empty lines before it."""
+    output = StringOutputStream()
+    describe(obj, output)
+    return output.take().lstrip("\n")
 
 
 def describe_facts(obj, stream, kind, facts):
