@@ -74,6 +74,13 @@ def _inside(code: CodeType, name: str) -> Iterator[CodeType]:
 
 
 def files_noted() -> list[str]:
-    """The names of the files that living functions were compiled from, each once, in the order in which they were noted."""
-    found = {code.co_filename: None for reference in _noted.references if (code := reference()) is not None}
+    """The names of the files that living functions were compiled from, each once, in the order in which they were noted last.
+
+    Not first: a function that was defined again may live on, unseen, until the collector comes.
+    """
+    found: dict[str, None] = {}
+    for reference in _noted.references:
+        if (code := reference()) is not None:
+            found.pop(code.co_filename, None)
+            found[code.co_filename] = None
     return list(found)
