@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import sys
+import threading
 
 from lsprotocol import types as lsp
 from pygls.lsp.client import LanguageClient
@@ -12,19 +13,20 @@ LONG = 300  # seconds of the wall: only a server that hangs takes so long
 
 
 class Editor:
-    """A client with one server process. Its methods are called from outside of the loop, which runs while they wait."""
+    """A client with one server process. Its loop runs in a thread of its own."""
 
     def __init__(self, *words, folder=None):
         self.loop = asyncio.new_event_loop()
+        self.thread = threading.Thread(target=self.loop.run_forever, daemon=True)
+        self.thread.start()
         self.client = LanguageClient("tests", "1")
-        self.told, self.arrived, self.versions = {}, None, {}
+        self.told, self.arrived, self.versions = {}, asyncio.Event(), {}
         words = words or (sys.executable, "-m", "cramhy_runtime.cli", "lsp")
 
         @self.client.feature(lsp.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)
         def told(params):
             self.told.setdefault(params.uri, []).append(params.diagnostics)
-            if self.arrived is not None:
-                self.arrived.set()
+            self.arrived.set()
 
         self.run(self.client.start_io(*words))
         self.capabilities = self.run(
@@ -32,25 +34,31 @@ class Editor:
                 lsp.InitializeParams(capabilities=lsp.ClientCapabilities(), root_uri=folder and folder.as_uri(), process_id=None)
             )
         ).capabilities
-        self.client.initialized(lsp.InitializedParams())
+        self.loop.call_soon_threadsafe(self.client.initialized, lsp.InitializedParams())
 
     def run(self, work):
-        return self.loop.run_until_complete(asyncio.wait_for(work, LONG))
+        """What the coroutine ``work`` gives. It runs in the editor's thread, since Playwright leaves its loop running in this one."""
+        return asyncio.run_coroutine_threadsafe(asyncio.wait_for(work, LONG), self.loop).result()
+
+    def tell(self, name, params):
+        """Send the notification ``textDocument/name``; whatever writes to the server does so in the editor's thread."""
+        self.loop.call_soon_threadsafe(getattr(self.client, f"text_document_{name}"), params)
 
     def open(self, uri, text, language="commonlisp"):
         self.versions[uri] = 1
-        self.client.text_document_did_open(lsp.DidOpenTextDocumentParams(lsp.TextDocumentItem(uri, language, 1, text)))
+        self.tell("did_open", lsp.DidOpenTextDocumentParams(lsp.TextDocumentItem(uri, language, 1, text)))
 
     def change(self, uri, text):
         self.versions[uri] += 1
-        self.client.text_document_did_change(
+        self.tell(
+            "did_change",
             lsp.DidChangeTextDocumentParams(
                 lsp.VersionedTextDocumentIdentifier(self.versions[uri], uri), [lsp.TextDocumentContentChangeWholeDocument(text)]
-            )
+            ),
         )
 
     def close(self, uri):
-        self.client.text_document_did_close(lsp.DidCloseTextDocumentParams(lsp.TextDocumentIdentifier(uri)))
+        self.tell("did_close", lsp.DidCloseTextDocumentParams(lsp.TextDocumentIdentifier(uri)))
 
     def checked(self, uri, text):
         """The diagnostics that the compiler gives of ``text``. A save makes the server check; the last ones told are the compiler's."""
@@ -64,19 +72,17 @@ class Editor:
 
     async def _quiet(self, uri):
         """Wait until the server has checked: it answers what is asked behind the pause after which it checks."""
-        self.arrived = asyncio.Event()
-        while True:
+        while not self.told.get(uri):
             self.arrived.clear()
             await self.arrived.wait()
-            mark = len(self.told.get(uri, ()))
-            if not mark:
-                continue
-            await self.client.text_document_folding_range_async(lsp.FoldingRangeParams(lsp.TextDocumentIdentifier(uri)))
-            try:  # brackets are told first; the compiler's answer follows within the pause
-                await asyncio.wait_for(self.arrived.wait() if len(self.told[uri]) == mark and self._early(uri) else asyncio.sleep(0), 30)
+        self.arrived.clear()
+        mark = len(self.told[uri])
+        await self.client.text_document_folding_range_async(lsp.FoldingRangeParams(lsp.TextDocumentIdentifier(uri)))
+        if len(self.told[uri]) == mark and self._early(uri):  # brackets are told first; the compiler's answer follows within the pause
+            try:
+                await asyncio.wait_for(self.arrived.wait(), 30)
             except TimeoutError:
                 pass
-            return
 
     def _early(self, uri):
         return len(self.told[uri]) == 1 and any("closed" in each.message or "closes" in each.message for each in self.told[uri][0])
@@ -94,4 +100,6 @@ class Editor:
             self.run(leave())
         finally:
             self.run(self.client.stop())
+            self.loop.call_soon_threadsafe(self.loop.stop)
+            self.thread.join()
             self.loop.close()

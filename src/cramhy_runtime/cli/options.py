@@ -153,8 +153,10 @@ def _add_jupyter(commands, of_session):
     place = jupyter.add_mutually_exclusive_group()
     place.add_argument("--user", action="store_true", help="for this user (for the environment of this Python)")
     place.add_argument("--prefix", default=None, metavar="FOLDER", help="for the environment in FOLDER (that of this Python)")
-    place.add_argument("--sys-prefix", action="store_true", help="for the environment of this Python, which is what happens anyway")
-    jupyter.add_argument("-f", "--connection-file", default=None, metavar="FILE", help="of kernel: where Jupyter says how to connect")
+    place.add_argument("--sys-prefix", action="store_true", help="for the environment of this Python (which is what happens anyway)")
+    jupyter.add_argument(
+        "-f", "--connection-file", default=None, metavar="FILE", help="of kernel: where Jupyter says how to connect (Jupyter gives it)"
+    )
 
 
 class _Version(argparse.Action):
