@@ -8,9 +8,7 @@ import re
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-import pytest
-
-from test_house import FLOORS, ROOT, SOURCE, TEXTS
+from test_house import FLOORS, ROOT, SOURCE, TEXTS, offences
 
 PAGE = (ROOT / "ARCHITECTURE.md").read_text()
 PICTURE = ROOT / "docs" / "explanation" / "architecture.svg"
@@ -86,14 +84,12 @@ def test_the_picture_has_words_for_those_who_do_not_see_it():
     assert root.find(f"{SVG}title").text.strip() and root.find(f"{SVG}desc").text.strip()
 
 
-@pytest.mark.parametrize("path", sorted(set(re.findall(PATH, PAGE))))
-def test_every_path_on_the_page_is_there(path):
-    assert found(path) is not None
+def test_every_path_on_the_page_is_there():
+    assert [path for path in set(re.findall(PATH, PAGE)) if found(path) is None] == []
 
 
-@pytest.mark.parametrize("path, name", sorted(set(NAMES)))
-def test_what_the_page_finds_in_a_file_is_defined_there(path, name):
-    assert name in definitions(found(path))
+def test_what_the_page_finds_in_a_file_is_defined_there():
+    assert [(path, name) for path, name in set(NAMES) if name not in definitions(found(path))] == []
 
 
 def test_the_page_is_linked_from_the_readme():
@@ -105,17 +101,22 @@ CODE = [path for path in TEXTS if path.relative_to(ROOT).parts[0] in ("src", "hy
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "tutorials").glob("*.md"), *(ROOT / "docs").rglob("*.md")])
 
 
-@pytest.mark.parametrize("file", CODE, ids=lambda path: str(path.relative_to(ROOT)))
-def test_every_file_that_the_code_names_is_there(file):
-    # The path begins in the folder of the file that names it, or in one around that; the macros name files of the plan language.
-    folders = [folder for folder in file.parents if folder == ROOT or ROOT in folder.parents] + [SOURCE, SOURCE / "cpl"]
-    for path in re.findall(r"`([\w/.-]+\.(?:py|hy))`", file.read_text()):
-        assert any((folder / path).exists() for folder in folders), path
+def test_every_file_that_the_code_names_is_there():
+    def missing(file):
+        # The path begins in the folder of the file that names it, or in one around that; the macros name files of the plan language.
+        folders = [folder for folder in file.parents if folder == ROOT or ROOT in folder.parents] + [SOURCE, SOURCE / "cpl"]
+        named = re.findall(r"`([\w/.-]+\.(?:py|hy))`", file.read_text())
+        return [path for path in named if not any((folder / path).exists() for folder in folders)]
+
+    assert offences(missing, CODE) == {}
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda path: str(path.relative_to(ROOT)))
-def test_every_file_that_a_page_names_is_there(page):
-    text = page.read_text()
-    for path in re.findall(r"`((?:src|hy_src|docs|tests|tutorials|benchmarks)/[\w/.-]*)(?:::\w+)?`|`([\w.-]+/[\w/.-]+\.py)`", text):
-        packages = ("cram_my_beginner_tutorial", "kitchen/cram_my_pick_place_tutorial")
-        assert found("".join(path)) or any((ROOT / "tutorials" / package / "".join(path)).exists() for package in packages), path
+def test_every_file_that_a_page_names_is_there():
+    named = re.compile(r"`((?:src|hy_src|docs|tests|tutorials|benchmarks)/[\w/.-]*)(?:::\w+)?`|`([\w.-]+/[\w/.-]+\.py)`")
+    packages = [ROOT / "tutorials" / package for package in ("cram_my_beginner_tutorial", "kitchen/cram_my_pick_place_tutorial")]
+
+    def missing(page):
+        paths = ["".join(path) for path in named.findall(page.read_text())]
+        return [path for path in paths if not found(path) and not any((package / path).exists() for package in packages)]
+
+    assert offences(missing, PAGES) == {}
