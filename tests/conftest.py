@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import collections
 import fnmatch
 import gc
 import os
@@ -16,9 +17,11 @@ from systems import takes_long
 from cramhy_runtime.session import Image
 
 TESTS = Path(__file__).parent
-_patterns = [line for line in (TESTS / "long_tests.txt").read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
-LEFT_OUT = re.compile("|".join(map(fnmatch.translate, _patterns)))
-"""Matches the tests that `make soak` alone runs."""
+LEFT_OUT = [
+    (re.compile(fnmatch.translate(pattern)), int(share or 0))
+    for pattern, share in re.findall(r"^(?!#)(.+?)(?: 1/(\d+))?$", (TESTS / "long_tests.txt").read_text(encoding="utf-8"), re.M)
+]
+"""Which tests `make soak` alone runs: patterns of their names, and of how many siblings one runs everywhere (0: none does)."""
 
 REPOSITORY = Path(__file__).parents[1]
 SHARED = REPOSITORY.parent / "shared"
@@ -55,9 +58,16 @@ if "CRAMHY_LATE" in os.environ:
 
 def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: not any(part in LONG for part in item.path.parts))
+    siblings: collections.Counter[str] = collections.Counter()
     for item in items:
-        if LEFT_OUT.match(item.path.relative_to(TESTS).as_posix() + "::" + item.name):
-            item.add_marker(takes_long)
+        name = item.path.relative_to(TESTS).as_posix() + "::" + item.name
+        for pattern, share in LEFT_OUT:
+            if pattern.match(name):
+                family = name.partition("[")[0]
+                if not share or siblings[family] % share:
+                    item.add_marker(takes_long)
+                siblings[family] += 1
+                break
 
 
 @pytest.fixture(scope="session")
