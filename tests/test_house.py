@@ -215,7 +215,8 @@ OF_OTHERS = {
 def names_in_strings(name):
     """The modules of ours that a module imports by a string, which may stand in a list."""
     computed = False
-    for node in ast.walk(ast.parse(MODULES[name].read_text())):
+    text = MODULES[name].read_text()
+    for node in ast.walk(tree_of(MODULES[name])) if "import_module(" in text or "__import__(" in text else ():
         if isinstance(node, ast.Call) and ast.unparse(node.func) in ("import_module", "importlib.import_module", "__import__"):
             if isinstance(node.args[0], ast.Constant):
                 yield importlib.util.resolve_name(node.args[0].value, name.rpartition(".")[0])
@@ -226,12 +227,15 @@ def names_in_strings(name):
         yield from LISTED[name](importlib.import_module(name))
 
 
-EDGES = {
-    name: {other for other in (*imported_names(path, when_run=True), *names_in_strings(name)) if other in MODULES} - {name}
-    for name, path in MODULES.items()
-}
-"""Which module imports which, wherever in it the import stands. A function that imports when it is called counts, and so does a string; what is
-imported for type checkers does not."""
+@functools.cache
+def edges():
+    """Which module imports which, wherever in it the import stands. A function that imports when it is called counts, and so does a string;
+    what is imported for type checkers does not."""
+    return {
+        name: {other for other in (*imported_names(path, when_run=True), *names_in_strings(name)) if other in MODULES} - {name}
+        for name, path in MODULES.items()
+    }
+
 
 PORT_INSTALLERS = {
     "ground.conditions": {"signals"},
@@ -269,7 +273,7 @@ def test_ports_are_few_and_it_is_known_who_installs_them():
 def parts_of(room):
     """For each part of a room, a folder or a module beside the folders: the other parts that it imports."""
     parts = {}
-    for name, others in EDGES.items():
+    for name, others in edges().items():
         here = _part_of(room, MODULES[name])
         if here:
             parts.setdefault(here, set()).update({_part_of(room, MODULES[other]) for other in others} - {None, here})
@@ -298,14 +302,14 @@ def test_the_parts_of_common_lisp_import_only_what_is_named_before_them():
 
 
 def test_no_circle_of_modules_is_large_and_none_leaves_its_folder():
-    for circle in circles(EDGES):
+    for circle in circles(edges()):
         assert len(circle) <= 8, circle
         assert len({MODULES[name].parent for name in circle}) == 1, circle
 
 
 def test_rooms_are_in_no_circle():
     rooms = {}
-    for name, others in EDGES.items():
+    for name, others in edges().items():
         room = room_of(MODULES[name])
         rooms.setdefault(room, set()).update(room_of(MODULES[each]) for each in others)
     assert not circles(rooms)
