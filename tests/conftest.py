@@ -47,7 +47,7 @@ LONG = (
 """Folders and files whose tests take seconds: they come first, so that on two processors neither waits for the other at the end."""
 
 # What hypothesis makes up is the same each time, so that a change is not blamed for what an unlucky draw finds; the soak draws anew.
-settings.register_profile("steady", derandomize=True)
+settings.register_profile("steady", derandomize=True, max_examples=50)
 os.environ["CRAMHY_HISTORY"] = ""  # what tests type is not the user's
 if not os.environ.get("CRAMHY_SOAK"):
     settings.load_profile("steady")
