@@ -150,7 +150,7 @@ def carried(ask, seed):
     return True
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [75, 1, 2])  # in 75 a bowl leaves the forearm a way of two millimetres
 def test_friction_carries_a_bottle_from_the_sink_to_the_table(physical, seed):
     before = kernel.now()
     assert carried(physical, seed)

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from ..simulated_robot import RobotParts
     from ..world import World
 
-APART = 0.01
-"""How far from everything a way leads, metres. What is nearer at its start may stay as near."""
+APART = (0.01, 0.001)
+"""How far from everything a way leads, metres: what is tried first, and then. What is nearer at its start may stay as near."""
 _FINE = 0.08  # radians between postures that are tried
 _BRANCH = 0.4  # radians
 _MOST_BRANCHES = 300
@@ -34,7 +34,7 @@ _SHORTCUTS = 40
 class Room:
     """A kinematic copy of a world, in which a robot's joints ``names`` are tried.
 
-    lenient: the hands may touch things, as when they grasp.
+    lenient: the hands may touch things, as when they grasp. apart: how far from everything ways are to lead, metres.
     """
 
     def __init__(self, world: World, name: Hashable, parts: RobotParts, names: Sequence[str], lenient: bool = False) -> None:
@@ -61,9 +61,9 @@ class Room:
         limits = [description.joints[joint] for joint in names]
         self.lower = np.array([joint.lower for joint in limits])
         self.upper = np.array([joint.upper for joint in limits])
-        self._first: dict[tuple[int, int], float] = {}
+        self.apart = APART[0]
         self.start = np.array([machine.joint(joint) for joint in names])
-        self._first = dict(self._near(self.start, APART))
+        self._first = dict(self._near(self.start, APART[0]))
 
     def _near(self, posture: np.ndarray, distance: float) -> list[tuple[tuple[int, int], float]]:
         """The pairs of geoms that are nearer than that, and how near."""
@@ -87,7 +87,7 @@ class Room:
     def free(self, posture: np.ndarray) -> bool:
         """Whether the robot is far enough from everything there."""
         checkpoint()
-        return all(pair in self._first and apart > self._first[pair] - 2e-3 for pair, apart in self._near(posture, APART))
+        return all(pair in self._first and apart > self._first[pair] - 2e-3 for pair, apart in self._near(posture, self.apart))
 
     def clear(self, postures: Sequence[np.ndarray]) -> bool:
         """Whether the way along postures is free; the first one is not looked at."""

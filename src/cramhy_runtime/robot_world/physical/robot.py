@@ -16,7 +16,7 @@ from ..placements import Placement
 from ..reaching import solver_of
 from ..simulated_robot import BeyondLimits, MotionError, NothingGripped, OutOfReach, RobotParts, SimulatedRobot
 from . import floor_ways
-from .arm_ways import Room
+from .arm_ways import APART, Room
 from .engine import BASE, yaw_of
 from .trajectory import Trajectory
 from .world import TICK, PhysicalWorld
@@ -39,7 +39,9 @@ _CLOSE_BY = 0.03  # radians
 _LINE = (0.35, 0.6)  # metres, radians: so far a tool goes along a line
 _LINE_STEP = (0.02, 0.1)
 _JUMP = 0.35  # radians between two steps of a line
+_DIFFERENT = 1e-3  # radians: postures that are nearer to each other are one
 _TRIED = 6  # postures to which ways are looked for
+_MOST_POSTURES = 80  # that are looked at, whether they touch anything
 _TORSO_STEP = 0.05  # metres
 _SHUT = 0.01  # radians: fingers that are closed so far hold nothing
 
@@ -190,19 +192,22 @@ class PhysicalRobot(SimulatedRobot):
         line = self._line(goals, joints, now)
         if line is not None and room.clear(line):
             return line
-        postures = list(islice(self._candidates(goals, joints, now), _TRIED))
-        if not postures:
+        postures = self._candidates(goals, joints, now)
+        first = next(postures, None)
+        if first is None:
             heights = self._heights()
             out = (arm for arm, goal in goals.items() if self.reach(arm, goal, heights[-1]) is None)
             raise OutOfReach(next(out, next(iter(goals))), len(self._torso_heights()))
         if line is not None and lenient:
             return line
-        for posture in postures:
-            way = room.way(posture)
-            if way is not None:
-                return way
+        known = [first, *islice(postures, _MOST_POSTURES)]
+        for room.apart in APART:
+            for posture in islice(filter(room.free, known), _TRIED):
+                way = room.way(posture)
+                if way is not None:
+                    return way
         if lenient:
-            return [now, postures[0]]
+            return [now, first]
         raise NoWay(f"{next(iter(goals))} arm")
 
     def _line(self, goals: Mapping[Hashable, Placement], joints: Sequence[str], now: np.ndarray) -> list[np.ndarray] | None:
@@ -253,7 +258,11 @@ class PhysicalRobot(SimulatedRobot):
                 answers = list(self._answers(arm, goal, height, [values[joint] for joint in self.parts.arms[arm].joints]))
                 found = [before | answer for before in found for answer in answers]
             postures = [np.array([posture[joint] for joint in joints]) for posture in found]
-            yield from sorted(postures, key=lambda posture: float(np.abs(posture - now).max()))
+            last: list[np.ndarray] = []
+            for posture in sorted(postures, key=lambda posture: float(np.abs(posture - now).max())):
+                if all(np.abs(posture - other).max() > _DIFFERENT for other in last):
+                    last.append(posture)
+                    yield posture
 
     def _torso_heights(self) -> list[float]:
         limits = self.machine.description.joints[self.parts.torso]
