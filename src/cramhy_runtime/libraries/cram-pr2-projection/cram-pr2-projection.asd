@@ -9,4 +9,5 @@
                (:file "motions")
                (:file "perception")
                (:file "process-modules")
+               (:file "durations")
                (:file "environment")))

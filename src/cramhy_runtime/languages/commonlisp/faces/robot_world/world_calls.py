@@ -47,9 +47,11 @@ def physical_p(world: World) -> bool | None:
     return boolean(isinstance(world, PhysicalWorld))
 
 
-def copy_world(world: World) -> World:
-    """A world with copies of the things of ``world``."""
-    return world.copy()
+def copy_world(world: World, into: World | None = None) -> World:
+    """A world with copies of the things of ``world``; ``into``, a kinematic world, has them then instead of its own."""
+    if isinstance(into, PhysicalWorld):
+        return error("A world can be copied into a kinematic one only: ~s is a physical world.", into)
+    return into if into is world else world.copy(into)
 
 
 def add_description(
