@@ -29,6 +29,9 @@ OF_PLACES = """
 (defun there (x y z) (cl-transforms-stamped:pose->pose-stamped "map" 0.0 (btr:ensure-pose `((,x ,y ,z) (0 0 0 1)))))
 (defun place (x y z &aux (?pose (there x y z))) (desig:a location (pose ?pose)))
 (defun of-mug () (let ((pose (btr:pose (mug)))) (place (cl-transforms:x (cl-transforms:origin pose)) (cl-transforms:y (cl-transforms:origin pose)) (cl-transforms:z (cl-transforms:origin pose)))))
+(defun counter () (desig:an object (type counter-top) (urdf-name sink-area-surface) (part-of kitchen)))
+(prolog:def-fact-group costmap-metadata (costmap:costmap-size costmap:costmap-origin costmap:costmap-resolution)
+  (prolog:<- (costmap:costmap-size 12 12)) (prolog:<- (costmap:costmap-origin -6 -6)) (prolog:<- (costmap:costmap-resolution 0.05)))
 (defun opening () (desig:an action (type opening) (arm left) (distance 0.3) (object (desig:an object (type drawer) (urdf-name sink-area-left-upper-drawer-main) (part-of kitchen)))))
 (defparameter *mug* (let ((?name 'mug-1)) (desig:an object (type mug) (name ?name))))
 """
@@ -231,6 +234,10 @@ def test_what_is_called_answers(ask, form, answer):
         ("(typep (first (all `(cpoe:loc ,*mug* ?where) '?where)) 'desig:location-designator)", "T"),
         ("(list (proves `(cpoe:object-placed-at ,*mug* ,(of-mug))) (progn (btr:attach-object (robot) (mug) \"l_wrist_roll_link\") (proves `(cpoe:object-placed-at ,*mug* ,(of-mug)))))", "(T NIL)"),
         ("(let ((before (length (desig:get-all-designators)))) (setf desig::*designators* (tg:make-weak-hash-table :weakness :key)) (let ((new (desig:an object (type cup)))) (list (> before 0) (equal (desig:get-all-designators) (list new)) (hash-table-count desig::*designators*))))", "(T T 1)"),
+        # on the counter, whether or not the place knows for what it is
+        *((f"(let ((place (desig:make-designator :location (list* (list :on (counter)) {with_for})))) (btr:remove-object *world* 'mug-1) (btr-utils:spawn-object 'bottle :bottle :pose '((0 3 2) (0 0 0 1)))"
+           " (prolog:prolog `(btr-utils:assert-object-pose-on bottle ,place)) (near 0.85 (- (cl-transforms:z (btr:bounding-box-center (btr:aabb (named 'bottle)))) (/ (cl-transforms:z (btr:bounding-box-dimensions (btr:aabb (named 'bottle)))) 2))))", "T")
+          for with_for in ("nil", "(let ((?n 'bottle)) (list (list :for (desig:an object (type bottle) (name ?n)))))", "'((:side :left))")),
         # motions of the projection
         ("(pr2-proj:with-projected-robot (pr2-proj::move-torso 0.2) (near 0.2 (btr:joint-state (btr:get-robot-object) \"torso_lift_joint\")))", "T"),
         ("(pr2-proj:with-simulated-robot (pr2-proj::move-torso 0.5))", "Torso goal 0.5 was out of joint limits"),
