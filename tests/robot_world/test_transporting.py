@@ -358,3 +358,28 @@ def test_a_spoon_is_transported_out_of_its_drawer_which_is_closed_again(ask):
 def test_what_is_no_drawer_is_told_before_anything_moves(ask, name, text):
     assert text in ask(manipulate("accessing", name))
     assert ask("(cl-transforms:x (cl-transforms:origin (btr:pose (btr:get-robot-object))))") == "0.0d0"
+
+
+PICKING = """
+(with-simulated-robot
+  (pp-plans:park-arms)
+  (let ((?stand (cl-transforms-stamped:pose->pose-stamped "map" 0.0 (btr:ensure-pose '((0.75 0.6 0) (0 0 0 1))))) (?there (at 1.45 0.6 0.87)))
+    (perform (a motion (type moving-torso) (joint-angle 0.25)))
+    (perform (an action (type going) (target (a location (pose ?stand)))))
+    (perform (an action (type looking) (target (a location (pose ?there)))))
+    (let ((?thing (perform (an action (type detecting) (object (an object (type {kind})))))))
+      (perform (an action (type picking-up) (arm right) (object ?thing)))
+      (pp-plans:park-arms))))
+"""
+
+
+@pytest.mark.parametrize(("kind", "held"), [("bowl", True), ("spoon", True), ("fork", False)])
+def test_friction_holds_a_bowl_by_its_rim_and_a_spoon_by_its_handle_and_what_slips_is_a_failure(physical, kind, held):
+    """A fork lies across the fingers of the grasp that is known for it."""
+    spawn(physical, "thing", kind, 1.45, 0.6)
+    answer = physical(PICKING.format(kind=kind))
+    assert physical("(held)") == ("(THING)" if held else "NIL")
+    if held:
+        assert answer == "NIL" and float(physical("(place-of 'thing)").strip("()").split()[2]) > 1.0
+    else:
+        assert answer == "GRIPPER-CLOSED-COMPLETELY: In the physical world TRANSPORTING::THING slipped out of the :RIGHT hand."
