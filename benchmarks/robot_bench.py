@@ -22,6 +22,7 @@ from cramhy_runtime.robot_world.costmaps.costmap import LocationCostmap
 from cramhy_runtime.robot_world.costmaps.costs import Gauss
 from cramhy_runtime.robot_world.inverse_kinematics import Reach
 from cramhy_runtime.robot_world.mujoco_parts import mujoco
+from cramhy_runtime.robot_world.physical import engine as physical
 from cramhy_runtime.robot_world.physical.trajectory import Trajectory
 from cramhy_runtime.robot_world.physical.world import TICK, PhysicalWorld
 from cramhy_runtime.robot_world.placements import Placement, placement
@@ -88,22 +89,23 @@ def reaching(table: Table) -> None:
 
 
 def steps(table: Table) -> None:
-    world = kitchen()
-    world.put("bottle", placement((0.0, 0.5, 30.0)))  # it falls all the time
-    scene = world.scene
-    model, data, step = scene.model, scene.data, mujoco.mj_step
+    """Both falls begin at the same place: a step costs more or less, depending on where the bottle is."""
+    world, high = kitchen(), placement((0.0, 0.5, 30.0))  # it falls all the time
+    world.put("bottle", high)
+    model, data, step = world.scene.model, world.scene.data, mujoco.mj_step
 
     def bare(count: int) -> None:
-        scene.place()
+        world.put("bottle", high)
+        world.scene.place()
         for _ in range(count):
             step(model, data)
 
     def work(count: int) -> None:
-        world.put("bottle", placement((0.0, 0.5, 30.0)))
+        world.put("bottle", high)
         world.simulate(count * STEP)
 
     def begin() -> None:
-        world.put("bottle", placement((0.0, 0.5, 30.0)))
+        world.put("bottle", high)
         world.simulate(STEP)
 
     beside(table, "a step of the world, while a bottle falls", work, bare, 500)
@@ -129,26 +131,43 @@ def beside(table: Table, name: str, work, bare, count: int) -> None:
 
 
 def physical_steps(table: Table) -> None:
-    """Steps of a physical world with the PR2, whose torso goes up and down, in the kernel's ticks, without Lisp."""
+    """Steps of a physical world with the PR2, whose torso goes up, in the kernel's ticks, without Lisp.
+
+    Bare MuJoCo gets the same targets of the servos from the same state on.
+    """
     world = PhysicalWorld()
     world.add_machine("kitchen", models.described("kitchen"), fixed=True)
     world.add_machine("pr2", models.described("pr2"))
     world.add_item("bottle", models.object_shapes("bottle"), placement((-2.0, -0.9, 0.83)), types=("bottle",))
     world.drive_with("pr2", RobotParts("torso_lift_joint", "head_pan_joint", "head_tilt_joint", (), {}))
     world.simulate(3)
-    engine, step = world.engine, mujoco.mj_step
+    model, data, step, servo = world.engine.model, world.engine.data, mujoco.mj_step, world.engine.servos["pr2"]["torso_lift_joint"]
+    whole, controls = mujoco.mjtState.mjSTATE_INTEGRATION, data.ctrl.copy()
+    state = np.zeros(mujoco.mj_stateSize(model, whole))
+    mujoco.mj_getState(model, data, state, whole)
+
+    def up() -> Trajectory:
+        mujoco.mj_setState(model, data, state, whole)
+        data.ctrl[:] = controls
+        now = world.engine.joint("pr2", "torso_lift_joint")
+        return Trajectory(("torso_lift_joint",), [np.array([now]), np.array([now + 0.1])], np.array([0.013]))
 
     def work(count: int) -> None:
-        now = np.array([engine.joint("pr2", "torso_lift_joint")])
-        trajectory = Trajectory(("torso_lift_joint",), [now, np.array([0.15 if now[0] < 0.1 else 0.05])], np.array([0.013]))
+        trajectory = up()
         world.follow("pr2", trajectory)
-        for _ in range(count * 8 // 24):  # steps of eight milliseconds, ticks of three of them
+        for _ in range(count // 3):  # a tick has three steps
             world.advance(TICK)
         world.leave(trajectory)
 
+    trajectory = up()
+    targets = [float(trajectory.after(physical.STEP)[0]) for _ in range(900)]
+
     def bare(count: int) -> None:
-        for _ in range(count):
-            step(engine.model, engine.data)
+        up()
+        control = data.ctrl
+        for target in targets[:count]:
+            control[servo] = target
+            step(model, data)
 
     beside(table, "a step of the physical world, servos at work", work, bare, 900)
     measured(table, "a copy of the physical world", repeat(world.copy), 100, 1000)

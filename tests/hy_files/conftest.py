@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import importlib
+import itertools
 import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from cramhy_runtime import kernel
+from cramhy_runtime.session import boot
 from systems import RUNS_HY_FILES, WHY_NO_HY_FILES
 
 ROOT = Path(__file__).parents[2]
@@ -20,6 +24,30 @@ def pytest_collection_modifyitems(items):
     for item in items:
         if item.path.parent == Path(__file__).parent:
             item.add_marker(WITHOUT_HY)
+
+
+_numbers = itertools.count(1)
+
+
+@pytest.fixture
+def load(tmp_path, monkeypatch):
+    """``load(text)``: a module made of a Hy file with that text behind ``(require cramhy *)``."""
+    boot()
+    kernel.start()
+    monkeypatch.syspath_prepend(str(tmp_path))
+    made = []
+
+    def load(text):
+        name = f"names_of_ours_{next(_numbers)}"
+        (tmp_path / f"{name}.hy").write_text(f"(require cramhy *)\n{text}\n")
+        importlib.invalidate_caches()
+        made.append(name)
+        return importlib.import_module(name)
+
+    yield load
+    for name in made:
+        sys.modules.pop(name, None)
+    kernel.stop()
 
 
 def environment(**variables):

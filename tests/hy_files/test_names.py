@@ -3,39 +3,12 @@
 from __future__ import annotations
 
 import ast
-import importlib
-import itertools
-import sys
 
 import hy
 import pytest
 
-from cramhy_runtime import kernel
 from cramhy_runtime.ground.packages import find_package
-from cramhy_runtime.session import Image, boot
-
-_numbers = itertools.count(1)
-
-
-@pytest.fixture
-def load(tmp_path, monkeypatch):
-    """``load(text)``: a module made of a Hy file with that text behind ``(require cramhy *)``."""
-    boot()
-    kernel.start()
-    monkeypatch.syspath_prepend(str(tmp_path))
-    made = []
-
-    def load(text):
-        name = f"names_of_ours_{next(_numbers)}"
-        (tmp_path / f"{name}.hy").write_text(f"(require cramhy *)\n{text}\n")
-        importlib.invalidate_caches()
-        made.append(name)
-        return importlib.import_module(name)
-
-    yield load
-    for name in made:
-        sys.modules.pop(name, None)
-    kernel.stop()
+from cramhy_runtime.session import Image
 
 
 def test_a_file_asks_for_the_package_once(load, tmp_path):

@@ -211,6 +211,19 @@ def test_what_cannot_be_had_says_why(write, run):
     assert caught.value.hint.startswith("osicat cannot be had in cramhy: it calls functions of C")
 
 
+@pytest.mark.parametrize("name", sorted(systems.LEFT_OUT))
+def test_systems_of_cram_that_are_left_out_are_empty(write, run, name):
+    write("lists.asd", f'(defsystem "lists" :depends-on ("{name}"))')
+    assert run("(asdf:load-system :lists)") == "T"
+    assert run(f'(asdf:system-description (asdf:find-system "{name}" nil))') == f'"{systems.LEFT_OUT[name]}"'
+
+
+def test_a_system_of_that_name_that_one_has_is_taken_before_the_empty_one(write, run):
+    write("cl-glx.asd", '(defsystem "cl-glx" :components ((:file "of-mine")))')
+    write("of-mine.lisp", "(defparameter cl-user::*glx* 5)")
+    assert run("(progn (asdf:load-system :cl-glx) cl-user::*glx*)") == "5"
+
+
 def test_a_system_that_is_not_in_its_file(write, run, tmp_path):
     write("primary.asd", '(defsystem "primary") (defsystem "primary/extra")')
     with pytest.raises(Condition) as caught:

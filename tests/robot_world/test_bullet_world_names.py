@@ -2,55 +2,10 @@
 
 import pytest
 
-from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.prolog.engine import database
-from cramhy_runtime.repl.session import Session
 from cramhy_runtime.robot_world import remarks
 
 pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
-
-WORLD = """
-(dolist (system '(:cram-pr2-description :cram-bullet-reasoning-utilities :cl-urdf)) (asdf:load-system system))
-(setf cram-tf:*fixed-frame* "map")
-(defparameter *pr2* 'cram-pr2-description:pr2)
-(defparameter *world* (setf btr:*current-bullet-world* (robot-world:make-world)))
-(btr:add-object *world* :static-plane :floor '((0 0 0) (0 0 0 1)) :normal '(0 0 1) :constant 0)
-(btr:add-object *world* :urdf :kitchen '((0 0 0) (0 0 0 1)) :urdf (robot-world:description-text :kitchen) :collision-group :static-filter)
-(btr:add-object *world* :urdf *pr2* '((0 0 0) (0 0 0 1)) :urdf (robot-world:description-text :pr2))
-(prolog:prolog '(and (btr:bullet-world ?w)
-                     (assert (btr:object ?w :mesh mug-1 ((-2 -0.9 0.86) (0 0 0 1)) :mesh :mug :mass 0.2 :color (1 0 0)))))
-(btr:simulate *world* 100)
-(defun named (name) (btr:object *world* name))
-(defun robot () (named *pr2*))
-(defun mug () (named 'mug-1))
-(defun z-of (name) (/ (fround (* 100 (cl-transforms:z (cl-transforms:origin (btr:pose (named name)))))) 100))
-(defun all (goal name) (loop for answer in (cut:force-ll (prolog:prolog goal)) collect (cdr (assoc name answer))))
-(defun proves (goal) (and (prolog:prolog goal) t))
-(defun near (a b) (< (abs (- a b)) 0.01))
-"""
-
-
-@pytest.fixture(scope="module")
-def session():
-    made = Session(time="virtual", turtlesim=False)
-    yield made
-    kernel.stop()
-
-
-@pytest.fixture
-def ask(session):
-    session.evaluate_text(WORLD)
-
-    def asked(form):
-        try:
-            return prin1_to_string(session.evaluate_text(form)[-1])
-        except Condition as problem:
-            return problem.report()
-
-    return asked
-
 
 NAMES = """*current-bullet-world* object objects find-objects add-object remove-object pose name item-type rigid-bodies rigid-body
 rigid-body-names ensure-pose ensure-vector aabb calculate-bb-dims item-dimensions simulate contact-p find-all-contacts
@@ -227,8 +182,8 @@ def test_each_name_of_the_page_is_defined(ask, package, names, there):
 
 
 @pytest.mark.parametrize("name", OF_FACTS.split())
-def test_each_predicate_of_the_page_has_clauses(session, ask, name):
-    assert database.functors[session.evaluate_text(f"'btr-utils:{name}")[0]].clauses
+def test_each_predicate_of_the_page_has_clauses(session_with_kitchen, ask, name):
+    assert database.functors[session_with_kitchen.evaluate_text(f"'btr-utils:{name}")[0]].clauses
 
 
 def test_a_hand_that_is_shown_is_heard_by_those_who_look_on(ask):

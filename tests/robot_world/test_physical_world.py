@@ -13,6 +13,7 @@ from cramhy_runtime.robot_world import models
 from cramhy_runtime.robot_world.descriptions import Shape, turned
 from cramhy_runtime.robot_world.physical.contacts import contact_shapes
 from cramhy_runtime.robot_world.physical.robot import NotReached, NoWay, PhysicalRobot, Slipped
+from cramhy_runtime.robot_world.physical.trajectory import Trajectory
 from cramhy_runtime.robot_world.physical.world import PhysicalWorld
 from cramhy_runtime.robot_world.placements import placement
 from cramhy_runtime.robot_world.simulated_robot import BeyondLimits, Blocked, NothingGripped, OutOfReach, RobotParts
@@ -250,3 +251,29 @@ def test_a_copy_is_kinematic_and_what_is_held_goes_with_it(robot):
     copy.bend("pr2", {"torso_lift_joint": 0.15})
     assert height(copy) == pytest.approx(before - 0.1, abs=0.005)
     assert height(robot.world) == pytest.approx(before, abs=1e-6)
+
+
+# ---------------------------------------------------------------------------------------------------------------- trajectories
+
+
+@pytest.mark.parametrize(
+    "postures", [[[0.0, 0.0], [1.0, -0.2]], [[0.0, 0.0], [0.5, 0.1], [0.5, 0.1], [-1.0, 2.0]], [[0.3, 0.1], [0.301, 0.1]]]
+)
+def test_joints_go_softly_from_posture_to_posture_and_none_is_too_fast(postures):
+    speeds, step = np.array([0.5, 2.0]), 0.008
+    trajectory = Trajectory(("a", "b"), [np.array(posture) for posture in postures], speeds)
+    way = [np.array(postures[0])]
+    while not trajectory.done:
+        way.append(trajectory.after(step))
+        assert trajectory.passed == pytest.approx(min(step * (len(way) - 1), trajectory.seconds))
+    assert len(way) == pytest.approx(trajectory.seconds / step, abs=2) and np.array_equal(way[-1], postures[-1])
+    assert np.array_equal(trajectory.after(step), postures[-1])  # it stays there
+    moved = np.abs(np.diff(way, axis=0)) / step / speeds
+    assert moved.max() <= 1 + 1e-9 and moved[0].max() < 0.3 and moved[-1].max() < 0.3
+    for posture in postures:
+        assert np.abs(np.array(way) - posture).max(axis=1).min() < 0.02
+
+
+def test_a_way_of_no_length_is_done_at_once():
+    trajectory = Trajectory(("a",), [np.array([0.4]), np.array([0.4])], np.array([1.0]))
+    assert trajectory.done and trajectory.after(0.008)[0] == 0.4

@@ -54,6 +54,14 @@ SYSTEMS = """
     (perform (an action (type navigating) (location (a location (pose ?stand)))))
     (perform (an action (type turning-towards) (target (a location (pose ?there)))))
     (perform (an action (type detecting) (object (an object (type bottle)))))))
+(defun kitchen () (btr:get-environment-object))
+(defun drawer (?name) (desig:a location (in (desig:an object (type drawer) (urdf-name ?name) (part-of kitchen)))))
+(defun opened (link) (btr:joint-state (kitchen) (format nil "~a_joint" link)))
+(defun put-spoon-into (link)
+  (let ((place (cl-transforms:origin (btr:link-pose (kitchen) link))))
+    (btr-utils:spawn-object 'spoon :spoon :pose (list (list (- (cl-transforms:x place) 0.1) (cl-transforms:y place) (- (cl-transforms:z place) 0.014))
+                                                      '(0 0 0.7071068 0.7071068)))
+    (btr:attach-object (kitchen) (btr:object btr:*current-bullet-world* 'spoon) link)))
 """
 AT_SINK = "((0.8 0.7 0) (0 0 0 1))"
 
@@ -290,3 +298,88 @@ def test_looking_ahead_is_for_robots_that_are_real(ask):
                 (let ((pr2-proj-reasoning:*projection-reasoning-enabled* t))
                   (pr2-proj-reasoning:with-projected-task-tree (place) 3 (constantly 0) (count-runs place)))))))"""
     assert ask(form) == "(1 5)"
+
+
+UPPER, MIDDLE = "sink_area_left_upper_drawer_main", "kitchen_island_middle_upper_drawer_main"
+
+
+def manipulate(kind, drawer, options=""):
+    name = drawer.replace("_", "-").upper()
+    return f"(with-simulated-robot (let ((?drawer (drawer '{name}))) (perform (an action (type {kind}) (location ?drawer) {options}))))"
+
+
+@pytest.mark.parametrize(("drawer", "options"), [(UPPER, "(distance 0.3)"), (MIDDLE, "(arm right) (distance 0.25)")])
+def test_a_drawer_is_opened_and_closed_and_what_is_in_it_goes_along(ask, drawer, options):
+    ask(f'(put-spoon-into "{drawer}")')
+    before = ask("(place-of 'spoon)")
+    assert ask(manipulate("accessing", drawer, options)) == "NIL"
+    assert ask(f'(opened "{drawer}")') == ("0.3d0" if "0.3" in options else "0.25d0")
+    assert ask("(place-of 'spoon)") != before
+    assert ask(manipulate("sealing", drawer, options)) == "NIL"
+    assert (ask(f'(< -0.001 (opened "{drawer}") 0.001)'), ask("(place-of 'spoon)"), ask("(held)")) == ("T", before, "NIL")
+
+
+def test_a_spoon_is_found_in_its_drawer_and_taken_with_the_hand_that_is_free_for_closing(ask):
+    ask(f'(put-spoon-into "{UPPER}")')
+    assert ask(manipulate("accessing", UPPER, "(distance 0.3)")) == "NIL"
+    found = f"""(with-simulated-robot
+      (let* ((?drawer (drawer '{UPPER.replace("_", "-").upper()}))
+             (?spoon (perform (an action (type searching) (object (an object (type spoon))) (location ?drawer)))))
+        (perform (an action (type fetching) (arm left) (object ?spoon)))
+        (desig:desig-prop-value ?spoon :name)))"""
+    assert (ask(found), ask("(held)")) == ("SPOON", "(SPOON)")
+    sealing = "(let ((?drawer (drawer 'x))) (fourth (reference (an action (type sealing) (location ?drawer)))))"
+    assert ask(sealing) == ":RIGHT"
+    assert ask(manipulate("sealing", UPPER, "(distance 0.3)")) == "NIL"
+    assert (ask(f'(< -0.001 (opened "{UPPER}") 0.001)'), ask("(held)")) == ("T", "(SPOON)")
+
+
+def test_a_spoon_is_transported_out_of_its_drawer_which_is_closed_again(ask):
+    ask(f'(put-spoon-into "{UPPER}")')
+    transport = f"""(with-simulated-robot
+      (let ((?drawer (drawer '{UPPER.replace("_", "-").upper()})) (?to (at -0.9 1.2 0.87)))
+        (perform (an action (type transporting) (object (an object (type spoon))) (location ?drawer) (target (a location (pose ?to)))))))"""
+    assert ask(transport) == "NIL"
+    assert ask("(place-of 'spoon)").startswith("(-0.9 1.2 0.8")
+    assert (ask(f'(< -0.001 (opened "{UPPER}") 0.001)'), ask("(held)")) == ("T", "NIL")
+    answer = ask(transport)  # there is no spoon in it any more
+    assert answer.startswith("OBJECT-NOWHERE-TO-BE-FOUND")
+    assert ask(f'(< -0.001 (opened "{UPPER}") 0.001)') == "T"
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("IAI-FRIDGE-DOOR", "Manipulation of revolute joints not implemented."),
+        ("NOWHERE", "The furniture has no link nowhere, which is the :urdf-name of"),
+        ("SINK-AREA-SURFACE", "No joint moves sink_area_surface."),
+    ],
+)
+def test_what_is_no_drawer_is_told_before_anything_moves(ask, name, text):
+    assert text in ask(manipulate("accessing", name))
+    assert ask("(cl-transforms:x (cl-transforms:origin (btr:pose (btr:get-robot-object))))") == "0.0d0"
+
+
+PICKING = """
+(with-simulated-robot
+  (pp-plans:park-arms)
+  (let ((?stand (cl-transforms-stamped:pose->pose-stamped "map" 0.0 (btr:ensure-pose '((0.75 0.6 0) (0 0 0 1))))) (?there (at 1.45 0.6 0.87)))
+    (perform (a motion (type moving-torso) (joint-angle 0.25)))
+    (perform (an action (type going) (target (a location (pose ?stand)))))
+    (perform (an action (type looking) (target (a location (pose ?there)))))
+    (let ((?thing (perform (an action (type detecting) (object (an object (type {kind})))))))
+      (perform (an action (type picking-up) (arm right) (object ?thing)))
+      (pp-plans:park-arms))))
+"""
+
+
+@pytest.mark.parametrize(("kind", "held"), [("bowl", True), ("spoon", True), ("fork", False)])
+def test_friction_holds_a_bowl_by_its_rim_and_a_spoon_by_its_handle_and_what_slips_is_a_failure(physical, kind, held):
+    """A fork lies across the fingers of the grasp that is known for it."""
+    spawn(physical, "thing", kind, 1.45, 0.6)
+    answer = physical(PICKING.format(kind=kind))
+    assert physical("(held)") == ("(THING)" if held else "NIL")
+    if held:
+        assert answer == "NIL" and float(physical("(place-of 'thing)").strip("()").split()[2]) > 1.0
+    else:
+        assert answer == "GRIPPER-CLOSED-COMPLETELY: In the physical world TRANSPORTING::THING slipped out of the :RIGHT hand."

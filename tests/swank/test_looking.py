@@ -69,6 +69,13 @@ def test_arglists(emacs):
     assert emacs.call('(swank:complete-form \'("mapcar" "" swank::%cursor-marker%))') == "function lst lists)"
 
 
+def test_the_arglist_of_a_plan_is_its_own(emacs):
+    emacs.call('(swank:interactive-eval "(cpl:def-cram-function go-there (?place &key (speed 1)) ?place)")')
+    assert emacs.call('(swank:operator-arglist "go-there" "CL-USER")') == "(go-there ?place &key (speed 1))"
+    emacs.call('(swank:interactive-eval "(defun go-there (&optional x) x)")')
+    assert emacs.call('(swank:operator-arglist "go-there" "CL-USER")') == "(go-there &optional x)"
+
+
 # ---------------------------------------------------------------------------------------------------------------------- finding
 
 

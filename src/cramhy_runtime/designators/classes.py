@@ -318,6 +318,15 @@ def living():
     return [designator for reference in list(_live.value) if (designator := reference()) is not None]
 
 
+def keep_living(kept):
+    """Let `get_all_designators` tell of no designator that exists now, save those in ``kept``."""
+    kept = {id(designator) for designator in kept}
+    living_ones = _live.value
+    for reference in list(living_ones):
+        if id(reference()) not in kept:
+            living_ones.pop(reference, None)
+
+
 # ------------------------------------------------------------------------------------------------------- derived designators
 
 

@@ -275,11 +275,13 @@ class World:
         ahead.simulate(5.0)
         return self.item(name).placement.near(ahead.item(name).placement, metres, radians)
 
-    def copy(self) -> World:
-        """A world with the same things at the same places, which goes its own way."""
-        new = World()
-        new.ignored = list(self.ignored)
+    def copy(self, into: World | None = None) -> World:
+        """A world with the same things at the same places, which goes its own way. ``into``: a kinematic world that becomes it."""
+        new = World() if into is None else into
+        new.things, new.ignored, new.stuck, new._scene, new._placed = {}, list(self.ignored), [], None, False
         for name, thing in self.things.items():
             new.things[name] = copied = thing.copy()
             copied.world = new
+        if into is not None:
+            into._tell()
         return new

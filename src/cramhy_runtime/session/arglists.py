@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cramhy_runtime.cpl.forms.plans import plan_property
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import find_package, is_symbol, symbol_name
@@ -33,7 +34,15 @@ def arglist(symbol):
     if function is None or isinstance(function, UndefinedFunction):
         shape = SPECIAL_OPERATORS_SHAPES.get(symbol_name(symbol)) if symbol in SPECIAL_OPERATORS else None
         return None if shape is None else shape.split()
-    return _of_lambda_list(lambda_list_of(function))
+    return _of_lambda_list(lambda_list_in_call(symbol, function))
+
+
+def lambda_list_in_call(symbol, function):
+    """The lambda list of ``function``, which ``symbol`` names. The function of a plan takes anything and hands it to the plan's task:
+    then it is the plan's own list (cpl.md 8.1)."""
+    found = lambda_list_of(function)
+    handed_on = isinstance(found, Cons) and symbol_name(found.car) == "&REST" and plan_property(symbol, "PLAN-TYPE") is not None
+    return plan_property(symbol, "PLAN-LAMBDA-LIST") if handed_on else found
 
 
 SPECIAL_OPERATORS_SHAPES = {

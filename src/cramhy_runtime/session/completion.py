@@ -11,6 +11,7 @@ from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda_list_of
 from cramhy_runtime.languages.hy.brackets import open_brackets
 from cramhy_runtime.languages.operators import operator_of
+from .arglists import lambda_list_in_call
 
 _WORD = re.compile(r"""[^\s()'"`,;]*$""")
 _HEAD = re.compile(r"""\(([^\s()\[\]{}'"`,;]+)\s""")
@@ -94,7 +95,7 @@ def keywords_of_symbol(symbol):
     function = getattr(symbol, "function", None)
     if macro is None and (function is None or isinstance(function, UndefinedFunction)):
         return None
-    return _keywords_in(lambda_list_of(macro or function))
+    return _keywords_in(lambda_list_of(macro) if macro is not None else lambda_list_in_call(symbol, function))
 
 
 def _keywords_in(lambda_list):

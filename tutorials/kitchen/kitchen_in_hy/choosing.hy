@@ -1,7 +1,6 @@
 (require cramhy *)
 (import cram-robot-interfaces
         cram-object-interfaces [get-object-pose]
-        cramhy_runtime.ground.data [lisp-list]
         cramhy_runtime.robot.worlds [text])
 
 (defn side-of [thing]
@@ -37,5 +36,5 @@
 
 (defn ways-to-take [thing]
   "Pairs of an arm and a grasp by which a thing that was detected may be taken, the best first."
-  (lfor solution (force-ll (prolog (lisp-list (lisp way-to-take) thing (lisp ?arm) (lisp ?grasp))))
+  (lfor solution (force-ll (prolog `(way-to-take ~thing ?arm ?grasp)))
     #((text (var-value '?arm solution)) (text (var-value '?grasp solution)))))

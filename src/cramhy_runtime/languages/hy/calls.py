@@ -28,7 +28,7 @@ from cramhy_runtime.kernel.budget import budget
 from cramhy_runtime.process_modules import AsynchronousModule
 from ..commonlisp.compiler.support import BlockExit, block_value, end_block, return_from
 from ..commonlisp.faces.prolog.macro_support import collect_fact, fact_collector, finish_fact_group
-from .lisp_data import choose_package, constant, plan_package
+from .lisp_data import choose_package, constant, inserted, plan_package
 
 __all__ = [
     "AsynchronousModule",
@@ -54,13 +54,16 @@ __all__ = [
     "failure_type",
     "finish_fact_group",
     "function",
+    "inserted",
     "items",
     "lispify",
     "lisp_list",
+    "lisp_list_ending",
     "make_tag_task",
     "prepare_tag",
     "publish",
     "refill",
+    "spliced",
     "use_package",
     "users_or_ours",
     "wait_for",
@@ -147,6 +150,16 @@ def items(elements):
 def lisp_list(*items):
     """A list of Lisp."""
     return list_from(items)
+
+
+def lisp_list_ending(tail, *items):
+    """A list of Lisp whose last pair ends with ``tail``."""
+    return list_from(items, tail)
+
+
+def spliced(values, package):
+    """The values of ``~@values`` in a template, each as `inserted` has it."""
+    return [inserted(value, package) for value in values or ()]
 
 
 def publish(symbol, function_):

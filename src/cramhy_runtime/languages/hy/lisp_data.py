@@ -79,8 +79,9 @@ def symbol_of(text, package):
 
 
 def lisp_data(model, package):
-    """The Lisp object that a Hy model means as data: brackets and parentheses are lists, names are symbols of ``package``."""
-    if isinstance(model, (models.Expression, models.List, models.Tuple)):
+    """The Lisp object that a Hy model means as data: brackets and parentheses are lists, names are symbols of ``package``. A model that was
+    made by Hy's own backquote may have lists of Python in it."""
+    if isinstance(model, (models.Expression, models.List, models.Tuple)) or type(model) in (list, tuple):
         items = list(model)
         if len(items) > 2 and items[-2] == models.Symbol(".") and items[0] != models.Symbol("."):
             return list_from([lisp_data(item, package) for item in items[:-2]], lisp_data(items[-1], package))
@@ -91,6 +92,56 @@ def lisp_data(model, package):
     if isinstance(data, models.Object):  # a set, a dictionary, an f-string, bytes
         raise ValueError(f"{type(model).__name__.lower()}s are no Lisp data; write a list, a name, a keyword, a string or a number")
     return data
+
+
+def inserted(value, package):
+    """The Lisp object that a value of Hy stands for inside of Lisp data: lists of Python and Hy's models become lists and symbols of
+    Lisp, ``package`` being the name of the package of these symbols; any other object stays."""
+    return lisp_data(value, plan_package(package)) if isinstance(value, (models.Object, list, tuple)) else value
+
+
+# --------------------------------------------------------------------------------------------------------------- backquotes
+
+
+def is_backquoted(model):
+    """Whether a model is a template, `` `(a ~b)``."""
+    return _is_call_of("quasiquote", model)
+
+
+def _is_call_of(name, model):
+    return isinstance(model, models.Expression) and len(model) == 2 and model[0] == models.Symbol(name)
+
+
+def template_form(model, package):
+    """A Hy form for the Lisp data that a template means: what stands behind ``~`` is evaluated, what stands behind ``~@`` is spliced in."""
+    if _is_call_of("unquote", model):
+        return insertion("inserted", model[1], package)
+    if not _has_insertions(model):
+        return constant_form(lisp_data(model, package))
+    items, tail = list(model), None
+    if len(items) > 2 and items[-2] == models.Symbol(".") and items[0] != models.Symbol("."):
+        items, tail = items[:-2], items[-1]
+    parts = [_part(item, package) for item in items]
+    if tail is None:
+        return models.Expression([call_of("lisp-list"), *parts])
+    return models.Expression([call_of("lisp-list-ending"), template_form(tail, package), *parts])
+
+
+def _part(item, package):
+    if _is_call_of("unquote-splice", item):
+        return models.Expression([models.Symbol("unpack-iterable"), insertion("spliced", item[1], package)])
+    return template_form(item, package)
+
+
+def insertion(function, code, package):
+    """A Hy form that evaluates ``code`` and makes Lisp data of its value, by the function of `calls` that is named."""
+    return models.Expression([call_of(function), code, models.String(package.name)])
+
+
+def _has_insertions(model):
+    if isinstance(model, (models.Expression, models.List, models.Tuple)):
+        return _is_call_of("unquote", model) or _is_call_of("unquote-splice", model) or any(map(_has_insertions, model))
+    return False
 
 
 # --------------------------------------------------------------------------------------------------------------- constants

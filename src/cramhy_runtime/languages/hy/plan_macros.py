@@ -26,7 +26,7 @@ from ..operators.grammar import WrongShape
 from . import calls
 from .call_parts import lisp_call
 from .expansion import expand, expression, word
-from .lisp_data import call_of, constant_form, function_form, lisp_data, package_of
+from .lisp_data import call_of, constant_form, function_form, insertion, is_backquoted, lisp_data, package_of, template_form
 from .module_names import if_global, is_bound
 from .users_names import may_be_the_users
 
@@ -134,6 +134,8 @@ def function_macro(symbol, name=None):
             made = lisp_arguments(symbol.function, arguments, here)
         except (ValueError, Condition) as problem:
             raise refusal(_hy_compiler, _hy_compiler.this, str(problem)) from None
+        if lisp_name in OF_GOALS and made and made[0] is arguments[0]:
+            made[0] = insertion("inserted", made[0], here)
         theirs = name is not None and (may_be_the_users(name, _hy_compiler) or is_bound(_hy_compiler, mangle(name)))
         function = function_form(package, lisp_name)
         if any(map(_is_keyword, made)) and not calls.takes_keywords(symbol.function):
@@ -146,6 +148,10 @@ def function_macro(symbol, name=None):
 
     macro.symbol = symbol  # for the Tab key
     return macro
+
+
+OF_GOALS = {"PROLOG", "VAR-VALUE"}
+"""Functions whose first argument is a goal or a variable of one, which Hy code may have made as a model or as lists."""
 
 
 def _users_or(function, name, compiler):
@@ -196,6 +202,8 @@ def _argument(model, package):
     """An argument that is an object of Lisp as it stands, a quoted name or a keyword, as a constant; any other as it is."""
     if isinstance(model, models.Expression) and len(model) == 2 and model[0] == models.Symbol("quote"):
         return constant_form(lisp_data(model[1], package))
+    if is_backquoted(model):
+        return template_form(model[1], package)
     return constant_form(lisp_data(model, package)) if isinstance(model, models.Keyword) else model
 
 

@@ -1,7 +1,7 @@
 ;;;; cl-bullet: what plans use of the physics engine's binding. Here the engine is MuJoCo, below ROBOT-WORLD.
 
 (defpackage #:cl-bullet
-  (:use #:common-lisp)
+  (:use #:common-lisp #:cffi #:cffi-ros-utils)
   (:nicknames #:bullet)
   (:export #:bounding-box #:make-bounding-box #:bounding-box-center #:bounding-box-dimensions #:aabb #:pose #:points
            #:bt-world #:copy-world #:step-simulation))
@@ -17,7 +17,8 @@
   (destructuring-bind (center dimensions) center-and-dimensions
     (make-bounding-box :center center :dimensions dimensions)))
 
-(deftype bt-world () 'robot-world:world)
+(eval-when (:compile-toplevel :load-toplevel :execute)
+  (setf (find-class 'bt-world) (find-class 'robot-world:world)))
 
 (defgeneric aabb (object)
   (:documentation "The bounding box of OBJECT, along the axes of the world.")
@@ -32,9 +33,8 @@
   (:method (new-value (thing robot-world:thing)) (robot-world:set-thing-pose thing new-value)))
 
 (defun copy-world (world &optional destination)
-  "A copy of WORLD, with all that is in it, which goes its own way."
-  (declare (ignore destination))
-  (robot-world:copy-world world))
+  "A copy of WORLD, with all that is in it, which goes its own way. DESTINATION: a world that becomes the copy."
+  (robot-world:copy-world world destination))
 
 (defun step-simulation (world seconds)
   "Let what is free in WORLD fall for SECONDS."

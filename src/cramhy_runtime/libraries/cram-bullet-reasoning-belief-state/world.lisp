@@ -32,16 +32,21 @@
   (or *kitchen-urdf*
       (setf *kitchen-urdf* (robot-world:read-description (parameter-text *kitchen-parameter* "kitchen.urdf") *kitchen-parameter*))))
 
+(defun there (type name &rest arguments)
+  "The object of that name in the current world, which is added at the origin where there is none."
+  (or (btr:object btr:*current-bullet-world* name)
+      (apply #'btr:add-object btr:*current-bullet-world* type name '((0 0 0) (0 0 0 1)) arguments)))
+
 (defun setup-world-database ()
-  "Fill the current world with the kitchen and the robot, whose arms are parked."
+  "Fill the current world with the kitchen and the robot, whose arms are parked. What is there stays where it is."
   (let ((world btr:*current-bullet-world*)
         (robot (btr:get-robot-name)))
-    (btr:add-object world :static-plane :floor '((0 0 0) (0 0 0 1)) :normal '(0 0 1) :constant 0)
-    (btr:add-object world :urdf :kitchen '((0 0 0) (0 0 0 1))
-                    :urdf (kitchen-urdf) :collision-group :static-filter :collision-mask '(:default-filter :character-filter) :compound t)
+    (there :static-plane :floor :normal '(0 0 1) :constant 0)
+    (there :urdf :kitchen :urdf (kitchen-urdf) :collision-group :static-filter
+                          :collision-mask '(:default-filter :character-filter) :compound t)
     (if (null robot)
         (warn "ROBOT was not defined. Have you loaded a robot package?")
-        (let ((machine (btr:add-object world :urdf robot '((0 0 0) (0 0 0 1)) :urdf (robot-urdf))))
+        (let ((machine (there :urdf robot :urdf (robot-urdf))))
           (dolist (solution (cut:force-ll (prolog `(cram-robot-interfaces:robot-arms-parking-joint-states ,robot ?states ?arm))))
             (btr:set-robot-state-from-joints (cut:var-value '?states solution) machine))
           (btr:set-robot-state-from-joints `((,(torso-joint robot) 0.15)) machine)))

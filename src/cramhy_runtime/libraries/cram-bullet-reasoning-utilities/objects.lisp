@@ -28,7 +28,9 @@
     (bullet-world ?world)
     (current-designator ?location ?current)
     (desig-reference ?current ?pose)
-    (assert ?world (object-pose-on ?name ?pose))))
+    (-> (and (desig-prop ?current (:for ?)) (not (desig-prop ?current (:pose ?))))
+        (assert ?world (object-pose ?name ?pose)) ; a place for something is already as high as its origin is to be
+        (assert ?world (object-pose-on ?name ?pose)))))
 
 (defun answer (variable goal)
   "The value of VARIABLE in the first solution of GOAL, or nil."

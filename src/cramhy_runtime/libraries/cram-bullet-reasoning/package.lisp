@@ -33,7 +33,7 @@
    #:bullet-world #:clear-bullet-world #:assert #:retract #:%object #:object-pose #:object-pose-on #:item-type #:object-type #:object-bottom-pose
    #:contact #:object-not-in-collision #:stable #:stable-items #:above #:below #:supported-by #:supporting #:visible #:visible-from
    #:occluding-object #:link #:attached #:step #:simulate-realtime #:head-pointing-at #:execute #:open #:close #:debug-window
-   #:debug-costmap #:poses-on #:n-poses-on #:random-poses-on #:desig-poses
+   #:debug-costmap #:poses-on #:n-poses-on #:random-poses-on #:desig-poses #:available-arms #:semantic-map #:container
    #:reachable #:point-reachable #:pose-reachable #:blocking #:valid-grasp #:object-grasp))
 
 (in-package #:cram-bullet-reasoning)

@@ -291,7 +291,19 @@
                   (bounding-box-center (aabb thing))))))
     (>= (height object) (height other))))
 
-(def-fact-group bullet-robots (link link-pose joint-state attached)
+(defun free-arms ()
+  "The arms of the robot that hold nothing in the current world."
+  (let* ((robot (get-robot-object))
+         (holding (and robot (reduce #'append (mapcar #'rest (attached-objects robot))))))
+    (loop for solution in (force-ll (prolog '(and (robot ?robot) (arm ?robot ?arm) (end-effector-link ?robot ?arm ?link))))
+          unless (member (var-value '?link solution) holding :test #'equal)
+            collect (var-value '?arm solution))))
+
+(def-fact-group bullet-robots (link link-pose joint-state attached available-arms)
+  (<- (available-arms ?object ?arms)
+    (lisp-fun free-arms ?arms)
+    (lisp-pred identity ?arms))
+
   (<- (link ?world ?robot ?link)
     (%object ?world ?robot ?object)
     (lisp-type ?object robot-object)

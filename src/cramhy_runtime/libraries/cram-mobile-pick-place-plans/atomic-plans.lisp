@@ -38,14 +38,16 @@
         (tell cpoe:robot-state-changed)))))
 
 (cpl:def-cram-function move-arms-in-sequence (left-poses right-poses &optional ?collision-mode)
-  "Move the tools along poses, each arm along its own. That the last ones are reached is what counts: failures on the way are passed over."
+  "Move the tools along poses, each arm along its own. That the last ones are reached is what counts: failures on the way are passed over,
+but when something is lifted, whose ?COLLISION-MODE is :ALLOW-HAND, not that it has slipped out of the hand."
   (loop for (left-pose . more-left) on (pad left-poses right-poses)
         for (right-pose . more-right) on (pad right-poses left-poses)
         do (if (or more-left more-right)
                (cpl:with-failure-handling
                    ((common-fail:manipulation-low-level-failure (failure)
-                      (roslisp:ros-warn (pick-place move-arms-in-sequence) "~a~%Ignoring." failure)
-                      (return)))
+                      (unless (and (eq ?collision-mode :allow-hand) (typep failure 'common-fail:gripper-closed-completely))
+                        (roslisp:ros-warn (pick-place move-arms-in-sequence) "~a~%Ignoring." failure)
+                        (return))))
                  (move-arms left-pose right-pose ?collision-mode))
                (move-arms left-pose right-pose ?collision-mode))))
 

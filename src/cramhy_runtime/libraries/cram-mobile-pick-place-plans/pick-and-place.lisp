@@ -18,12 +18,13 @@
 (defun name-of (object-designator)
   (desig:desig-prop-value (desig:current-desig object-designator) :name))
 
-(defmacro passing-over-failures ((topic) &body body)
-  "Do BODY; what arms or grippers could not do is logged, and no matter."
+(defmacro passing-over-failures ((topic &key but) &body body)
+  "Do BODY; what arms or grippers could not do is logged, and no matter. BUT: a class of failures that do matter."
   `(cpl:with-failure-handling
        ((common-fail:manipulation-low-level-failure (failure)
-          (roslisp:ros-warn ,topic "~a~%Ignoring." failure)
-          (return)))
+          (unless (typep failure ',but)
+            (roslisp:ros-warn ,topic "~a~%Ignoring." failure)
+            (return))))
      ,@body))
 
 (defun perform-along (?type ?left-poses ?right-poses)
@@ -58,7 +59,7 @@
       (remember-grasp name arm ?grasp)
       (tell cpoe:object-attached :object-name name :arm arm)))
   (roslisp:ros-info (pick-place pick-up) "Lifting")
-  (passing-over-failures ((pick-place pick-up))
+  (passing-over-failures ((pick-place pick-up) :but common-fail:gripper-closed-completely) ; it slipped, in a physical world
     (perform-along :lifting ?left-lift-poses ?right-lift-poses)))
 
 (cpl:def-cram-function place (?object-designator ?arm

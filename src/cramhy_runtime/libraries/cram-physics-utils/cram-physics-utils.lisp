@@ -2,7 +2,7 @@
 
 (defpackage #:cram-physics-utils
   (:nicknames #:physics-utils)
-  (:use #:common-lisp)
+  (:use #:common-lisp #:cffi #:cffi-ros-utils)
   (:export #:parse-uri #:3d-model #:load-3d-model #:3d-model-dimensions))
 
 (in-package #:cram-physics-utils)

@@ -2,6 +2,11 @@
 
 (in-package #:cram-pr2-fetch-deliver-plans)
 
+(defun arm-for-furniture ()
+  "The arm that opens and closes furniture where none is said: the left one, unless it holds something and another one is free."
+  (let ((free (btr::free-arms)))
+    (if (or (null free) (member :left free)) :left (first free))))
+
 (def-fact-group fetch-and-deliver-actions (desig:action-grounding)
 
   (<- (entry-or-nil ?designator ?key ?value)
@@ -53,7 +58,7 @@
     (current-entry ?designator :location ?location)
     (current-entry ?location :in ?container)
     (once (or (spec:property ?designator (:arm ?arm))
-              (equal ?arm :left)))
+              (lisp-fun arm-for-furniture ?arm)))
     (entry-or-nil ?designator :distance ?distance))
 
   (<- (desig:action-grounding ?designator (transport ?object ?search-location ?target ?arm ?accessible))

@@ -5,7 +5,7 @@
                "cram-object-interfaces" "cram-tf" "cram-location-costmap" "cram-robot-pose-gaussian-costmap"
                "cram-btr-spatial-relations-costmap" "cram-bullet-reasoning" "cram-bullet-reasoning-belief-state"
                "cram-mobile-pick-place-plans" "cram-pr2-projection"
-               "cram-pr2-projection-reasoning")
+               "cram-pr2-projection-reasoning" "cram-pr2-environment-manipulation")
   :serial t
   :components ((:file "package")
                (:file "places")

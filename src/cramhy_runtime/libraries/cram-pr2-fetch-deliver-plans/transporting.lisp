@@ -20,8 +20,17 @@
     (exe:perform (desig:an action (type placing) (target (desig:a location (pose ?over-sink)))))
     (pp-plans:park-arms)))
 
+(defun settle-on-place-to-manipulate-from (location ?type ?container ?arm ?distance)
+  "Move LOCATION on to a solution from which the handle of a container can be moved as far as is known."
+  (or (pr2-proj-reasoning:settle-on-place
+       location (lambda ()
+                  (pr2-proj-reasoning:check-environment-manipulation-collisions
+                   (desig:an action (type ?type) (arm ?arm) (desig:when ?distance (distance ?distance)) (object ?container)))))
+      (cpl:fail 'common-fail:environment-unreachable :description "The handle is out of reach from all of the places ahead.")))
+
 (cpl:def-cram-function manipulate-environment (action-type ?object-to-manipulate ?arm ?distance)
   "Open (ACTION-TYPE is :ACCESSING) or close (:SEALING) a container, from another place each time, ten times at most."
+  (pr2-em::handle-of ?object-to-manipulate) ; an error for what is no drawer of the furniture, before anything moves
   (let ((?type (ecase action-type (:accessing :opening) (:sealing :closing)))
         (?stand (place-to-reach-from-container ?object-to-manipulate ?arm)))
     (flet ((give-up (description)
@@ -38,6 +47,7 @@
             ((let ((elsewhere (next-solution ?stand)))
                (when elsewhere (setf ?stand elsewhere)))
              (give-up "The container cannot be moved from any of the places that were tried."))
+          (settle-on-place-to-manipulate-from ?stand ?type ?object-to-manipulate ?arm ?distance)
           (exe:perform (desig:an action (type navigating) (location ?stand)))
           (let ((action (desig:an action
                                   (type ?type)

@@ -159,13 +159,22 @@ solution, TRIES times at most. NONE-LEFT and TOO-MANY are what happens when ther
             (try-placing (desig:reference action))))))
     (desig:current-desig placing-action-desig)))
 
+(defun move-joint-of (environment joint distance)
+  "Move a joint of the furniture by so many metres, with all that is in it."
+  (let ((furniture (btr:object btr:*current-bullet-world* environment)))
+    (when (and furniture (btr:joint-state furniture joint))
+      (incf (btr:joint-state furniture joint) distance))))
+
 (defun try-container (reference)
-  "Move the arms along the lists of poses in REFERENCE, what an action of opening or closing a container stands for; the gripper is open."
-  (let ((arm (find-if (lambda (part) (member part '(:left :right))) reference))
-        (lists (remove-if-not (lambda (part) (or (null part) (and (consp part) (typep (first part) 'cl-transforms:pose)))) reference)))
-    (pr2-proj::gripper-action :open arm)
-    (loop for (left right) on lists by #'cddr
-          do (move-arms-along left right '(:kitchen) :last))))
+  "Move the arms as the plan of REFERENCE, what an action of opening or closing a container stands for, would move them. The container
+moves along once it is gripped."
+  (destructuring-bind (plan arm opening distance left-reach right-reach left-grasp right-grasp left-move right-move joint environment) reference
+    (let ((pr2-proj::*frames-follow* nil))
+      (pr2-proj::gripper-action opening arm))
+    (move-arms-along left-reach right-reach '(:kitchen) :last)
+    (move-arms-along left-grasp right-grasp '(:kitchen) :last)
+    (move-joint-of environment joint (if (string= plan "CLOSE-CONTAINER") (- distance) distance))
+    (move-arms-along left-move right-move '(:kitchen) :last)))
 
 (defun check-environment-manipulation-collisions (action-desig &optional (retries 30))
   "Find a grounding of an action of opening or closing a container whose poses are reached."

@@ -4,7 +4,7 @@
 
 (defun new-transformer ()
   "A transformer that knows where the frames of the robot are."
-  (unless cram-tf:*fixed-frame*
+  (unless (and cram-tf:*fixed-frame* cram-tf:*robot-base-frame*)
     (cram-tf::set-frames))
   (let ((transformer (make-instance 'cl-tf:transformer)))
     (btr-belief:set-tf-from-bullet :transformer transformer)
@@ -17,7 +17,8 @@
   :special-variable-initializers
   ((cram-tf:*transformer* (new-transformer))
    (btr:*current-timeline* (btr:timeline-init btr:*current-bullet-world*))
-   (desig:*default-role* 'projection-role))
+   (desig:*default-role* 'projection-role)
+   (*projection-clock* (make-instance 'cram-projection:partially-ordered-clock)))
   :process-module-definitions
   (pr2-proj-navigation pr2-proj-torso pr2-proj-ptu pr2-proj-perception pr2-proj-grippers pr2-proj-arms)
   :shutdown (setf *last-timeline* btr:*current-timeline*))

@@ -139,3 +139,26 @@ failures: there was no way, or the joints did not get where they were sent."
 (defun move-with-constraints (constraints)
   (declare (ignore constraints))
   (warn "Moving with constraints is not supported in projection! Ignoring."))
+
+;;; In a physical world fingers hold a flat thing only when their tips lie beside it. The tips end before the point that grasps are told for.
+
+(defparameter *tips-before-tool* 0.009
+  "How far before the tool's point the tips of the fingers end, metres.")
+
+(defparameter *least-hold* 0.009
+  "How much of a flat thing is to be between the tips, metres.")
+
+(defun deeper (name)
+  "How much deeper than told a hand goes from above, for a thing of the current world that is to be held by friction, metres."
+  (let ((thing (and (robot-world:physical-p btr:*current-bullet-world*) (btr:object btr:*current-bullet-world* name))))
+    (if thing
+        (let ((half (/ (cl-transforms:z (btr:calculate-bb-dims thing)) 2)))
+          (max 0 (min (- (+ *tips-before-tool* *least-hold*) half) (- (+ *tips-before-tool* half) 0.002))))
+        0)))
+
+(defmethod obj-int:get-object-grasping-poses :around (name type arm (grasp (eql :top)) transform)
+  (declare (ignore type arm transform))
+  (destructuring-bind (before 2nd-before grasp-pose after 2nd-after) (call-next-method)
+    (let* ((way (cl-transforms:make-3d-vector (deeper name) 0 0))
+           (moved (cl-transforms:v+ (cl-transforms:origin grasp-pose) (cl-transforms:rotate (cl-transforms:orientation grasp-pose) way))))
+      (list before 2nd-before (cl-transforms-stamped:copy-pose-stamped grasp-pose :origin moved) after 2nd-after))))

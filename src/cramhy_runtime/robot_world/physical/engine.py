@@ -9,7 +9,7 @@ Law: `read` writes into the things what the steps moved, `write` takes over wher
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import atan2, cos, isfinite, sin
 from typing import TYPE_CHECKING
 
@@ -39,7 +39,22 @@ _BASE_EFFORT = (2_000.0, 2_000.0, 1_000.0)
 _LEVER = 0.1  # metres from a finger's joint to its tip
 _WEAK_GRIP = 35.0  # N
 _JOINTS = {"prismatic": mujoco.mjtJoint.mjJNT_SLIDE, "revolute": mujoco.mjtJoint.mjJNT_HINGE, "continuous": mujoco.mjtJoint.mjJNT_HINGE}
+_STILL = 1e-6  # metres and radians: a base that moves less stands still
 _SPEED = 0.02  # metres and radians a second: below it an item is at rest
+
+
+@dataclass
+class _Robot:
+    """Where the state of a machine with servos is: its base begins at ``base`` in qpos, its joint ``numbers[i]`` is at ``places[i]``."""
+
+    machine: Machine
+    base: int
+    places: np.ndarray
+    numbers: np.ndarray
+    x: float = 0.0
+    y: float = 0.0
+    turn: float = 0.0
+    placement: Placement | None = None  # what was read of the base at last
 
 
 def used_joints(machine: Machine, parts: RobotParts) -> tuple[list[str], dict[str, str]]:
@@ -207,9 +222,10 @@ class Engine:
         for machine in self.things:
             joints = dict(self._joints.get(machine.name, {}))
             if joints:
-                base = [joints.pop(name) for name in BASE]
+                base, *_ = [joints.pop(name) for name in BASE]  # one behind the other
                 numbers = [machine.skeleton.joint_numbers[name] for name in joints]
-                self._read_from.append((machine, np.array(base), np.array([*joints.values()], int), np.array(numbers, int)))
+                self._read_from.append(_Robot(machine, base, np.array([*joints.values()], int), np.array(numbers, int)))
+        self._falling = [(item, start) for item, mocap, start, _ in self._items if mocap < 0]
         self._free = np.array([start + axis for _, mocap, _, start in self._items if mocap < 0 for axis in range(6)], int)
 
     def _tune(self) -> None:
@@ -272,16 +288,18 @@ class Engine:
         return int(self.model.joint(f"{self.things.index(machine)} {name}").id)
 
     def read(self) -> None:
-        """Write into the things where they are now."""
-        qpos = self.data.qpos
-        for item, mocap, start, _ in self._items:
-            if mocap < 0:
-                now = qpos[start : start + 7].copy()
-                item.placement = Placement(now[:3], now[3:])
-        for machine, base, places, numbers in self._read_from:
-            x, y, turn = qpos[base].tolist()
-            machine.stand(Placement(np.array([x, y, machine.placement.position[2]]), np.array([cos(turn / 2), 0.0, 0.0, sin(turn / 2)])))
-            machine.take(numbers, qpos[places])
+        """Write into the things where they are now. One copy has it all: what is done between steps is slow, since they fill the caches."""
+        now = self.data.qpos.copy()
+        for item, start in self._falling:
+            item.placement = Placement(now[start : start + 3], now[start + 3 : start + 7])
+        for robot in self._read_from:
+            x, y, turn = now[robot.base : robot.base + 3].tolist()
+            if robot.machine.placement is not robot.placement or abs(x - robot.x) + abs(y - robot.y) + abs(turn - robot.turn) > _STILL:
+                robot.x, robot.y, robot.turn = x, y, turn
+                height = robot.machine.placement.position[2]
+                robot.placement = Placement(np.array([x, y, height]), np.array([cos(turn / 2), 0.0, 0.0, sin(turn / 2)]))
+                robot.machine.stand(robot.placement)
+            robot.machine.take(robot.numbers, now[robot.places])
 
     def _go_on_as(self, before: Engine) -> None:
         for name, servos in self.servos.items():

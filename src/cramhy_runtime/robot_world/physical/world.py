@@ -197,8 +197,8 @@ class PhysicalWorld(World):
         found = [other for link, other, _ in self.engine.touching(self.machine(name)) if link in links and other is not None]
         return list({id(thing): thing for thing in found}.values())
 
-    def copy(self) -> World:
+    def copy(self, into: World | None = None) -> World:
         """A kinematic world with the same things at the same places, to look ahead; what the robot holds goes with it there."""
         for machine in self.machines():
             self._refresh_grips(machine)
-        return super().copy()
+        return super().copy(into)

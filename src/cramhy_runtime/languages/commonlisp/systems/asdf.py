@@ -30,7 +30,7 @@ def find_system(name, error_p=True):
     if isinstance(name, Component):
         return name
     known = component_name(name)
-    if not truth(error_p) and not systems.is_built_in(known) and systems.find_asd(known) is None:
+    if not truth(error_p) and not systems.is_built_in(known) and known not in systems.LEFT_OUT and systems.find_asd(known) is None:
         return systems.systems.get(known)
     return systems.find_system(known)
 

@@ -49,8 +49,19 @@ NOT_TO_BE_HAD = {
     "sb-bsd-sockets": "it is part of SBCL; Python's socket module does its work",
     "usocket": "it opens sockets by functions of the system; Python's socket module does its work",
     "osicat": "it calls functions of C, which cramhy cannot; Python's os module does its work",
+    "gsll": "it calls the GNU Scientific Library; cram-math, and numpy by (py:import numpy), do its work",
+    "cl-opengl": "it draws with functions of C; the page of cramhy shows worlds, and btr:save-picture writes pictures",
+    "cl-glut": "it opens windows with functions of C; the page of cramhy shows worlds",
 }
 """Systems that cannot be had here, and why."""
+LEFT_OUT = {
+    "cl-glx": "It opens windows for worlds on X11. The page of cramhy shows worlds.",
+    "cram-json-prolog": "It asks KnowRob's Prolog by ROS. Here is no KnowRob.",
+    "cram-semantic-map": "It reads the furniture from KnowRob. Here a URDF describes it.",
+    "cram-semantic-map-utils": "It reads the furniture from KnowRob. Here a URDF describes it.",
+    "synchronization-tools": "It waits for messages and transforms that belong together.",
+}
+"""Systems of CRAM that are empty here, with their descriptions: others list them, and nothing that runs here needs what they define."""
 
 
 def provide_system(names):
@@ -129,6 +140,9 @@ LIBRARY_PACKAGES = {
     "PR2-PROJ-REASONING": "cram-pr2-projection-reasoning",
     "CRAM-PR2-FETCH-DELIVER-PLANS": "cram-pr2-fetch-deliver-plans",
     "PR2-FD-PLANS": "cram-pr2-fetch-deliver-plans",
+    "CRAM-PR2-ENVIRONMENT-MANIPULATION": "cram-pr2-environment-manipulation",
+    "PR2-EM": "cram-pr2-environment-manipulation",
+    "PR2-ENV-MAN": "cram-pr2-environment-manipulation",
     "FIVEAM": "fiveam",
     "5AM": "fiveam",
     "IT.BESE.FIVEAM": "fiveam",
@@ -146,6 +160,7 @@ LIBRARY_PACKAGES = {
     "CLOSER-COMMON-LISP-USER": "closer-mop",
     "C2CL-USER": "closer-mop",
     "CFFI": "cffi",
+    "CFFI-ROS-UTILS": "cffi-ros-utils",
     "CRAM-COMMON-FAILURES": "cram-common-failures",
     "COMMON-FAIL": "cram-common-failures",
     "CRAM-DESIGNATOR-SPECIFICATION": "cram-designator-specification",
@@ -231,6 +246,7 @@ def known_systems():
         *built_in,
         *(name for _, names in _finders for name in names()),
         *(name.removesuffix(".asd") for name in libraries()),
+        *LEFT_OUT,
         *(path.stem for crawl in crawls() for path in _asd_files(crawl)),
     }
 
@@ -281,6 +297,9 @@ def find_system(name, required_by=None):
     if path is not None:
         load_asd(path)
     system = systems.get(name)
+    if system is None and name in LEFT_OUT:
+        system = System(name, Path(__file__).parents[3])
+        system.options["DESCRIPTION"] = LEFT_OUT[name]
     if system is None:
         by = f", required by #<SYSTEM {required_by!r}>".replace("'", '"') if required_by else ""
         return error(MissingComponent(f"Component ~S not found{by}", name), hint=_why_missing(name, path, required_by))

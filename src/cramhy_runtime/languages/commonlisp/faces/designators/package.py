@@ -5,6 +5,7 @@ from __future__ import annotations
 from ...packages.face_definition import define_face
 from ...syntax.operator_macros import export
 from ....operators import DESIGNATORS
+from cramhy_runtime.cpl.task_variables import define_task_state
 from cramhy_runtime.utilities.symbols import CUT
 from cramhy_runtime.designators import classes, equating, locations, resolution
 from . import language_support, macro_support, readers, syntax
@@ -54,6 +55,7 @@ def define_faces():
         internal=" ".join(INTERNAL),
         imports={"CRAM-UTILITIES": "timestamp", "CRAM-PROLOG": "object-id", "COMMON-LISP": "when"},
     )
+    define_task_state(desig, "*DESIGNATORS*", readers.table_of_designators, readers.forget_designators)
     sym("CUT::TIMESTAMP").function = readers.timestamp
     readers.open_readers()
     define_face("CRAM-DESIGNATOR-PROPERTIES", ["DESIG-PROPS"], use=["COMMON-LISP"])

@@ -11,7 +11,8 @@ from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import UNBOUND
 from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
-from cramhy_runtime.designators.classes import Designator, DesignatorError, ObjectDesignatorData
+from cramhy_runtime.ground.hash_tables import HashTable, need_table
+from cramhy_runtime.designators.classes import Designator, DesignatorError, ObjectDesignatorData, keep_living, living
 from cramhy_runtime.designators.symbols import sym
 
 
@@ -41,6 +42,21 @@ object_pose = _reader("object-pose", ObjectDesignatorData, "pose", "The pose tha
 object_color = _reader("object-color", ObjectDesignatorData, "color", "The colour that perception found.")
 object_identifier = _reader("object-identifier", ObjectDesignatorData, "object_identifier", "The name that perception gave.")
 designator = _reader("designator", DesignatorError, "designator", "The designator of a ``designator-error``.")
+
+
+def table_of_designators():
+    """``desig::*designators*``: a new table with each living designator as a key, which it does not keep alive."""
+    table = HashTable("EQ", weakness="KEY")
+    for one in living():
+        table.put(one, True)
+    return table
+
+
+def forget_designators(table):
+    """``(setf desig::*designators* table)``: from now on those count that are keys of ``table``, and those that are made later."""
+    if not isinstance(table, HashTable):
+        need_table(table)
+    keep_living(table.keys())
 
 
 def open_readers():

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import Cons, DoubleFloat, FreshString, MultipleValues, boolean, lisp_list, list_from
-from cramhy_runtime.ground.packages import is_symbol, symbol_name
+from cramhy_runtime.ground.packages import is_symbol, keyword, symbol_name
 from cramhy_runtime.robot_world import description_files, models, remarks
 from cramhy_runtime.robot_world.descriptions import Description, DescriptionError
 from cramhy_runtime.robot_world.physical.world import PhysicalWorld
@@ -47,9 +47,11 @@ def physical_p(world: World) -> bool | None:
     return boolean(isinstance(world, PhysicalWorld))
 
 
-def copy_world(world: World) -> World:
-    """A world with copies of the things of ``world``."""
-    return world.copy()
+def copy_world(world: World, into: World | None = None) -> World:
+    """A world with copies of the things of ``world``; ``into``, a kinematic world, has them then instead of its own."""
+    if isinstance(into, PhysicalWorld):
+        return error("A world can be copied into a kinematic one only: ~s is a physical world.", into)
+    return into if into is world else world.copy(into)
 
 
 def add_description(
@@ -68,8 +70,9 @@ def remove_thing(world: World, name: Symbol | str) -> None:
 
 
 def find_thing(world: World, name: Symbol | str) -> Thing | None:
-    """The thing of that name, or nil."""
-    return world.things.get(name_of(name))
+    """The thing of that name, or nil. A string may also be the name in small letters that Python and Hy give to a keyword."""
+    found = world.things.get(name_of(name))
+    return world.things.get(keyword(str(name).upper())) if found is None and not is_symbol(name) else found
 
 
 def things(world: World) -> Cons | None:
