@@ -125,7 +125,7 @@ def compile_string_for_emacs(call, source, buffer, position, filename=None, poli
     with noted(notes), binding(evaluator.PACKAGE, call.package):
         _caught(notes, lambda: aborting(call, run))
     indentation.tell(call.connection)
-    return notes.result(began, True)
+    return notes.result(began)
 
 
 def _raise(condition):
