@@ -9,6 +9,11 @@ def fail(emacs, form="(broken 1 2)"):
     return number, *emacs.debugged()
 
 
+def of_type(answer, kind):
+    """Whether ``answer`` says that a call was aborted on a condition of that type: SLIME shows it."""
+    return answer[0] == ":abort" and answer[1].startswith(f"#<{kind}")
+
+
 def test_what_is_told_first(emacs):
     _, thread, level, condition, restarts, frames = fail(emacs)
     assert level == 1 and condition[0].startswith("  no 3\n  at <repl ") and condition[1] == "   [Condition of type SIMPLE-ERROR]"
@@ -67,10 +72,10 @@ def test_ways_out(emacs):
     number, thread, *_ = fail(emacs)
     assert emacs.refused("(swank:sldb-continue)", thread=thread) == "There is no restart CONTINUE here. Choose another one."
     emacs.refused("(swank:sldb-abort)", thread=thread)
-    assert emacs.wait(number) == [":abort", "aborted"]
+    assert of_type(emacs.wait(number), "SIMPLE-ERROR")
     number, thread, *_ = fail(emacs)
     emacs.refused("(swank:throw-to-toplevel)", thread=thread)
-    assert emacs.wait(number) == [":abort", "aborted"]
+    assert of_type(emacs.wait(number), "SIMPLE-ERROR")
     number, thread, *_ = fail(emacs, '(progn (cerror \\"go on\\" \\"stop\\") 8)')
     emacs.refused("(swank:sldb-continue)", thread=thread)
     assert emacs.wait(number) == [":ok", None]
@@ -84,14 +89,14 @@ def test_levels(emacs):
     assert (thread_2, level) == (thread, 2) and "is not of type" in condition[0]
     assert [text for _, text in restarts] == ["Return to level 1 of the debugger.", "Return to Emacs."]
     emacs.refused("(swank:invoke-nth-restart-for-emacs 2 0)", thread=thread)
-    assert emacs.wait(inner) == [":abort", "aborted"]
+    assert of_type(emacs.wait(inner), "TYPE-ERROR")
     assert [event for event in emacs.events if event[0].startswith(":debug")] == [
         [":debug-return", thread, 2, None],
         [":debug-activate", thread, 1, None],
     ]
     assert emacs.call("(swank:backtrace 0 1)", thread=thread) == [[0, "(BROKEN 1 2)"]]
     emacs.refused("(swank:throw-to-toplevel)", thread=thread)
-    assert emacs.wait(number) == [":abort", "aborted"]
+    assert of_type(emacs.wait(number), "SIMPLE-ERROR")
 
 
 def test_an_interrupt_leaves_the_debugger(emacs):
@@ -127,7 +132,7 @@ def test_an_error_in_a_plan_has_the_frames_of_its_task(emacs):
     number, thread, _, condition, _, frames = fail(emacs, "(cpl:top-level (cpl:par (sleep 1) (broken 3 4)))")
     assert condition[0].startswith("  no 7") and frames[0] == [0, "(BROKEN 3 4)"]
     emacs.refused("(swank:throw-to-toplevel)", thread=thread)
-    assert emacs.wait(number) == [":abort", "aborted"]
+    assert of_type(emacs.wait(number), "SIMPLE-ERROR")
 
 
 def test_a_debugger_that_the_plan_ends(emacs):
@@ -146,9 +151,9 @@ def test_two_debuggers_at_a_time(emacs):
     second, level, *_ = emacs.debugged()
     assert second != first and level == 1
     emacs.refused("(swank:sldb-abort)", thread=second)
-    assert emacs.wait(other) == [":abort", "aborted"]
+    assert of_type(emacs.wait(other), "TYPE-ERROR")
     emacs.refused("(swank:sldb-abort)", thread=first)
-    assert emacs.wait(number) == [":abort", "aborted"]
+    assert of_type(emacs.wait(number), "SIMPLE-ERROR")
 
 
 def test_errors_while_one_types_open_no_debugger(emacs):

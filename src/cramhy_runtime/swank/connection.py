@@ -64,6 +64,7 @@ class Connection:
         self._printed = []  # texts that are not sent yet
         self.folders = []  # with files that are needed as long as the connection
         self.inspector = None  # see `inspector`
+        self.trace_reader = None  # see `calls.tracing`
         self.threads = []  # the tasks that the list of threads shows
         self.repl = None  # the Request of the REPL buffer that runs
         self._repl_calls = deque()
@@ -235,6 +236,7 @@ class _Work:
         self.connection, self.entry, self.given, self.named = connection, entry, given, named
         self.package, self.number, self.session = package, number, connection.server.session
         self.name = f"Emacs: {entry.name}"
+        self.debugged = None  # the condition that opened the debugger last
 
     def perform(self, debugger=None):
         call = Call(self.connection, self.package, debugger)

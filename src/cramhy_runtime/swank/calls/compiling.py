@@ -14,7 +14,7 @@ from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.languages.commonlisp.compiler import compilation_unit
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.reader.reader import Reader
-from cramhy_runtime.languages.commonlisp.systems import program_files, systems
+from cramhy_runtime.languages.commonlisp.systems import program_files
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for, report_text
 
 from .. import indentation, places
@@ -137,21 +137,6 @@ def _caught(notes, thunk):
     """Call ``thunk``. What the compiler or the reader cannot take becomes a note, and the rest of it is left out."""
     kinds = (CompileError, *UNREADABLE)
     conditions.handler_case([(kind, notes.fail) for kind in kinds], thunk)
-
-
-@rpc("operate-on-system-for-emacs", evaluates=True)
-def operate_on_system(call, name, operation=None, *options):
-    """Load a system of ASDF, with notes: ``M-x slime-load-system``. Testing it is ``(asdf:test-system name)``."""
-    notes, began = Notes(places.location_of), time_now()
-    with noted(notes), binding(evaluator.PACKAGE, call.package):
-        aborting(call, lambda: call.session.load(text(name)))
-    indentation.tell(call.connection)
-    return notes.result(began)
-
-
-@rpc("list-asdf-systems list-all-systems-in-central-registry list-all-systems-known-to-asdf")
-def list_systems(call):
-    return sorted(set(map(str, systems.known_systems())))
 
 
 @rpc("compile-multiple-strings-for-emacs", evaluates=True)

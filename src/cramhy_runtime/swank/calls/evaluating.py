@@ -9,10 +9,12 @@ from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PRINT_PRETTY, PRINT_RIGHT_MARGIN
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.systems import program_files
+from cramhy_runtime.session.requests import request_of
 from cramhy_runtime.session.session import HISTORY, LAST_FORMS, LAST_VALUES
 
 from .. import indentation, presentations
 from ..packages import prompt_of
+from ..reasons import aborted
 from ..rpcs import Refused, number, rpc, text
 from ..wire import Name
 
@@ -29,7 +31,8 @@ def aborting(call, thunk):
     """What ``thunk`` returns, called where the restart ABORT leads back to Emacs. `Refused` if that was taken."""
     completed, result = call.session.with_abort(thunk, TOP)
     if not completed:
-        raise Refused("aborted")
+        request = request_of()
+        raise Refused(aborted(request.owner if request is not None else None))
     return result
 
 
@@ -161,8 +164,6 @@ def not_here(call, *_):
 
 def presented(id_, *default):
     """``(swank:lookup-presented-object-or-lose 3)``: the object that Emacs shows under that number."""
-    from cramhy_runtime.session.requests import request_of
-
     request = request_of(kernel.current())
     connection = getattr(request.owner, "connection", None) if request is not None else None
     if connection is None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..inspector import Inspector
+from ..inspector import Inspector, text_of
 from ..presentations import of
 from ..rpcs import Refused, rpc, text
 from .evaluating import evaluated
@@ -26,12 +26,18 @@ def init_inspector(call, source):
     return inspect(call, values[0] if values else None)
 
 
-@rpc("inspect-presentation inspect-object")
+@rpc("inspect-presentation")
 def inspect_presentation(call, id_, reset=None):
     obj = of(call.connection).find(id_)
     if call.connection.inspector is None or reset:
         return inspect(call, obj)
     return call.connection.inspector.go_to(obj)
+
+
+@rpc("inspect-object")
+def inspect_object(call, obj, reset=None):
+    """Inspect what a call in the arguments gives, such as ``(swank-trace-dialog::find-trace 3)``; or a presentation, by its number."""
+    return inspect_presentation(call, obj, reset) if isinstance(obj, int) else inspect(call, obj)
 
 
 @rpc("inspect-nth-part")
@@ -41,12 +47,12 @@ def inspect_nth_part(call, index):
 
 @rpc("inspector-nth-part")
 def inspector_nth_part(call, index):
-    return _inspector(call).text_of(_inspector(call).part(index))
+    return text_of(_inspector(call).part(index))
 
 
 @rpc("pprint-inspector-part")
 def pprint_part(call, index):
-    return _inspector(call).text_of(_inspector(call).part(index), pretty=True)
+    return text_of(_inspector(call).part(index), pretty=True)
 
 
 @rpc("inspector-call-nth-action", evaluates=True)
