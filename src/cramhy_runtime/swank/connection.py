@@ -64,6 +64,7 @@ class Connection:
         self._printed = []  # texts that are not sent yet
         self.folders = []  # with files that are needed as long as the connection
         self.inspector = None  # see `inspector`
+        self.images = None  # see `images`
         self.trace_reader = None  # see `calls.tracing`
         self.threads = []  # the tasks that the list of threads shows
         self.repl = None  # the Request of the REPL buffer that runs

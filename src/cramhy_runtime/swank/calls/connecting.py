@@ -10,7 +10,7 @@ from cramhy_runtime import __version__
 from cramhy_runtime.ground.packages import KEYWORD, symbol_package
 from cramhy_runtime.languages.commonlisp.reader.dispatch_macros import FEATURES
 
-from .. import indentation
+from .. import images, indentation
 from ..packages import prompt_of
 from ..rpcs import rpc
 from ..slime_version import slime_version
@@ -46,6 +46,10 @@ def connection_info(call):
 @rpc("swank-require slynk-require")
 def swank_require(call, modules, *_):
     """Parts of SLIME that Emacs wants; the parts that are here. Calls of others are refused one by one."""
+    names = {str(each).upper() for each in (modules if isinstance(modules, list) else [modules])}
+    if "SWANK-MEDIA" in names:
+        images.wanted(call.connection)
+        return [*MODULES, "SWANK-MEDIA"]
     return MODULES
 
 

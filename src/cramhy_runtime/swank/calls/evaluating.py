@@ -106,11 +106,15 @@ def listener_eval(call, source, *, window_width=None):
     connection = call.connection
     margin = (PRINT_RIGHT_MARGIN, window_width) if isinstance(window_width, int) and window_width > 20 else ()
     with binding(evaluator.PACKAGE, connection.package, *margin):
+        if connection.images is not None:
+            connection.images.begin()
         values = aborting(call, lambda: call.session.evaluate_text(text(source), None, top=True))
         before, connection.package = connection.package, evaluator.PACKAGE.value
         if connection.package is not before:
             connection.send(Name(":new-package"), connection.package.name, prompt_of(connection.package))
         _show(connection, values)
+        if connection.images is not None:
+            connection.images.show()
     if "(" in text(source) and ("mac" in text(source).lower() or "load" in text(source).lower()):
         indentation.tell(connection)  # it may have defined macros
 
