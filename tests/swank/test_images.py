@@ -8,7 +8,6 @@ import sys
 
 import pytest
 
-from cramhy_runtime.robot_world import shown
 from cramhy_runtime.swank.wire import Name
 from cramhy_runtime.turtlesim.node import start_with_first_node
 
@@ -67,17 +66,3 @@ def test_without_pillow_the_paper_comes_as_vectors(drawing, monkeypatch):
     drawing.repl(DRIVE)
     [[_, [[_, kind, _, data]], _]] = images(drawing)
     assert kind == Name("svg") and base64.b64decode(data).startswith(b"<svg ")
-
-
-def test_the_robots_world(emacs, monkeypatch):
-    pytest.importorskip("mujoco")
-    emacs.call("(swank:swank-require '(swank-media))")
-    emacs.repl('(asdf:load-system "cram-bullet-reasoning")')
-    emacs.repl("(setf btr:*current-bullet-world* (robot-world:make-world))")
-    emacs.events.clear()
-    emacs.repl("(btr:add-object btr:*current-bullet-world* :sphere 'ball '((0 0 1) (0 0 0 1)) :radius 0.1)")
-    assert shown.current() is not None, emacs.events
-    [event] = images(emacs)
-    assert decoded(event).size == (480, 360) and event[2] == "the robot's world"
-    emacs.repl("(+ 1 2)")
-    assert len(images(emacs)) == 1

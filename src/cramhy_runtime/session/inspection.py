@@ -23,6 +23,8 @@ from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.tools import inspecting
 from cramhy_runtime.languages.commonlisp.tools.recorded_calls import RecordedCall
 
+from . import world_inspection
+
 
 class Part(NamedTuple):
     """A part of an object: its label and its value. bound: ``False`` if there is no value, as in an unbound slot."""
@@ -60,6 +62,9 @@ def inspected(obj):
         return _kernel_task(obj)
     if isinstance(obj, RecordedCall):
         return _recorded_call(obj)
+    if world_inspection.knows(obj):
+        title, parts, actions = world_inspection.told(obj)
+        return Inspected(title, [Part(*part) for part in parts], [Action(*action) for action in actions])
     title, _, entries = inspecting.parts(obj)
     found = [Part(label or str(index), _of_lisp(value), value is not inspecting.MISSING) for index, (label, value) in enumerate(entries)]
     actions = []
