@@ -165,10 +165,25 @@ def step(call, index):
     raise Refused("Compiled code cannot be stopped between its forms. (step form) prints each call that a form makes, as (trace f) does.")
 
 
-@rpc("sldb-return-from-frame restart-frame")
-def leave_frame(call, index, *_):
-    _frame(call, index)
-    raise Refused("A frame cannot be left with a value or begun anew. Take a restart, such as USE-VALUE or RETRY.")
+@rpc("sldb-return-from-frame", evaluates=True)
+def return_from_frame(call, index, source):
+    frame = _frame(call, index)
+    if frame.why_it_stays:
+        return _what_to_do(frame.why_it_stays)
+    with binding(evaluator.PACKAGE, call.package):
+        value = frame.evaluate(text(source))
+    return frame.leave(value)
+
+
+@rpc("restart-frame", evaluates=True)
+def restart_frame(call, index):
+    frame = _frame(call, index)
+    return _what_to_do(frame.why_it_stays) if frame.why_it_stays else frame.restart()
+
+
+def _what_to_do(why):
+    """A text for the echo area. It is no refusal, because SLIME shows no reason of one here."""
+    return f"{why} C-u C-c C-c in a definition compiles it for that; or take a restart."
 
 
 @rpc("sldb-break-on-return sldb-break")
