@@ -69,6 +69,6 @@ def ping(call, *_):
     return "pong"
 
 
-@rpc("toggle-debug-on-swank-error toggle-break-on-signals buffer-first-change")
+@rpc("toggle-debug-on-swank-error toggle-break-on-signals buffer-first-change slynk-add-load-paths")
 def does_nothing(call, *_):
     return None

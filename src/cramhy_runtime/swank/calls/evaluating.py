@@ -93,7 +93,7 @@ def load_file(call, path):
 # ---------------------------------------------------------------------------------------------------------------------- REPL
 
 
-@rpc("create-repl create-mrepl")
+@rpc("create-repl")
 def create_repl(call, target=None, *, coding_system=None):
     package = call.connection.package
     indentation.tell(call.connection)
@@ -117,6 +117,11 @@ def listener_eval(call, source, *, window_width=None):
             connection.images.show()
     if "(" in text(source) and ("mac" in text(source).lower() or "load" in text(source).lower()):
         indentation.tell(connection)  # it may have defined macros
+
+
+@rpc("create-mrepl")
+def create_mrepl(call, *_):
+    raise Refused("cramhy has no REPL buffer for SLY. C-x C-e, C-c C-c and M-. work in SLY's buffers of files; for a REPL take SLIME.")
 
 
 def _show(connection, values):
