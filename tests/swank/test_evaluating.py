@@ -157,7 +157,7 @@ def test_quit(emacs):
 
 
 def test_calls_that_do_nothing_here_are_answered(emacs):
-    for name in """toggle-debug-on-swank-error toggle-break-on-signals init-presentation-streams listener-save-value listener-get-value
+    for name in """toggle-debug-on-swank-error toggle-break-on-signals init-presentation-streams
     redirect-trace-output buffer-first-change swank-compiler-notes-for-emacs""".split():
         assert emacs.call(f"(swank:{name})") is None
     for name in ("io-speed-test", "flow-control-test"):

@@ -100,7 +100,7 @@ def parse(form):
         return _one_after_the_other([parse(part) for part in form[1:] if part is not None])
     entry = find(form[0])
     given, named = entry.bind([_value(argument) for argument in form[1:]])
-    if any(isinstance(value, _Inner) for value in given):
+    if any(map(_has_inner, given)):
         outer = entry.function
         entry = Entry(
             entry.name, lambda call, *given, **named: outer(call, *(_now(each, call) for each in given), **named), entry.evaluates
@@ -129,8 +129,14 @@ class _Inner:
         self.entry, self.given, self.named = entry, given, named
 
 
+def _has_inner(value):
+    return any(map(_has_inner, value)) if isinstance(value, list) else isinstance(value, _Inner)
+
+
 def _now(value, call):
     """The value of an argument when its call is carried out."""
+    if isinstance(value, list):
+        return [_now(item, call) for item in value]
     return value.entry.function(call, *value.given, **value.named) if isinstance(value, _Inner) else value
 
 

@@ -112,7 +112,7 @@ def listener_eval(call, source, *, window_width=None):
         before, connection.package = connection.package, evaluator.PACKAGE.value
         if connection.package is not before:
             connection.send(Name(":new-package"), connection.package.name, prompt_of(connection.package))
-        _show(connection, values)
+        show(connection, values)
         if connection.images is not None:
             connection.images.show()
     if "(" in text(source) and ("mac" in text(source).lower() or "load" in text(source).lower()):
@@ -124,7 +124,8 @@ def create_mrepl(call, *_):
     raise Refused("cramhy has no REPL buffer for SLY. C-x C-e, C-c C-c and M-. work in SLY's buffers of files; for a REPL take SLIME.")
 
 
-def _show(connection, values):
+def show(connection, values):
+    """Write ``values`` into the REPL buffer as the results of a form."""
     kept, result = presentations.of(connection), Name(":repl-result")
     fresh = streams.STANDARD_OUTPUT.value
     if getattr(fresh, "column", 0):
@@ -166,7 +167,7 @@ def lookup_and_save(call, id_):
     return kept.add(kept.find(id_))
 
 
-@rpc("listener-save-value listener-get-value redirect-trace-output init-presentation-streams")
+@rpc("redirect-trace-output init-presentation-streams")
 def not_here(call, *_):
     return None
 

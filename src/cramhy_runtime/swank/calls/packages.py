@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 from cramhy_runtime.ground.data import Symbol, lisp_list, list_from
-from cramhy_runtime.ground.packages import all_packages, find_package, sym
+from cramhy_runtime.ground.packages import all_packages, sym
 from cramhy_runtime.languages.commonlisp.evaluation.symbols import fmakunbound
 from cramhy_runtime.languages.commonlisp.pathnames.namestrings import parse_native
 from cramhy_runtime.languages.commonlisp.pathnames.pathnames import DEFAULTS
@@ -13,16 +13,15 @@ from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.tools import tracing
 from cramhy_runtime.session.arglists import symbol_named
 
-from ..packages import prompt_of
+from ..packages import package_called, prompt_of
 from ..rpcs import Refused, rpc, text
 
 
 def package_named(name):
     """The package that ``name``, as Emacs sends it, means. `Refused` if there is none."""
-    bare = text(name, "The name of a package").strip().lstrip("#").lstrip(":").strip('"|')
-    found = find_package(bare) or find_package(bare.upper())
+    found = package_called(text(name, "The name of a package"))
     if found is None:
-        raise Refused(f"There is no package {bare}.")
+        raise Refused(f"There is no package {name}.")
     return found
 
 
