@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.data import all_values
+from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.kernel.images import per_image
 
 from . import tracing
@@ -30,6 +31,9 @@ class RecordedCall:
         if outer is not None:
             outer.inner.append(self)
         _calls.append(self)
+
+    def __repr__(self):
+        return f"call {self.number} of {prin1_to_string(self.name)}"
 
     @property
     def ended(self):
