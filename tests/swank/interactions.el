@@ -6,7 +6,7 @@
 (load (expand-file-name "run.el" (getenv "CRAMHY_TEST_FOLDER")))
 (dolist (folder slime-folders) (add-to-list 'load-path folder))
 (require 'slime)
-(slime-setup '(slime-fancy))
+(slime-setup '(slime-fancy slime-asdf))
 (setq slime-lisp-implementations nil
       slime-kill-without-query-p t
       slime-compilation-finished-hook nil
@@ -18,6 +18,9 @@
       slime-log-events t
       create-lockfiles nil
       make-backup-files nil)
+
+(defvar said nil "What Emacs has written into the echo area, the newest first.")
+(advice-add 'message :before (lambda (text &rest values) (when text (push (apply #'format-message text values) said))))
 
 (defun report (name value)
   (let ((print-escape-newlines t) (print-length nil) (print-level nil))
@@ -157,6 +160,7 @@
 (interaction "compile a definition"
   (goto-char (point-min)) (search-forward "(* 2 x)") (replace-match "(* 3 x)") (slime-compile-defun)
   (eventually (not (slime-rex-continuations))) (type "(double 21)"))
+(interaction "the end of a compilation" (cl-find-if (lambda (text) (string-prefix-p "Compilation" text)) said))
 (interaction "a note of a definition"
   (goto-char (point-min)) (search-forward "(defun unused") (slime-compile-defun)
   (eventually (not (slime-rex-continuations)))
@@ -201,6 +205,8 @@
 (interaction "autodoc of one's own function" (arglist-at "(send-vel-cmd 1 "))
 (interaction "autodoc of a plan's operator" (arglist-at "(top-level (par "))
 (interaction "autodoc of keywords" (arglist-at "(make-fluent :name "))
+(interaction "autodoc of a variable" (arglist-at "(list *factor*"))
+(interaction "autodoc of a binding" (arglist-at "(let ((double "))
 (interaction "arglist in the echo area" (slime-eval '(swank:operator-arglist "send-vel-cmd" "TUT")))
 
 ;;; finding
@@ -243,6 +249,20 @@
 (interaction "trace" (slime-eval '(swank:swank-toggle-trace "double")))
 (interaction "a traced call" (type "(double 2)"))
 (interaction "trace no more" (slime-eval '(swank:swank-toggle-trace "double")))
+(interaction "record calls"
+  (slime-eval '(swank-trace-dialog:dialog-toggle-trace (swank::from-string "double")) "TUT")
+  (type "(double 4)")
+  (slime-trace-dialog t)
+  (eventually (not (slime-rex-continuations)))
+  (with-current-buffer (slime-trace-dialog--live-dialog)
+    (string-trim (buffer-substring-no-properties (progn (goto-char (point-max)) (search-backward "DOUBLE") (line-beginning-position)) (point-max)))))
+(interaction "inspect a recorded call"
+  (slime-eval-async '(swank::inspect-object (swank-trace-dialog::find-trace 0)) #'slime-open-inspector)
+  (eventually (not (slime-rex-continuations)))
+  (with-current-buffer (slime-inspector-buffer) (prog1 (string-trim (buffer-string)) (slime-inspector-quit))))
+(interaction "untrace all" (slime-eval '(cl:progn (swank-trace-dialog:dialog-untrace-all) (swank-trace-dialog:report-specs))))
+(interaction "the files of a system"
+  (mapcar #'file-name-nondirectory (slime-eval '(swank:asdf-system-files "cram-my-beginner-tutorial"))))
 (interaction "undefine" (slime-eval '(swank:undefine-function "unused")))
 (interaction "change the folder" (slime-set-default-directory here) (string= (slime-eval '(swank:default-directory)) (file-name-as-directory (expand-file-name here))))
 
@@ -258,6 +278,9 @@
   (inspector-text))
 (interaction "inspect a designator"
   (with-current-buffer (repl) (slime-inspect "(desig:a motion (type driving) (speed 5) (angle 2))")) (inspector-text))
+(interaction "copy a part into the REPL"
+  (with-current-buffer (slime-inspector-buffer) (slime-inspector-copy-down-to-repl 2))
+  (eventually (not (slime-rex-continuations))) (type "cl:*"))
 (interaction "inspect a part" (go-into ":DRIVING"))
 (interaction "inspector goes back" (with-current-buffer (slime-inspector-buffer) (slime-inspector-pop)) (inspector-text))
 (interaction "resolve the designator" (go-into "[resolve it]"))
@@ -282,7 +305,10 @@
 (interaction "print in a frame" (in-debugger (slime-eval '(swank:pprint-eval-string-in-frame "(+ speed angle)" 0 "TUT"))))
 (interaction "disassemble a frame" (in-debugger (stringp (slime-eval '(swank:sldb-disassemble 0)))))
 (interaction "return from a frame"
-  (in-debugger (condition-case problem (slime-eval '(swank:sldb-return-from-frame 0 "1")) (error (error-message-string problem)))))
+  (setq said nil)
+  (in-debugger (goto-char sldb-backtrace-start-marker) (sldb-return-from-frame "1"))
+  (eventually said)
+  (car said))
 (interaction "inspect the condition" (in-debugger (sldb-inspect-condition)) (inspector-text))
 (interaction "inspect a local" (in-debugger (goto-char sldb-backtrace-start-marker) (slime-eval '(swank:inspect-frame-var 0 0)) t))
 (interaction "an error in the debugger"
@@ -294,6 +320,25 @@
   (eventually (and (debugger) (eql 1 (buffer-local-value 'sldb-level (debugger)))))
   t)
 (interaction "leave the debugger" (leave-debugger) (prompt-there))
+(interaction "an aborted form names its condition"
+  (with-current-buffer (repl) (goto-char (point-max)) (search-backward "; Evaluation aborted on") (line-here)))
+(defun compile-for-debugging (text)
+  (in-file "good.lisp")
+  (goto-char (point-max)) (insert "\n\n" text "\n") (forward-line -1)
+  (slime-compile-defun '(4)) (eventually (not (slime-rex-continuations))))
+(interaction "let a call return a value"
+  (compile-for-debugging "(defun careful (x) (+ 1 (car x)))")
+  (type "(list (careful 5) 2)")
+  (in-debugger (goto-char sldb-backtrace-start-marker) (sldb-return-from-frame "(* 10 x)"))
+  (eventually (and (not (debugger)) (prompt-there)))
+  (with-current-buffer (repl) (goto-char (point-max)) (forward-line -1) (line-here)))
+(interaction "begin a call anew"
+  (compile-for-debugging "(defun careful-2 (x) (if (= *factor* 13) x (car x)))")
+  (type "(setf *factor* 12)") (type "(careful-2 5)")
+  (slime-eval '(swank:interactive-eval "(setf *factor* 13)") "TUT")
+  (in-debugger (goto-char sldb-backtrace-start-marker) (sldb-restart-frame))
+  (eventually (and (not (debugger)) (prompt-there)))
+  (with-current-buffer (repl) (goto-char (point-max)) (forward-line -1) (line-here)))
 (interaction "take a restart"
   (type "(broken-plan 1 2)")
   (in-debugger (sldb-invoke-restart (cl-position "USE-VALUE" sldb-restarts :key #'car :test #'string=)))

@@ -104,11 +104,16 @@ def test_an_error_of_the_compiler_in_a_definition_is_a_note(emacs):
     assert emacs.repl("(after-it)") == "7\n"
 
 
+def test_a_definition_leaves_no_file_to_load(emacs):
+    """SLIME tells that a compilation has failed if there should be a file to load, and there is none."""
+    assert compile_string(emacs, "(defun no-file () 1)", None)[4:] == [None, None]
+
+
 def test_an_error_of_a_form_opens_the_debugger(emacs):
     number = emacs.rex('(swank:compile-string-for-emacs "(car 5)" "buffer" \'((:position 1) (:line 1 1)) nil \'nil)')
     thread, *_ = emacs.debugged()
     emacs.refused("(swank:sldb-abort)", thread=thread)
-    assert emacs.wait(number) == [":abort", "aborted"]
+    assert emacs.wait(number) == [":abort", "#<TYPE-ERROR expected-type: LIST datum: 5>"]
 
 
 def test_a_definition_of_a_file_is_found_in_the_file(emacs, tmp_path):

@@ -157,7 +157,7 @@ def test_quit(emacs):
 
 
 def test_calls_that_do_nothing_here_are_answered(emacs):
-    for name in """toggle-debug-on-swank-error toggle-break-on-signals init-presentation-streams listener-save-value listener-get-value
+    for name in """toggle-debug-on-swank-error toggle-break-on-signals init-presentation-streams
     redirect-trace-output buffer-first-change swank-compiler-notes-for-emacs""".split():
         assert emacs.call(f"(swank:{name})") is None
     for name in ("io-speed-test", "flow-control-test"):
@@ -166,7 +166,10 @@ def test_calls_that_do_nothing_here_are_answered(emacs):
 
 def test_slys_names_of_the_same_calls(emacs):
     assert "SWANK-REPL" in emacs.call("(slynk:slynk-require '(a))")
-    assert emacs.call("(slynk-mrepl:create-mrepl 1)") == ["COMMON-LISP-USER", "CL-USER"]
+    assert emacs.call('(slynk:slynk-add-load-paths \'("/somewhere"))') is None
+    assert emacs.refused("(slynk-mrepl:create-mrepl 1)") == (
+        "cramhy has no REPL buffer for SLY. C-x C-e, C-c C-c and M-. work in SLY's buffers of files; for a REPL take SLIME."
+    )
     assert emacs.call('(slynk:find-symbols-completions "mapca" "CL-USER")')[0][0][0] in ("mapcan", "mapcar")
     emacs.call("(swank:init-presentations)")
     emacs.repl("1")

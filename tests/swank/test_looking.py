@@ -48,12 +48,33 @@ def test_keywords_of_the_call_at_hand(emacs):
         ('("go-there" "1" ":speed" "" swank::%cursor-marker%)', "(go-there x &key ===> (speed 5) <===)"),
         ('("go-there" "1" ":sp" swank::%cursor-marker%)', "(go-there x &key (speed 5))"),
         ('("when" "x" "" swank::%cursor-marker%)', "(when test &rest ===> body <===)"),
+        ('("let" (("list" "" swank::%cursor-marker%)))', "(let ===> bindings <=== &body body)"),
+        ('("let" (("x" ("car" "" swank::%cursor-marker%))))', "(car ===> lst <===)"),
+        ('("labels" (("near" ("x" "y") "1")) ("near" "1" "" swank::%cursor-marker%))', "(near x ===> y <===)"),
+        ('("labels" (("near" ("list" "" swank::%cursor-marker%))))', "(labels ===> definitions <=== &body body)"),
+        ('("handler-case" "1" ("error" ("e") "" swank::%cursor-marker%))', "(handler-case form &rest ===> clauses <===)"),
+        ('("defun" "f" ("list" "" swank::%cursor-marker%))', "(defun name ===> lambda-list <=== &rest body)"),
+        ('("case" "x" ("list" "" swank::%cursor-marker%))', "(case key &rest ===> clauses <===)"),
     ],
 )
 def test_autodoc(emacs, form, shown):
     emacs.repl("(defun go-there (x &key (speed 5)) (list x speed))")
     found = emacs.call(f"(swank:autodoc '{form} :print-right-margin 80)")
     assert found == [shown, True]
+
+
+def test_autodoc_of_a_variable_tells_its_value(emacs):
+    emacs.repl("(defvar *speed-limit* (list 50 :km))")
+    shown = "*SPEED-LIMIT* => (50 :KM)"
+    assert emacs.call('(swank:autodoc \'("list" "*speed-limit*" swank::%cursor-marker%))') == [shown, None]
+    assert emacs.call('(swank:autodoc \'("*speed-limit*" swank::%cursor-marker%))') == [shown, None]
+    emacs.repl("(setf *speed-limit* (make-list 99 :initial-element 123456789012345))")
+    told = emacs.call('(swank:autodoc \'("list" "*speed-limit*" swank::%cursor-marker%))')[0]
+    assert len(told) == 100 and told.endswith("...")
+    arglist = "(list &rest ===> items <===)"  # behind a space, or at a name without a value
+    assert emacs.call('(swank:autodoc \'("list" "*speed-limit*" "" swank::%cursor-marker%))') == [arglist, True]
+    assert emacs.call('(swank:autodoc \'("list" "car" swank::%cursor-marker%))') == [arglist, True]
+    assert emacs.call('(swank:autodoc \'("*" swank::%cursor-marker%))')[1] is True  # an operator, though it is a variable, too
 
 
 def test_autodoc_of_what_nobody_knows(emacs):
@@ -240,6 +261,34 @@ def test_systems(emacs, tmp_path, monkeypatch):
     assert emacs.call("(swank:list-all-systems-in-central-registry)") == emacs.call("(swank:list-all-systems-known-to-asdf)") == names
 
 
+def test_systems_and_their_files(emacs, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "base.asd").write_text('(defsystem "base" :components ((:file "code")))')
+    (tmp_path / "top.asd").write_text(
+        '(defsystem "top" :depends-on ("base") :components ((:file "more")) :perform (test-op (o c) (format t "The tests have run.~%")))'
+    )
+    (tmp_path / "code.lisp").write_text("(in-package :cl-user)\n(defvar *loads* 0)\n(incf *loads*)\n")
+    (tmp_path / "more.lisp").write_text("(in-package :cl-user)\n(defun more () 1)\n")
+    assert emacs.call('(swank:asdf-system-loaded-p "top")') is None
+    assert emacs.call('(swank:operate-on-system-for-emacs "top" \'asdf:test-op)')[2] is True
+    assert "The tests have run.\n" in [event[1] for event in emacs.events if event[0] == ":write-string"]
+    assert emacs.call('(swank:asdf-system-loaded-p "top")') is True
+    assert emacs.call('(swank:asdf-system-files "top")') == [str(tmp_path / "top.asd"), str(tmp_path / "more.lisp")]
+    assert emacs.call('(swank:asdf-system-directory "top")') == f"{tmp_path}/"
+    assert emacs.call(f'(swank:asdf-determine-system "{tmp_path / "code.lisp"}" "CL-USER")') == "base"
+    assert emacs.call('(swank:asdf-determine-system nil ":top")') == "top"
+    assert emacs.call('(swank:asdf-determine-system "/no/such.lisp" "CL-USER")') is None
+    assert emacs.call('(swank:who-depends-on "base")') == ["top"]
+    assert emacs.call('(swank:reload-system "base")')[2] is True
+    assert emacs.repl("*loads*") == "2\n"
+    assert emacs.call('(swank:delete-system-fasls "base")') == "base will be loaded anew."
+    emacs.call('(swank:operate-on-system-for-emacs "base" \'load-op)')
+    assert emacs.repl("*loads*") == "3\n"
+    emacs.call('(swank:operate-on-system-for-emacs "base" \'load-op :force t)')
+    assert emacs.repl("*loads*") == "4\n"
+    assert "no-such-system" in emacs.refused('(swank:asdf-system-files "no-such-system")')
+
+
 def test_packages(emacs):
     names = emacs.call("(swank:list-all-package-names)")
     assert "COMMON-LISP-USER" in names and "CL-USER" not in names
@@ -339,6 +388,23 @@ def test_a_task_and_its_tree(emacs):
     title, text, actions, parts = content(emacs.call('(swank:init-inspector "*task*")'))
     assert "The object is a task." in text and "Status:" in text and "[evaporate it]" in actions
     emacs.call(f"(swank:inspector-call-nth-action {actions['[evaporate it]']})")
+
+
+def test_parts_of_a_task_are_values_of_lisp(emacs):
+    """Its children are a list of tasks, and what a condition keeps as a tuple of Python is a list."""
+    emacs.repl("(defvar *parent* nil)")
+    form = "(cpl:top-level (cpl:with-tags (:tag one (setf *parent* one) (cpl:par (sleep 5) (sleep 6)))))"
+    emacs.rex(f'(swank-repl:listener-eval "{form}")', thread=":repl-thread")
+    emacs.call('(swank:interactive-eval "1")')
+    _, text, *_ = content(emacs.call('(swank:init-inspector "*parent*")'))
+    assert "Children: (#<" in text and "PYTHON" not in text
+    _, text, *_ = content(emacs.call('(swank:init-inspector "(make-condition \'simple-error :format-control \\"x\\")")'))
+    assert "FORMAT-ARGUMENTS: NIL" in text
+
+
+def test_a_part_is_shown_on_one_line(emacs):
+    _, text, _, parts = content(emacs.call('(swank:init-inspector "(cons (desig:a motion (type driving)) 1)")'))
+    assert "CAR: #<A MOTION (TYPE DRIVING)>\n" in text
 
 
 def test_presentations_are_inspected(emacs):

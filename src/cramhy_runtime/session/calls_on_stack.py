@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import linecache
 import re
+import sys
 
 from cramhy_runtime.ground.data import lisp_list, list_from
+from cramhy_runtime.ground.frame_exits import FrameExit, can_be_left
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.printing import guarded
 from cramhy_runtime.ground.python_names import lisp_spelling, python_name
@@ -63,6 +65,24 @@ class Frame:
             return {}
         text = "".join(linecache.getlines(self.position[0])[min(lines) - 1 : max(lines) + 1])
         return {python_name(name): name.upper() for name in reversed(_SYMBOL.findall(text))}
+
+    @property
+    def why_it_stays(self):
+        """Why the call can neither be ended with a value nor begun anew, a text; ``None`` if it can."""
+        if not can_be_left(self.frame):
+            return f"{self.name} was not compiled so that its calls can be left."
+        running = sys._getframe()
+        while running is not None and running is not self.frame:
+            running = running.f_back
+        return None if running is not None else f"The error has left the call of {self.name} already."
+
+    def leave(self, value):
+        """End the call: it returns ``value``."""
+        raise FrameExit(self.frame, value)
+
+    def restart(self):
+        """Begin the call anew, with its variables as they are now."""
+        raise FrameExit(self.frame, again=True)
 
     @property
     def package(self):

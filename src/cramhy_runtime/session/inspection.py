@@ -21,6 +21,9 @@ from cramhy_runtime.ground.printing import guarded
 from cramhy_runtime.languages.commonlisp.objects.classes import class_of
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.tools import inspecting
+from cramhy_runtime.languages.commonlisp.tools.recorded_calls import RecordedCall
+
+from . import world_inspection
 
 
 class Part(NamedTuple):
@@ -57,8 +60,13 @@ def inspected(obj):
         return _designator(obj)
     if isinstance(obj, kernel.Task):
         return _kernel_task(obj)
+    if isinstance(obj, RecordedCall):
+        return _recorded_call(obj)
+    if world_inspection.knows(obj):
+        title, parts, actions = world_inspection.told(obj)
+        return Inspected(title, [Part(*part) for part in parts], [Action(*action) for action in actions])
     title, _, entries = inspecting.parts(obj)
-    found = [Part(label or str(index), value, value is not inspecting.MISSING) for index, (label, value) in enumerate(entries)]
+    found = [Part(label or str(index), _of_lisp(value), value is not inspecting.MISSING) for index, (label, value) in enumerate(entries)]
     actions = []
     if isinstance(obj, Cons) and list_end(obj) is not None:
         title = "The object is a CONS."
@@ -71,6 +79,11 @@ def inspected(obj):
     if not isinstance(obj, (Cons, type)) and not is_symbol(obj):
         found.insert(0, Part("Class", class_of(obj)))
     return Inspected(title, found, actions)
+
+
+def _of_lisp(value):
+    """``value``; the tuple of Python in which a condition keeps its arguments as a list of Lisp."""
+    return list_from(value) if type(value) is tuple else value
 
 
 def _unintern(symbol):
@@ -108,7 +121,7 @@ def _attributes(obj, names):
     for label, name in names:
         value = guarded(lambda name=name: getattr(obj, name, inspecting.MISSING), lambda problem: inspecting.MISSING)
         if value is not inspecting.MISSING:
-            found.append(Part(label, list_from(list(value)) if isinstance(value, (list, tuple, set)) else value))
+            found.append(Part(label, list_from(list(value)) if isinstance(value, (list, tuple, set, dict)) else value))
     return found
 
 
@@ -137,6 +150,20 @@ def _kernel_task(task):
         Part("Task of the plan", task.owner),
     ]
     return Inspected("The object is a thread of control.", parts, [Action("end it", lambda: task.cancel("it was killed"))])
+
+
+def _recorded_call(call):
+    ended = not isinstance(call.outcome, str)
+    parts = [
+        Part("Function", call.name),
+        Part("Arguments", list_from(call.arguments)),
+        Part("Values", list_from(call.outcome)) if ended else Part("State", call.outcome),
+        Part("Called by", call.outer),
+        Part("Calls", list_from(call.inner)),
+        Part("Task", call.task),
+        Part("Time", call.began),
+    ]
+    return Inspected("The object is a recorded call.", parts, [])
 
 
 def _designator(designator):

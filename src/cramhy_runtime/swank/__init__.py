@@ -9,6 +9,6 @@ cleanup of its plan. An error opens the debugger in the task that failed.
 
 Where the parts are: `wire` frames and S-expressions; `server` the socket and its thread; `connection` the messages of a client; `rpcs` the
 table of calls; `calls` the calls themselves; `debugger` sldb; `inspector`, `presentations` objects that Emacs shows; `streams` where
-programs print; `places` locations in texts; `packages` their prompts; `indentation` how Emacs indents macros; `reasons` why a call
-failed; `slime_version` what to tell SLIME; `package` SWANK and SWANK-LOADER, which SLIME calls.
+programs print; `images` what they move; `places` locations in texts; `packages` their prompts; `indentation` how Emacs indents macros;
+`reasons` why a call failed; `slime_version` what to tell SLIME; `package` SWANK and SWANK-LOADER, which SLIME calls.
 """

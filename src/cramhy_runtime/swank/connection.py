@@ -14,7 +14,7 @@ from collections import deque
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import COMMON_LISP_USER, find_package
+from cramhy_runtime.ground.packages import COMMON_LISP_USER
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.session import requests
 from cramhy_runtime.session.requests import Mailbox, Request
@@ -22,6 +22,7 @@ from cramhy_runtime.session.requests import Mailbox, Request
 from . import wire
 from .calls import ALL  # noqa: F401  the table of calls is complete from here on
 from .debugger import Debugger
+from .packages import package_called
 from .reasons import reason_of
 from .rpcs import Refused, parse
 from .wire import Name
@@ -41,11 +42,12 @@ class Call:
     @property
     def package(self):
         """The package of the buffer that the call came from; where that says nothing, or none that exists, the connection's."""
-        found = None
-        if isinstance(self.package_name, str):
-            name = self.package_name.strip().lstrip("#").lstrip(":").strip('"').strip("|")
-            found = find_package(name) or find_package(name.upper())
-        return found or self.connection.package
+        return self.named_package or self.connection.package
+
+    @property
+    def named_package(self):
+        """The package of the buffer that the call came from; ``None`` where that says nothing, or none that exists."""
+        return package_called(self.package_name) if isinstance(self.package_name, str) else None
 
 
 class Connection:
@@ -64,6 +66,9 @@ class Connection:
         self._printed = []  # texts that are not sent yet
         self.folders = []  # with files that are needed as long as the connection
         self.inspector = None  # see `inspector`
+        self.saved = []  # the object that is copied into the REPL buffer, see `calls.copying`
+        self.images = None  # see `images`
+        self.trace_reader = None  # see `calls.tracing`
         self.threads = []  # the tasks that the list of threads shows
         self.repl = None  # the Request of the REPL buffer that runs
         self._repl_calls = deque()
@@ -235,6 +240,7 @@ class _Work:
         self.connection, self.entry, self.given, self.named = connection, entry, given, named
         self.package, self.number, self.session = package, number, connection.server.session
         self.name = f"Emacs: {entry.name}"
+        self.debugged = None  # the condition that opened the debugger last
 
     def perform(self, debugger=None):
         call = Call(self.connection, self.package, debugger)

@@ -20,7 +20,7 @@ from cramhy_runtime.session.calls_on_stack import calls_on_stack
 from cramhy_runtime.session.requests import Mailbox
 from cramhy_runtime.session.session import signalled_here
 
-from .reasons import reason_of
+from .reasons import aborted, reason_of
 from .rpcs import Refused
 from .wire import Name
 
@@ -34,6 +34,7 @@ class Debugger:
         self.connection, self.condition, self.task = connection, condition, task
         self.mailbox = Mailbox()
         self.restarts, self.frames = [], []
+        self.work = None  # the call of its buffer that is carried out
         self.covered = False  # whether a debugger on top of this one has ended, and taken the buffer with it
 
     def run(self):
@@ -45,12 +46,16 @@ class Debugger:
         self.restarts = conditions.compute_restarts(self.condition)
         self.frames = calls_on_stack(sys._getframe(1), self.condition)
         stack = connection.debuggers.setdefault(self.task.id, [])
+        request = requests.request_of()
+        asked = stack[-1].work if stack else request.owner if request is not None else None
+        if asked is not None:
+            asked.debugged = self.condition
         stack.append(self)
         self.level = level = len(stack)
         try:
             connection.send(Name(":debug"), self.task.id, level, *self.told(0, FIRST_FRAMES))
             connection.send(Name(":debug-activate"), self.task.id, level, None)
-            self.listen(requests.request_of())
+            self.listen(request)
         finally:
             while stack and stack.pop() is not self:
                 pass
@@ -73,6 +78,7 @@ class Debugger:
     @circumstance.begins_with
     def carry_out(self, work):
         """Do a call of this debugger's buffer. Leaves by the exit that the call makes, such as a restart."""
+        self.work = work
         try:
             completed, value = work.session.with_abort(lambda: work.perform(self), f"Return to level {self.level} of the debugger.")
         except Exception as problem:
@@ -86,7 +92,7 @@ class Debugger:
             if completed:
                 work.answer(value)
             else:
-                self.connection.refuse(work.number, "aborted")
+                self.connection.refuse(work.number, aborted(work))
 
     def told(self, start, end):
         """(condition, restarts, frames from ``start`` to ``end``, calls that wait) for the event ``:debug``."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.printing import guarded
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PRINT_LENGTH, PRINT_LEVEL, PRINT_PRETTY
@@ -13,6 +15,22 @@ from .wire import Name
 
 CHUNK = 500  # pieces of a description that are sent at once
 LONGEST = 200  # characters of a part
+
+
+def text_of(obj, pretty=False):
+    """How an object is printed, shortened unless ``pretty``."""
+    if pretty:
+        with binding(PRINT_PRETTY, True):
+            return guarded(lambda: prin1_to_string(obj), lambda problem: f"#<it cannot be printed: {problem}>")
+    with binding(PRINT_LENGTH, 20, PRINT_LEVEL, 5):
+        found = guarded(lambda: prin1_to_string(obj), lambda problem: f"#<it cannot be printed: {problem}>")
+    return found if len(found) <= LONGEST else found[: LONGEST - 3] + "..."
+
+
+def line_of(obj):
+    """How an object is printed, shortened, on one line."""
+    found = text_of(obj)
+    return found if isinstance(obj, str) else re.sub(r"\s*\n\s*", " ", found)
 
 
 class Inspector:
@@ -27,15 +45,6 @@ class Inspector:
         """The object that is shown."""
         return self.path[self.at]
 
-    def text_of(self, obj, pretty=False):
-        """How an object is printed, shortened unless ``pretty``."""
-        if pretty:
-            with binding(PRINT_PRETTY, True):
-                return guarded(lambda: prin1_to_string(obj), lambda problem: f"#<it cannot be printed: {problem}>")
-        with binding(PRINT_LENGTH, 20, PRINT_LEVEL, 5):
-            found = guarded(lambda: prin1_to_string(obj), lambda problem: f"#<it cannot be printed: {problem}>")
-        return found if len(found) <= LONGEST else found[: LONGEST - 3] + "..."
-
     def shown(self):
         """The object as Emacs shows it: ``(:title text :id n :content chunk)``."""
         obj = self.object
@@ -46,14 +55,14 @@ class Inspector:
             self.pieces.append(f"{part.label}:{' ' * (width - len(part.label))} ")
             if part.bound:
                 self.parts.append(part.value)
-                self.pieces.append([Name(":value"), self.text_of(part.value), len(self.parts) - 1])
+                self.pieces.append([Name(":value"), line_of(part.value), len(self.parts) - 1])
             else:
                 self.pieces.append("unbound")
             self.pieces.append("\n")
         for action in found.actions:
             self.actions.append(action)
             self.pieces += ["\n", [Name(":action"), f"[{action.label}]", len(self.actions) - 1]]
-        return [Name(":title"), self.text_of(obj), Name(":id"), 0, Name(":content"), self.chunk(0, CHUNK)]
+        return [Name(":title"), text_of(obj), Name(":id"), 0, Name(":content"), self.chunk(0, CHUNK)]
 
     def chunk(self, start, end):
         """The pieces from ``start`` to before ``end``, with how many there are."""
@@ -98,5 +107,5 @@ class Inspector:
 
     def history(self):
         """The way so far, as text."""
-        lines = [f"{'*' if index == self.at else ' '} {index} {self.text_of(obj)}" for index, obj in enumerate(self.path)]
+        lines = [f"{'*' if index == self.at else ' '} {index} {text_of(obj)}" for index, obj in enumerate(self.path)]
         return "\n".join(["The way through the objects:", *lines])

@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
+from cramhy_runtime.ground.printing import guarded, prin1_to_string
 from cramhy_runtime.languages.commonlisp.tools.advice import report_text
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of
 
 from .rpcs import Refused
+
+
+def aborted(work):
+    """What SLIME writes behind "Evaluation aborted on": the condition that opened the debugger in the call ``work``, as it prints."""
+    condition = getattr(work, "debugged", None)
+    if condition is None:
+        return "aborted"
+    return guarded(lambda: prin1_to_string(condition), lambda problem: type(condition).__name__)
 
 
 def reason_of(failure):

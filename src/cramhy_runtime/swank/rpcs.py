@@ -11,10 +11,11 @@ import inspect
 
 from .wire import Name
 
-PREFIXES = ("swank", "swank-repl", "slynk", "slynk-mrepl", "slynk-completion", "slynk-apropos")
+PREFIXES = ("swank", "swank-repl", "swank-trace-dialog", "swank-macrostep", "slynk", "slynk-mrepl", "slynk-completion", "slynk-apropos")
 """The packages whose calls are in the table under their bare names: SLIME's and SLY's."""
 
 _table = {}
+_inner = {}  # calls that may stand in the arguments of another call: what they give need not be sent
 
 
 class Refused(Exception):
@@ -52,10 +53,18 @@ class Entry:
 
 def rpc(names, evaluates=False):
     """A decorator: enter the function under ``names``, with blanks between."""
+    return _entering(_table, names, evaluates)
 
+
+def inner(names):
+    """A decorator like `rpc`, for a call that stands in the arguments of another one, such as ``(swank::from-string "tut::drive")``."""
+    return _entering(_inner, names, False)
+
+
+def _entering(table, names, evaluates):
     def enter(function):
         for name in names.split():
-            _table[name] = Entry(name, function, evaluates)
+            table[name] = Entry(name, function, evaluates)
         return function
 
     return enter
@@ -63,11 +72,15 @@ def rpc(names, evaluates=False):
 
 def find(name):
     """The `Entry` that ``name``, a `Name`, means. `Refused` if there is none."""
-    package, _, short = name.lower().replace("::", ":").rpartition(":")
-    entry = _table.get(short if package in PREFIXES else f"{package}:{short}")
+    entry = _found(_table, name)
     if entry is None:
         raise Refused(f"cramhy does not know the call {name}.")
     return entry
+
+
+def _found(table, name):
+    package, _, short = name.lower().replace("::", ":").rpartition(":")
+    return table.get(short if package in PREFIXES else f"{package}:{short}")
 
 
 def parse(form):
@@ -83,8 +96,48 @@ def parse(form):
                 entry.name, lambda call, *_: [entry.function(call, *given, **named) for given, named in bound][:0], entry.evaluates
             )
             return each, [], {}
+    if form[0] in ("cl:progn", "progn"):
+        return _one_after_the_other([parse(part) for part in form[1:] if part is not None])
     entry = find(form[0])
-    return (entry, *entry.bind([_value(argument) for argument in form[1:]]))
+    given, named = entry.bind([_value(argument) for argument in form[1:]])
+    if any(map(_has_inner, given)):
+        outer = entry.function
+        entry = Entry(
+            entry.name, lambda call, *given, **named: outer(call, *(_now(each, call) for each in given), **named), entry.evaluates
+        )
+    return entry, given, named
+
+
+def _one_after_the_other(parsed):
+    """(entry, arguments, keywords) of several calls that are carried out one after the other; the last one's value is sent."""
+    if not parsed:
+        raise Refused("PROGN has no calls in it.")
+
+    def run(call, *_):
+        for entry, given, named in parsed:
+            value = entry.function(call, *given, **named)
+        return value
+
+    last = parsed[-1][0]
+    return Entry(last.name, run, any(entry.evaluates for entry, _, _ in parsed)), [], {}
+
+
+class _Inner:
+    """A call in the arguments of a call: it is carried out when its value is needed."""
+
+    def __init__(self, entry, given, named):
+        self.entry, self.given, self.named = entry, given, named
+
+
+def _has_inner(value):
+    return any(map(_has_inner, value)) if isinstance(value, list) else isinstance(value, _Inner)
+
+
+def _now(value, call):
+    """The value of an argument when its call is carried out."""
+    if isinstance(value, list):
+        return [_now(item, call) for item in value]
+    return value.entry.function(call, *value.given, **value.named) if isinstance(value, _Inner) else value
 
 
 def _value(argument):
@@ -95,6 +148,9 @@ def _value(argument):
         return argument[1]
     if argument[0] in ("list", "cl:list"):
         return [_value(item) for item in argument[1:]] or None
+    entry = _found(_inner, argument[0]) if isinstance(argument[0], Name) else None
+    if entry is not None:
+        return _Inner(entry, *entry.bind([_value(item) for item in argument[1:]]))
     raise Refused(f"cramhy evaluates no calls in the arguments of a call, such as {argument[0]}.")
 
 

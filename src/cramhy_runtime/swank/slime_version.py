@@ -28,7 +28,7 @@ def started_from(loader):
 
 def slime_version():
     """The version to tell, such as ``"2.27"``."""
-    found = _said or [path for place in PLACES for path in sorted(glob.glob(os.path.expanduser(place)), reverse=True)]
+    found = [*_said, *(path for place in PLACES for path in sorted(glob.glob(os.path.expanduser(place)), reverse=True))]
     for path in found:
         try:
             with open(path, encoding="utf-8", errors="replace") as file:

@@ -2,9 +2,40 @@
 
 Where the parts are: `connecting` the first words and the last; `evaluating` forms, the REPL buffer and its presentations; `compiling`
 files and definitions, with notes; `completing` names and arglists; `describing` documentation; `finding` definitions and uses; `expanding`
-macros; `inspecting` objects; `debugging` errors; `threads` tasks; `packages` symbols and packages.
+macros; `inspecting` objects; `debugging` errors; `threads` tasks; `packages` symbols and packages; `systems` those of ASDF; `tracing` the
+buffer of recorded calls; `copying` objects that Emacs shows.
 """
 
-from . import compiling, completing, connecting, debugging, describing, evaluating, expanding, finding, inspecting, packages, threads
+from . import (
+    compiling,
+    completing,
+    connecting,
+    copying,
+    debugging,
+    describing,
+    evaluating,
+    expanding,
+    finding,
+    inspecting,
+    packages,
+    systems,
+    threads,
+    tracing,
+)
 
-ALL = (compiling, completing, connecting, debugging, describing, evaluating, expanding, finding, inspecting, packages, threads)
+ALL = (
+    compiling,
+    completing,
+    connecting,
+    copying,
+    debugging,
+    describing,
+    evaluating,
+    expanding,
+    finding,
+    inspecting,
+    packages,
+    systems,
+    threads,
+    tracing,
+)

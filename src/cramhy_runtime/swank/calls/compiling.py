@@ -12,9 +12,10 @@ from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import CompileError, StyleWarning
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.languages.commonlisp.compiler import compilation_unit
+from cramhy_runtime.languages.commonlisp.compiler.generate_functions import DEBUGGED
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.reader.reader import Reader
-from cramhy_runtime.languages.commonlisp.systems import program_files, systems
+from cramhy_runtime.languages.commonlisp.systems import program_files
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for, report_text
 
 from .. import indentation, places
@@ -64,6 +65,14 @@ def time_now():
     return time.perf_counter()
 
 
+def debugged(policy):
+    """Whether ``policy``, such as ``((cl:debug . 3))``, wants functions whose calls the debugger can leave."""
+    for entry in policy if isinstance(policy, list) else ():
+        if isinstance(entry, list) and len(entry) > 1 and str(entry[0]).rpartition(":")[2].lower() == "debug":
+            return isinstance(entry[-1], int) and entry[-1] >= 2
+    return False
+
+
 @contextmanager
 def noted(notes):
     """While the block runs, what the compiler says goes to ``notes``."""
@@ -82,7 +91,7 @@ def compile_file_for_emacs(call, path, loads=None, *, policy=None):
     if not os.path.isfile(path):
         raise Refused(f"There is no file {path}.")
     notes, began, file = Notes(places.location_of), time_now(), None
-    with noted(notes), binding(evaluator.PACKAGE, call.package):
+    with noted(notes), binding(evaluator.PACKAGE, call.package, DEBUGGED, debugged(policy)):
         if path.endswith(".hy"):
             _caught(notes, lambda: aborting(call, lambda: call.session.load(path)))
         else:
@@ -122,10 +131,10 @@ def compile_string_for_emacs(call, source, buffer, position, filename=None, poli
         while (form := reader.read(eof_error=False, eof_value=end)) is not end:
             _caught(notes, lambda form=form: call.session.evaluate(form, reader, top=call.debugger is None))
 
-    with noted(notes), binding(evaluator.PACKAGE, call.package):
+    with noted(notes), binding(evaluator.PACKAGE, call.package, DEBUGGED, debugged(policy)):
         _caught(notes, lambda: aborting(call, run))
     indentation.tell(call.connection)
-    return notes.result(began, True)
+    return notes.result(began)
 
 
 def _raise(condition):
@@ -137,21 +146,6 @@ def _caught(notes, thunk):
     """Call ``thunk``. What the compiler or the reader cannot take becomes a note, and the rest of it is left out."""
     kinds = (CompileError, *UNREADABLE)
     conditions.handler_case([(kind, notes.fail) for kind in kinds], thunk)
-
-
-@rpc("operate-on-system-for-emacs", evaluates=True)
-def operate_on_system(call, name, operation=None, *options):
-    """Load a system of ASDF, with notes: ``M-x slime-load-system``. Testing it is ``(asdf:test-system name)``."""
-    notes, began = Notes(places.location_of), time_now()
-    with noted(notes), binding(evaluator.PACKAGE, call.package):
-        aborting(call, lambda: call.session.load(text(name)))
-    indentation.tell(call.connection)
-    return notes.result(began)
-
-
-@rpc("list-asdf-systems list-all-systems-in-central-registry list-all-systems-known-to-asdf")
-def list_systems(call):
-    return sorted(set(map(str, systems.known_systems())))
 
 
 @rpc("compile-multiple-strings-for-emacs", evaluates=True)

@@ -10,14 +10,14 @@ from cramhy_runtime import __version__
 from cramhy_runtime.ground.packages import KEYWORD, symbol_package
 from cramhy_runtime.languages.commonlisp.reader.dispatch_macros import FEATURES
 
-from .. import indentation
+from .. import images, indentation
 from ..packages import prompt_of
 from ..rpcs import rpc
 from ..slime_version import slime_version
 from ..wire import Name
 
 MODULES = """SWANK-REPL SWANK-PRESENTATIONS SWANK-ARGLISTS SWANK-FUZZY SWANK-C-P-C SWANK-FANCY-INSPECTOR SWANK-PACKAGE-FU SWANK-UTIL
-SWANK-INDENTATION SWANK-ASDF""".split()
+SWANK-INDENTATION SWANK-ASDF SWANK-TRACE-DIALOG""".split()
 
 
 def features():
@@ -46,6 +46,10 @@ def connection_info(call):
 @rpc("swank-require slynk-require")
 def swank_require(call, modules, *_):
     """Parts of SLIME that Emacs wants; the parts that are here. Calls of others are refused one by one."""
+    names = {str(each).upper() for each in (modules if isinstance(modules, list) else [modules])}
+    if "SWANK-MEDIA" in names:
+        images.wanted(call.connection)
+        return [*MODULES, "SWANK-MEDIA"]
     return MODULES
 
 
@@ -65,6 +69,6 @@ def ping(call, *_):
     return "pong"
 
 
-@rpc("toggle-debug-on-swank-error toggle-break-on-signals buffer-first-change")
+@rpc("toggle-debug-on-swank-error toggle-break-on-signals buffer-first-change slynk-add-load-paths")
 def does_nothing(call, *_):
     return None

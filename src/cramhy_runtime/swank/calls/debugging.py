@@ -26,7 +26,8 @@ def _debugger(call):
     return call.debugger
 
 
-def _frame(call, index):
+def frame_at(call, index):
+    """The frame of that number in the debugger whose buffer the call came from."""
     return _debugger(call).frame(index)
 
 
@@ -84,7 +85,7 @@ def throw_to_toplevel(call):
 
 @rpc("frame-locals-and-catch-tags")
 def frame_locals(call, index):
-    variables = _frame(call, index).variables
+    variables = frame_at(call, index).variables
     shown = [[Name(":name"), name, Name(":id"), 0, Name(":value"), _text(value)] for name, value in variables]
     return [shown, None]
 
@@ -95,25 +96,25 @@ def _text(value):
 
 @rpc("frame-source-location")
 def frame_source_location(call, index):
-    return places.location_of(_frame(call, index).position)
+    return places.location_of(frame_at(call, index).position)
 
 
 @rpc("frame-package-name")
 def frame_package_name(call, index):
-    _frame(call, index)
+    frame_at(call, index)
     return prompt_of(call.package)
 
 
 @rpc("eval-string-in-frame", evaluates=True)
 def eval_in_frame(call, source, index, package=None):
     with binding(evaluator.PACKAGE, call.package):
-        return echo(list(all_values(_frame(call, index).evaluate(text(source)))))
+        return echo(list(all_values(frame_at(call, index).evaluate(text(source)))))
 
 
 @rpc("pprint-eval-string-in-frame", evaluates=True)
 def pprint_eval_in_frame(call, source, index, package=None):
     with binding(evaluator.PACKAGE, call.package):
-        values = all_values(_frame(call, index).evaluate(text(source)))
+        values = all_values(frame_at(call, index).evaluate(text(source)))
         with binding(PRINT_PRETTY, True):
             return "".join(prin1_to_string(value) + "\n" for value in values)
 
@@ -121,13 +122,13 @@ def pprint_eval_in_frame(call, source, index, package=None):
 @rpc("inspect-in-frame", evaluates=True)
 def inspect_in_frame(call, source, index):
     with binding(evaluator.PACKAGE, call.package):
-        values = all_values(_frame(call, index).evaluate(text(source)))
+        values = all_values(frame_at(call, index).evaluate(text(source)))
     return inspect(call, values[0] if values else None)
 
 
 @rpc("inspect-frame-var")
 def inspect_frame_var(call, index, variable):
-    variables = _frame(call, index).variables
+    variables = frame_at(call, index).variables
     if not isinstance(variable, int) or not 0 <= variable < len(variables):
         raise Refused(f"This frame has no variable {variable}.")
     return inspect(call, variables[variable][1])
@@ -149,7 +150,7 @@ def sldb_disassemble(call, index):
     import io
 
     shown = io.StringIO()
-    dis.dis(_frame(call, index).frame.f_code, file=shown)
+    dis.dis(frame_at(call, index).frame.f_code, file=shown)
     return shown.getvalue()
 
 
@@ -165,10 +166,25 @@ def step(call, index):
     raise Refused("Compiled code cannot be stopped between its forms. (step form) prints each call that a form makes, as (trace f) does.")
 
 
-@rpc("sldb-return-from-frame restart-frame")
-def leave_frame(call, index, *_):
-    _frame(call, index)
-    raise Refused("A frame cannot be left with a value or begun anew. Take a restart, such as USE-VALUE or RETRY.")
+@rpc("sldb-return-from-frame", evaluates=True)
+def return_from_frame(call, index, source):
+    frame = frame_at(call, index)
+    if frame.why_it_stays:
+        return _what_to_do(frame.why_it_stays)
+    with binding(evaluator.PACKAGE, call.package):
+        value = frame.evaluate(text(source))
+    return frame.leave(value)
+
+
+@rpc("restart-frame", evaluates=True)
+def restart_frame(call, index):
+    frame = frame_at(call, index)
+    return _what_to_do(frame.why_it_stays) if frame.why_it_stays else frame.restart()
+
+
+def _what_to_do(why):
+    """A text for the echo area. It is no refusal, because SLIME shows no reason of one here."""
+    return f"{why} C-u C-c C-c in a definition compiles it for that; or take a restart."
 
 
 @rpc("sldb-break-on-return sldb-break")

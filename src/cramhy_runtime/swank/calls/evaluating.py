@@ -9,10 +9,12 @@ from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PRINT_PRETTY, PRINT_RIGHT_MARGIN
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.systems import program_files
+from cramhy_runtime.session.requests import request_of
 from cramhy_runtime.session.session import HISTORY, LAST_FORMS, LAST_VALUES
 
 from .. import indentation, presentations
 from ..packages import prompt_of
+from ..reasons import aborted
 from ..rpcs import Refused, number, rpc, text
 from ..wire import Name
 
@@ -29,7 +31,8 @@ def aborting(call, thunk):
     """What ``thunk`` returns, called where the restart ABORT leads back to Emacs. `Refused` if that was taken."""
     completed, result = call.session.with_abort(thunk, TOP)
     if not completed:
-        raise Refused("aborted")
+        request = request_of()
+        raise Refused(aborted(request.owner if request is not None else None))
     return result
 
 
@@ -90,7 +93,7 @@ def load_file(call, path):
 # ---------------------------------------------------------------------------------------------------------------------- REPL
 
 
-@rpc("create-repl create-mrepl")
+@rpc("create-repl")
 def create_repl(call, target=None, *, coding_system=None):
     package = call.connection.package
     indentation.tell(call.connection)
@@ -103,16 +106,26 @@ def listener_eval(call, source, *, window_width=None):
     connection = call.connection
     margin = (PRINT_RIGHT_MARGIN, window_width) if isinstance(window_width, int) and window_width > 20 else ()
     with binding(evaluator.PACKAGE, connection.package, *margin):
+        if connection.images is not None:
+            connection.images.begin()
         values = aborting(call, lambda: call.session.evaluate_text(text(source), None, top=True))
         before, connection.package = connection.package, evaluator.PACKAGE.value
         if connection.package is not before:
             connection.send(Name(":new-package"), connection.package.name, prompt_of(connection.package))
-        _show(connection, values)
+        show(connection, values)
+        if connection.images is not None:
+            connection.images.show()
     if "(" in text(source) and ("mac" in text(source).lower() or "load" in text(source).lower()):
         indentation.tell(connection)  # it may have defined macros
 
 
-def _show(connection, values):
+@rpc("create-mrepl")
+def create_mrepl(call, *_):
+    raise Refused("cramhy has no REPL buffer for SLY. C-x C-e, C-c C-c and M-. work in SLY's buffers of files; for a REPL take SLIME.")
+
+
+def show(connection, values):
+    """Write ``values`` into the REPL buffer as the results of a form."""
     kept, result = presentations.of(connection), Name(":repl-result")
     fresh = streams.STANDARD_OUTPUT.value
     if getattr(fresh, "column", 0):
@@ -154,15 +167,13 @@ def lookup_and_save(call, id_):
     return kept.add(kept.find(id_))
 
 
-@rpc("listener-save-value listener-get-value redirect-trace-output init-presentation-streams")
+@rpc("redirect-trace-output init-presentation-streams")
 def not_here(call, *_):
     return None
 
 
 def presented(id_, *default):
     """``(swank:lookup-presented-object-or-lose 3)``: the object that Emacs shows under that number."""
-    from cramhy_runtime.session.requests import request_of
-
     request = request_of(kernel.current())
     connection = getattr(request.owner, "connection", None) if request is not None else None
     if connection is None:

@@ -4,26 +4,24 @@ from __future__ import annotations
 
 import os
 
-from cramhy_runtime.ground.data import Symbol
-from cramhy_runtime.ground.packages import all_packages, find_package
+from cramhy_runtime.ground.data import Symbol, lisp_list, list_from
+from cramhy_runtime.ground.packages import all_packages, sym
 from cramhy_runtime.languages.commonlisp.evaluation.symbols import fmakunbound
 from cramhy_runtime.languages.commonlisp.pathnames.namestrings import parse_native
 from cramhy_runtime.languages.commonlisp.pathnames.pathnames import DEFAULTS
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.tools import tracing
-from cramhy_runtime.ground.data import list_from
 from cramhy_runtime.session.arglists import symbol_named
 
-from ..packages import prompt_of
+from ..packages import package_called, prompt_of
 from ..rpcs import Refused, rpc, text
 
 
 def package_named(name):
     """The package that ``name``, as Emacs sends it, means. `Refused` if there is none."""
-    bare = text(name, "The name of a package").strip().lstrip("#").lstrip(":").strip('"|')
-    found = find_package(bare) or find_package(bare.upper())
+    found = package_called(text(name, "The name of a package"))
     if found is None:
-        raise Refused(f"There is no package {bare}.")
+        raise Refused(f"There is no package {name}.")
     return found
 
 
@@ -33,6 +31,20 @@ def symbol_of(call, name):
     if found is None:
         raise Refused(f"There is no symbol {name} in the package {call.package.name}.")
     return found
+
+
+def function_name(call, spec):
+    """The name of a function that ``spec`` says as SLIME writes it: ``"drive"``, ``"(setf speed)"``, ``"(:defmethod drive (fast))"``."""
+    written = text(spec, "What is to be traced").strip()
+    if not written.startswith("("):
+        return symbol_of(call, written)
+    words = written.strip("()").split()
+    kind = words[0].lower() if len(words) > 1 else ""
+    if kind == "setf":
+        return lisp_list(sym("SETF"), symbol_of(call, words[1].strip("()")))
+    if kind in (":defun", ":defgeneric", ":defmethod", ":defmacro"):
+        return symbol_of(call, words[1].strip("()"))
+    raise Refused(f"cramhy traces functions by their names, and cannot trace {written}.")
 
 
 @rpc("list-all-package-names")
@@ -80,11 +92,11 @@ def unintern_symbol(call, name, package):
 
 @rpc("swank-toggle-trace")
 def toggle_trace(call, spec):
-    name = text(spec, "What is to be traced")
-    symbol = symbol_of(call, name)
-    traced = any(each is symbol for each in tracing.trace(None) or ())
-    (tracing.untrace if traced else tracing.trace)(list_from([symbol]))
-    return f"{prin1_to_string(symbol)} is {'no longer' if traced else 'now'} traced."
+    name = function_name(call, spec)
+    entry = tracing.entry_of(name)
+    traced = entry is not None and entry.prints
+    (tracing.untrace if traced else tracing.trace)(list_from([name]))
+    return f"{prin1_to_string(name)} is {'no longer' if traced else 'now'} traced."
 
 
 @rpc("untrace-all")

@@ -6,13 +6,17 @@ use keywords. A variable that must be caught anew in each turn of a loop comes a
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.ground.data import Cons, Symbol
+from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.packages import symbol_name
 from . import nodes
 from .core import List, Tuple, expression, word
 from .generate_operators import class_of
 from .destinations import NONE, RETURN, TRUE, Destination
+
+DEBUGGED = special(Symbol("*DEBUGGED*"), False)
+"""Whether functions are compiled so that a debugger can leave their calls. It costs a block around the body."""
 
 
 class FunctionGenerator:
@@ -53,9 +57,22 @@ class FunctionGenerator:
         simple = not header and len(statements) == 1 and given is None and node.name is None and statements[0][0] == word("return")
         if simple:
             return self.positioned(expression(word("fn"), List(parameters), statements[0][1]), node)
+        if DEBUGGED.value and (given is not None or node.name is not None):
+            statements = [self.leavable(statements)]
         definition = expression(word("defn"), word(name), List(parameters), *header, *statements)
         self.out.append(self.positioned(definition, node))
         return word(name)
+
+    def leavable(self, statements):
+        """``statements``, the body of a function, so that a debugger can end the call or begin it anew (`ground.frame_exits`)."""
+        caught = self.temporary("Lexit")
+        leave = expression(
+            word("when"),
+            expression(word("Lends_here"), word(caught)),
+            expression(word("return"), expression(word("."), word(caught), word("value"))),
+        )
+        handler = expression(word("except"), List([word(caught), word("LFrameExit")]), leave)
+        return expression(word("while"), TRUE, expression(word("try"), *statements, handler))
 
     def parameters(self, node):
         """The Python parameters of ``node``; what they need done on entry is emitted."""

@@ -30,6 +30,7 @@ from cramhy_runtime.ground.conditions import (
     unbound_variable,
     unknown_key,
 )
+from cramhy_runtime.ground.frame_exits import FrameExit, ends_here
 from cramhy_runtime.ground.data import (
     FreshString,
     Character,
@@ -256,6 +257,8 @@ def not_(value):
 
 
 NAMESPACE = {
+    "LFrameExit": FrameExit,
+    "Lends_here": ends_here,
     "Lone": one,
     "Ltruth": truth,
     "Lnot": not_,

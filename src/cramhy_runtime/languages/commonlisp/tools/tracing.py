@@ -34,6 +34,8 @@ _traced: dict = per_image({})
 class Trace:
     """What ``trace`` was told about one function: its name and options (forms by option name)."""
 
+    prints = True
+
     def __init__(self, name, options):
         self.name, self.options = name, options
 
@@ -145,27 +147,41 @@ def _is_function(function):
 def trace(specs):
     """``trace``: watch the functions named; returns the list of the names, without arguments that of all traced functions."""
     if specs is None:
-        return list_from([entry.name for entry in _traced.values()])
-    names = []
-    for name, options in _parse(specs):
-        symbol, cell = _cell(name)
-        if _key(name) in _traced:
-            warn("~A is already TRACE'd, untracing it first.", name)
-            _untrace(name)
-        function = getattr(symbol, cell)
-        if cell == "function" and symbol.macro is not None:
-            warn("~A is a macro, not tracing: it is expanded before anything runs.", _qualified(name))
-        elif not _is_function(function):
-            warn("~A is undefined, not tracing.", _qualified(name))
-        else:
-            entry = _traced[_key(name)] = Trace(name, options)
-            if isinstance(function, GenericFunction):
-                function.watch(entry.watch)
-            else:
-                setattr(symbol, cell, entry.around(function))
-                symbol.function_changed()
-            names.append(name)
-    return list_from(names)
+        return list_from([entry.name for entry in _traced.values() if entry.prints])
+    return list_from([name for name, options in _parse(specs) if install(Trace(name, options))])
+
+
+def install(entry):
+    """Let ``entry``, a `Trace`, watch the calls of the function that it names; whether that can be. Otherwise a warning says why."""
+    name = entry.name
+    symbol, cell = _cell(name)
+    if _key(name) in _traced:
+        warn("~A is already TRACE'd, untracing it first.", name)
+        _untrace(name)
+    function = getattr(symbol, cell)
+    if cell == "function" and symbol.macro is not None:
+        warn("~A is a macro, not tracing: it is expanded before anything runs.", _qualified(name))
+        return False
+    if not _is_function(function):
+        warn("~A is undefined, not tracing.", _qualified(name))
+        return False
+    _traced[_key(name)] = entry
+    if isinstance(function, GenericFunction):
+        function.watch(entry.watch)
+    else:
+        setattr(symbol, cell, entry.around(function))
+        symbol.function_changed()
+    return True
+
+
+def entry_of(name):
+    """The `Trace` that watches the function called ``name``, or ``None``."""
+    return _traced.get(_key(name))
+
+
+def watching():
+    """The `Trace` of each function that is watched, in the order in which that began."""
+    return list(_traced.values())
 
 
 def _untrace(name):
