@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from lsprotocol import types as lsp
 
-from .test_mistakes import CONTROL, COURSE, PLANS
+from .mistakes import CONTROL, COURSE, PLANS
 
 SOURCE = PLANS.read_text(encoding="utf-8")
 URI = PLANS.as_uri()

@@ -52,6 +52,7 @@ class Text:
         self.text = text
         self.starts = [0, *(match.end() for match in re.finditer(r"\r\n|\n|\r", text))]
         self._tokens = self._forms = self._starts = None
+        self.packages = None  # see `meanings.package_name_at`
 
     # ------------------------------------------------------------------------------------------------------------ places
 
