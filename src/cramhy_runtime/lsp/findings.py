@@ -93,7 +93,7 @@ def _blamed(message, text, start):
 
 
 def _names_of(missing, what, text, start):
-    """The names of functions or variables, as ``what`` says, that can be seen from the package of the symbol ``missing``, or at ``start``."""
+    """The names of functions or variables, as ``what`` says, that are seen from the package of the symbol ``missing``, or at ``start``."""
     package = missing.package
     if what == "variable":
         for form in text.around(start):

@@ -34,8 +34,11 @@ _CHECKS = {}
 
 
 def check(text, texts, resolve):
-    """The `Finding`s in ``text``; to be called in its image. texts: those of its system with it. resolve: a function of a token, which gives
-    (name of an operator or function in capitals, its symbol or ``None``), or ``None`` for words that are the user's own."""
+    """The `Finding`s in ``text``; to be called in its image.
+
+    texts: those of its system with it. resolve: a function of a token, which gives (name of an operator or function in capitals, its
+    symbol or ``None``), or ``None`` for words that are the user's own; with a second argument that is true, the symbol of any word.
+    """
     checks = Checks(text, KnownNames(texts), resolve)
     for form in text.forms:
         checks.walk(form)
