@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import sys
+from pathlib import Path
 
 from lsprotocol import types as lsp
 from pygls.lsp.server import LanguageServer
@@ -17,9 +18,10 @@ from pygls.uris import from_fs_path, to_fs_path
 import cramhy_runtime
 from cramhy_runtime.ground.condition_types import Condition
 
-from . import answers, outlines, stdio
+from . import answers, lenses, outlines, stdio
 from .documents import Document
 from .indentation import indented
+from .running import Runs
 from .surroundings import Surroundings
 
 QUIET = 0.25
@@ -39,6 +41,7 @@ class Server(LanguageServer):
         self.documents = {}
         self.surroundings = Surroundings()
         self._waiting = {}
+        self.runs = Runs(self)
 
     def report_server_error(self, error, source):
         """One line in the log; the session goes on."""
@@ -275,7 +278,48 @@ def made():
             for title, start, end, new in finding.fixes
         ]
 
+    @answering(lsp.TEXT_DOCUMENT_CODE_LENS, otherwise=[])
+    def above(document, params):
+        return [
+            lsp.CodeLens(
+                range=_range(document.text, lens.start, document.text.end_of_line(lens.start)),
+                command=lsp.Command(lens.title, f"cramhy.{lens.title.lower()}", arguments=[document.uri, lens.name]),
+            )
+            for lens in lenses.lenses(document)
+        ]
+
+    def starting(title):
+        async def start(*arguments):
+            uri, name = (list(arguments[0] if len(arguments) == 1 and isinstance(arguments[0], list) else arguments) + [None, None])[:2]
+            document = server.document(uri) if isinstance(uri, str) else None
+            if document is None or not isinstance(name, str):
+                return server.runs.refuse("Open the file first.")
+            if document.path is None or not _saved(document):
+                return server.runs.refuse("Save the file first: what runs is what is on the disk.")
+            try:
+                return await server.runs.run(lenses.errand(document, title, name))
+            except (LookupError, OSError, Condition) as problem:
+                return server.runs.refuse(str(problem))
+
+        server.command(f"cramhy.{title.lower()}")(start)
+
+    starting(lenses.RUN)
+    starting(lenses.TEST)
+
+    @server.command("cramhy.interrupt")
+    def interrupt(*arguments):
+        return server.runs.interrupt()
+
+    server.feature(lsp.SHUTDOWN)(lambda *arguments: server.runs.end())
+
     return server
+
+
+def _saved(document):
+    try:
+        return Path(document.path).read_text(encoding="utf-8") == document.text.text
+    except (OSError, UnicodeDecodeError):
+        return False
 
 
 def run():

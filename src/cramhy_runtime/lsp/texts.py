@@ -87,6 +87,11 @@ class Text:
             return len(self.text)
         return min(len(self.text), self.starts[line - 1] + max(0, column - 1))
 
+    def end_of_line(self, offset):
+        """The end of the line that ``offset`` stands in, without its line end."""
+        end = self.text.find("\n", offset)
+        return len(self.text) if end < 0 else end
+
     @property
     def starts_set(self):
         """The offsets at which a line begins."""
