@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 from lsprotocol import types as lsp
-from systems import takes_long
 
 from .mistakes import MISTAKES, ROOT
 
@@ -51,10 +50,8 @@ def test_mistake(editor, number):
 
 
 FILES = sorted(ROOT.rglob("*.hy")) + sorted(ROOT.rglob("*.asd")) + sorted(ROOT.rglob("package.xml"))
-QUICK = [file for file in FILES if "kitchen" not in file.parts]
-SLOW = [file for file in FILES if "kitchen" in file.parts]
 
 
-@pytest.mark.parametrize("file", [*QUICK, *(pytest.param(file, marks=takes_long) for file in SLOW)], ids=lambda file: file.name)
+@pytest.mark.parametrize("file", FILES, ids=lambda file: f"{file.parent.name}-{file.name}")
 def test_the_course_has_none(editor, file):
     assert [(each.range.start, each.message) for each in editor.checked(file.as_uri(), file.read_text(encoding="utf-8"))] == []

@@ -78,8 +78,11 @@ def _never_closed(text, opened):
     return Finding(first.start, first.end, ERROR, message, ((f"Close it with {close}", before, before, close),))
 
 
-def compiled(text, path, filename, image):
-    """(the `Finding`s of the compiler, the package that is current at the end); image: a new one, which then holds the definitions."""
+def compiled(text, path, filename, image, further=None):
+    """(the `Finding`s of the compiler, the package that is current at the end).
+
+    image: a new one, which then holds the definitions. further: called in it with the findings; gives more of them.
+    """
     conditions = []
     with session_in(image), binding(PACKAGE, systems.asdf_user() if filename.endswith(".asd") else COMMON_LISP_USER):
         package = None
@@ -97,6 +100,8 @@ def compiled(text, path, filename, image):
                     finding = Finding(0, 1, ERROR, f"{type(problem).__name__}: {problem}")
                 if finding is not None and finding not in found:
                     found.append(finding)
+        if further:
+            found += further(found)
     return found, package
 
 

@@ -31,6 +31,7 @@ class Document:
         self.filename = path or uri
         self.image, self._inside = None, False
         self.findings = []
+        self.took = 0.1  # seconds, the last time that it was checked
         self.renew(source)
 
     def renew(self, source):
@@ -60,29 +61,31 @@ class Document:
             return found
         if self.kind == "hy":  # of which no macro of the user runs
             more = hy_files.check(self.text, self.filename)
+            more += [] if found else self.in_image(lambda: self._of_plans(more), [])
         else:
             image = self.surroundings.image_for(self.path)
             try:
                 with budget(SECONDS):
-                    more, _ = checking.compiled(self.text, self.path, self.filename, image)
+                    more, _ = checking.compiled(self.text, self.path, self.filename, image, () if found else self._of_plans)
             except OutOfTime:
                 message = f"Compiling this text was stopped after {SECONDS:.0f} s of processor time. Does a macro of it never end?"
                 return [*found, Finding(0, 1, WARNING, message)]
             self._keep(image)
-        if self.kind != "asd" and not found:
-            more = [*more, *self._of_plans(more)]
         brackets = bool(found)
         return found + [each for each in more if not (brackets and _of_reader(each))]
 
     def _of_plans(self, others):
-        """The `Finding`s of names that are data in plans, where nothing else is told."""
-
-        def found():
+        """The `Finding`s of names that are data in plans, where nothing else is told; to be called in the image."""
+        if self.kind == "asd":
+            return []
+        before, self._inside = self._inside, True
+        try:
             texts = [self.text, *(text for _, text in neighbours.texts(self))]
-            return plan_checks.check(self.text, texts, self._resolve_in_hy if self.kind == "hy" else self._resolve)
-
+            found = plan_checks.check(self.text, texts, self._resolve_in_hy if self.kind == "hy" else self._resolve)
+        finally:
+            self._inside = before
         told = {each.start for each in others}
-        return [each for each in self.in_image(found, []) if each.start not in told]
+        return [each for each in found if each.start not in told]
 
     def _resolve(self, token, own=False):
         symbol = symbol_named(token.text.lstrip("#'"), self.package_at(token.start))

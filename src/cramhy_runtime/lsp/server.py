@@ -1,7 +1,7 @@
 """The language server: which messages of the protocol are answered, by pygls.
 
 Messages are answered one after the other, in the main thread. Brackets are looked at when the text changes; the compiler is asked when
-nothing has been typed for `QUIET` seconds.
+nothing has been typed for a moment (`WITHIN`).
 """
 
 from __future__ import annotations
@@ -18,13 +18,17 @@ from pygls.uris import from_fs_path, to_fs_path
 import cramhy_runtime
 from cramhy_runtime.ground.condition_types import Condition
 
-from . import answers, lenses, outlines, stdio
+from . import answers, hy_files, lenses, outlines, stdio, system_files
 from .documents import Document
 from .indentation import indented
 from .running import Runs
 from .surroundings import Surroundings
 
-QUIET = 0.25
+WITHIN = 0.25
+"""Seconds after the last key within which diagnostics are to be told. The compiler is asked so much earlier as it took the last time,"""
+SHORTEST = 0.05
+"""but not before nothing has been typed for so many seconds."""
+PAUSE = 0.02
 _LEGEND = lsp.SemanticTokensLegend(token_types=outlines.KINDS, token_modifiers=[])
 _SYMBOL_KINDS = (
     ("defclass", lsp.SymbolKind.Class), ("defstruct", lsp.SymbolKind.Struct), ("define-condition", lsp.SymbolKind.Class),
@@ -46,6 +50,24 @@ class Server(LanguageServer):
     def report_server_error(self, error, source):
         """One line in the log; the session goes on."""
         print(f"cramhy lsp: {type(error).__name__}: {str(error).splitlines()[0][:300] if str(error) else ''}", file=sys.stderr, flush=True)
+
+    def prepare(self):
+        """Load, before the first text is opened, what the systems in the editor's folder depend on, between two messages each."""
+        root = self.workspace.root_path
+        waiting = iter(system_files.below(root) if root else ())
+
+        def one():
+            asd = next(waiting, None)
+            if asd is None:
+                hy_files.plan_macros()
+                return
+            try:
+                self.surroundings.warm(asd)
+            except (Exception, Condition) as problem:
+                self.report_server_error(problem, None)
+            asyncio.get_running_loop().call_later(PAUSE, one)
+
+        asyncio.get_running_loop().call_later(PAUSE, one)
 
     def document(self, uri):
         """The `Document` of that name with its present text, or ``None``."""
@@ -71,7 +93,9 @@ class Server(LanguageServer):
         waiting = self._waiting.pop(uri, None)
         if waiting is not None:
             waiting.cancel()
-        self._waiting[uri] = asyncio.get_running_loop().call_later(QUIET, self.check, uri)
+        document = self.documents.get(uri)
+        pause = max(SHORTEST, WITHIN - (document.took if document is not None else WITHIN))
+        self._waiting[uri] = asyncio.get_running_loop().call_later(pause, self.check, uri)
 
     def check(self, uri):
         """Compile the text of ``uri``, and tell what was found."""
@@ -79,11 +103,14 @@ class Server(LanguageServer):
         document = self.documents.get(uri)
         if document is None:
             return
+        clock = asyncio.get_running_loop().time
+        begin = clock()
         try:
             found = document.compile()
         except (Exception, Condition) as problem:
             self.report_server_error(problem, None)
             found = document.parse()
+        document.took = clock() - begin
         self.tell(document, found)
 
     def tell(self, document, found):
@@ -151,6 +178,10 @@ def made():
     server.feature(lsp.TEXT_DOCUMENT_DID_OPEN)(lambda params: server.renew(params.text_document.uri))
     server.feature(lsp.TEXT_DOCUMENT_DID_CHANGE)(lambda params: server.renew(params.text_document.uri))
     server.feature(lsp.TEXT_DOCUMENT_DID_CLOSE)(lambda params: server.close(params.text_document.uri))
+
+    @server.feature(lsp.INITIALIZED)
+    def initialized(params):
+        server.prepare()
 
     @server.feature(lsp.TEXT_DOCUMENT_DID_SAVE)
     def saved(params):

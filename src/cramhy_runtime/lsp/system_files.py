@@ -22,6 +22,25 @@ ENCODING DEFAULT-COMPONENT-CLASS BUILD-OPERATION BUILD-PATHNAME ENTRY-POINT EXPL
 _EVALUATED = ("IN-PACKAGE", "DEFPACKAGE")
 
 
+MOST_BELOW = 6
+_DEPTH = 4
+
+
+def below(folder):
+    """The first `MOST_BELOW` ``.asd`` files in ``folder`` and in the folders in it, not below hidden ones, nor deeper than four."""
+    found, waiting = [], [(Path(folder), 0)]
+    while waiting and len(found) < MOST_BELOW:
+        place, depth = waiting.pop(0)
+        try:
+            entries = sorted(place.iterdir())
+        except OSError:
+            continue
+        found += [entry for entry in entries if entry.suffix == ".asd" and entry.is_file()]
+        if depth < _DEPTH:
+            waiting += [(entry, depth + 1) for entry in entries if not entry.name.startswith((".", "node_modules")) and entry.is_dir()]
+    return found[:MOST_BELOW]
+
+
 def check(text, filename, fail):
     """Read the definitions in ``text``, of the file ``filename``. Returns the package at its end. fail: called with each condition."""
     reader, end = Reader(text, filename=filename), object()
