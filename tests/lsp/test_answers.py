@@ -150,3 +150,14 @@ def test_symbols_of_one_name_are_told_apart_by_their_packages(editor, tmp_path):
     assert asked("kitchen", 2, 18) == (of_kitchen, "kitchen.lisp")
     assert asked("garage", 2, 40) == (of_kitchen, "kitchen.lisp")
     assert asked("garage", 2, 18) == ([("gar", 1), ("gar", 2)], "garage.lisp")
+
+
+def test_a_copy_of_the_course_has_its_own_definitions(editor, tmp_path):
+    import shutil
+
+    copy = tmp_path / "course"
+    shutil.copytree(COURSE, copy)
+    file = copy / "src" / PLANS.name
+    assert list(editor.checked(file.as_uri(), SOURCE)) == []
+    (found,) = editor.ask("definition", lsp.DefinitionParams(lsp.TextDocumentIdentifier(file.as_uri()), at("send-vel-cmd", 2)))
+    assert found.uri == (copy / "src" / CONTROL.name).as_uri()

@@ -17,7 +17,7 @@ from cramhy_runtime.languages.hy import shapes
 from cramhy_runtime.languages.hy.plan_macros import macros
 from cramhy_runtime.languages.operators import operator_of
 from cramhy_runtime.session import arglists, completion, fuzzy, lookup
-from cramhy_runtime.session.body_arguments import body_start
+from cramhy_runtime.session.body_arguments import body_start, body_start_of_name
 from cramhy_runtime.session.lookup import bare_name
 
 from . import meanings, neighbours, outlines, scopes
@@ -149,11 +149,13 @@ def definitions(document, offset):
     if found or document.kind == "hy":
         return found
     places = document.in_image(lambda: lookup.definitions(token.text, document.package_at(token.start)), [])
-    for place in places:
+    beside = set(map(str, neighbours.files(document)))
+    for place in [each for each in places if each.file in beside] or places:  # not those of another copy of the system
         if os.path.isfile(place.file) and os.path.realpath(place.file) != os.path.realpath(document.filename):
             text = Text(Path(place.file).read_text(encoding="utf-8", errors="replace"))
             start = text.offset_of_reader(place.line, place.column)
-            found.append(Spot(place.file, text, start, start + 1))
+            if all((each.path, each.start) != (place.file, start) for each in found):
+                found.append(Spot(place.file, text, start, start + 1))
     return found or _in_system(document, token)
 
 
@@ -223,7 +225,9 @@ def body_starts(document):
             return None
         if name not in known:
             symbol = arglists.symbol_named(name, package)
-            known[name] = body_start(symbol) if isinstance(symbol, Symbol) else None
+            count = body_start(symbol) if isinstance(symbol, Symbol) else None
+            defined = isinstance(symbol, Symbol) and arglists.is_callable(symbol)
+            known[name] = count if count is not None or defined else body_start_of_name(name)
         return known[name]
 
     return ask
