@@ -85,7 +85,7 @@ class Surroundings:
 
     def _of_system(self, asd, name):
         image, stamps = self._of_folder(asd)
-        return self._made((asd, name), image, stamps, lambda seen: _depend(systems.find_system(name), seen, set()))
+        return self._made((asd, name), image, stamps, lambda seen: _depend(systems.systems[name], seen, set()))
 
     def _made(self, key, before, stamps, prepare):
         """(Image, stamps) for ``key``: the one that is kept, or a copy of the image ``before`` in which ``prepare`` has run.
@@ -177,7 +177,7 @@ def _depend(system, files, seen):
         if systems.is_provided(name) or f"{name}.asd" in systems.libraries() or name in systems.libraries():
             systems.load_system(name)
             continue
-        other = systems.find_system(name)
+        other = systems.systems.get(name) or systems.find_system(name)  # that of the same folder comes before others of its name
         files.add(str(other.file))
         _depend(other, files, seen)
         for component in systems.files_of(other):
