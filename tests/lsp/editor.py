@@ -28,6 +28,20 @@ class Editor:
             self.told.setdefault(params.uri, []).append(params.diagnostics)
             self.arrived.set()
 
+        self.shown, self.logged, self.news = [], [], threading.Condition()
+
+        @self.client.feature(lsp.WINDOW_SHOW_MESSAGE)
+        def shown(params):
+            with self.news:
+                self.shown.append(params)
+                self.news.notify_all()
+
+        @self.client.feature(lsp.WINDOW_LOG_MESSAGE)
+        def logged(params):
+            with self.news:
+                self.logged.append(params.message)
+                self.news.notify_all()
+
         self.run(self.client.start_io(*words))
         self.capabilities = self.run(
             self.client.initialize_async(
@@ -86,6 +100,11 @@ class Editor:
 
     def _early(self, uri):
         return len(self.told[uri]) == 1 and any("closed" in each.message or "closes" in each.message for each in self.told[uri][0])
+
+    def wait_for(self, condition):
+        """Wait until messages of the server make ``condition`` true."""
+        with self.news:
+            assert self.news.wait_for(condition, LONG)
 
     def ask(self, name, params):
         return self.run(getattr(self.client, f"text_document_{name}_async")(params))

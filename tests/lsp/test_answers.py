@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from lsprotocol import types as lsp
 
-from .test_mistakes import CONTROL, COURSE, PLANS
+from .mistakes import CONTROL, COURSE, PLANS
 
 SOURCE = PLANS.read_text(encoding="utf-8")
 URI = PLANS.as_uri()
@@ -109,3 +109,55 @@ def test_a_missing_extra_is_named(monkeypatch, capsys):
     assert lsp_command.run() == 2
     assert "pygls" in capsys.readouterr().err
     assert COURSE.is_dir()
+
+
+TWINS = {
+    "package.lisp": """(defpackage :kitchen (:use :cl) (:export #:open-door))
+(defpackage :garage (:use :cl))
+(defpackage :hall (:use :cl :kitchen))
+""",
+    "kitchen.lisp": """(in-package :kitchen)
+(defun open-door (x) x)
+(defun enter () (open-door 1))
+""",
+    "garage.lisp": """(in-package :garage)
+(defun open-door (x) (list x))
+(defun enter () (open-door 2) (kitchen:open-door 3))
+""",
+    "hall.lisp": """(in-package :hall)
+(defun enter () (open-door 4))
+""",
+    "twins.asd": '(defsystem twins :serial t :components ((:file "package") (:file "kitchen") (:file "garage") (:file "hall")))\n',
+}
+
+
+def test_symbols_of_one_name_are_told_apart_by_their_packages(editor, tmp_path):
+    for name, text in TWINS.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    for name in ("kitchen", "garage", "hall"):
+        assert list(editor.checked((tmp_path / f"{name}.lisp").as_uri(), TWINS[f"{name}.lisp"])) == []
+
+    def asked(name, line, column):
+        document, position = lsp.TextDocumentIdentifier((tmp_path / f"{name}.lisp").as_uri()), lsp.Position(line, column)
+        found = editor.ask("references", lsp.ReferenceParams(lsp.ReferenceContext(True), document, position))
+        (defined,) = editor.ask("definition", lsp.DefinitionParams(document, position))
+        changes = editor.ask("rename", lsp.RenameParams(document, position, "unlock")).changes
+        assert sum(map(len, changes.values())) == len(found)
+        return sorted((each.uri.rpartition("/")[2][:3], each.range.start.line) for each in found), defined.uri.rpartition("/")[2]
+
+    of_kitchen = [("gar", 2), ("hal", 1), ("kit", 1), ("kit", 2)]
+    assert asked("hall", 1, 18) == (of_kitchen, "kitchen.lisp")
+    assert asked("kitchen", 2, 18) == (of_kitchen, "kitchen.lisp")
+    assert asked("garage", 2, 40) == (of_kitchen, "kitchen.lisp")
+    assert asked("garage", 2, 18) == ([("gar", 1), ("gar", 2)], "garage.lisp")
+
+
+def test_a_copy_of_the_course_has_its_own_definitions(editor, tmp_path):
+    import shutil
+
+    copy = tmp_path / "course"
+    shutil.copytree(COURSE, copy)
+    file = copy / "src" / PLANS.name
+    assert list(editor.checked(file.as_uri(), SOURCE)) == []
+    (found,) = editor.ask("definition", lsp.DefinitionParams(lsp.TextDocumentIdentifier(file.as_uri()), at("send-vel-cmd", 2)))
+    assert found.uri == (copy / "src" / CONTROL.name).as_uri()

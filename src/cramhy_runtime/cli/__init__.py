@@ -318,7 +318,7 @@ def _test(options):
 
     unit_tests.limit_tests(options.limit)
     with ExitStack() as closings:
-        return _status(lambda: 0 if session(options, closings, opened=False).test(options.path, options.junit) else 1)
+        return _status(lambda: 0 if session(options, closings, opened=False).test(options.path, options.junit, options.only) else 1)
 
 
 def _turtlesim(options):

@@ -215,6 +215,7 @@ def parser():
     commands.add_parser("eval", parents=[common["eval"], openings], help="evaluate forms given as JSON lines")
     test = commands.add_parser("test", parents=[common["test"]], help="run the lisp-unit and FiveAM tests of a system, file or folder")
     test.add_argument("path", help="a system by its name, an .asd, .lisp or .hy file, or a folder")
+    test.add_argument("--only", action="append", default=None, metavar="TEST", help="a test by its name; may be repeated (all)")
     test.add_argument("--limit", type=float, default=60.0, metavar="SECONDS", help="end a test that takes longer (60)")
     test.add_argument("--junit", default=None, metavar="FILE", help="write the results into FILE, too, in JUnit's XML (no file)")
     simulator = commands.add_parser("turtlesim", help="the simulator alone, for other programs to drive")

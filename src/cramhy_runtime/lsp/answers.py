@@ -12,17 +12,16 @@ from typing import NamedTuple
 
 from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.packages import is_symbol
-from cramhy_runtime.languages.commonlisp.systems import systems
 from cramhy_runtime.languages.commonlisp.tools.describing import description
 from cramhy_runtime.languages.hy import shapes
 from cramhy_runtime.languages.hy.plan_macros import macros
 from cramhy_runtime.languages.operators import operator_of
 from cramhy_runtime.session import arglists, completion, fuzzy, lookup
-from cramhy_runtime.session.body_arguments import body_start
+from cramhy_runtime.session.body_arguments import body_start, body_start_of_name
 from cramhy_runtime.session.lookup import bare_name
 
-from . import outlines, scopes
-from .texts import Text
+from . import meanings, neighbours, outlines, scopes
+from .texts import Text, Token
 
 MOST = 300
 MOST_LOOKED_AT = 20_000
@@ -37,6 +36,10 @@ class Spot(NamedTuple):
     text: Text
     start: int
     end: int
+
+    @property
+    def written(self):
+        return self.text.text[self.start : self.end]
 
 
 def completions(document, offset):
@@ -142,56 +145,47 @@ def definitions(document, offset):
     local = scopes.local(document.text, token) if not token.text.startswith(":") else None
     if local:
         return [Spot(None, document.text, local[0].start, local[0].end)]
-    bare = bare_name(token.text)
-    found = [
-        Spot(None, document.text, start, end)
-        for _, name, _, _, start, end in outlines.definitions(document.text)
-        if bare_name(name) == bare
-    ]
+    found = _defined(document, token, [(None, document.text)])
     if found or document.kind == "hy":
         return found
     places = document.in_image(lambda: lookup.definitions(token.text, document.package_at(token.start)), [])
-    for place in places:
+    beside = set(map(str, neighbours.files(document)))
+    for place in [each for each in places if each.file in beside] or places:  # not those of another copy of the system
         if os.path.isfile(place.file) and os.path.realpath(place.file) != os.path.realpath(document.filename):
             text = Text(Path(place.file).read_text(encoding="utf-8", errors="replace"))
             start = text.offset_of_reader(place.line, place.column)
-            found.append(Spot(place.file, text, start, start + 1))
+            if all((each.path, each.start) != (place.file, start) for each in found):
+                found.append(Spot(place.file, text, start, start + 1))
     return found or _in_system(document, token)
 
 
-def _files(document):
-    """The other files of the systems beside the file of ``document``."""
-    if document.path is None or document.kind == "hy":
-        return []
-
-    def paths():
-        mine = Path(document.path)
-        return [
-            component.pathname
-            for system in list(systems.systems.values())
-            if isinstance(system, systems.System) and system.file and system.file.parent in mine.parents
-            for component in systems.files_of(system)
-            if component.pathname != mine and component.pathname.is_file()
-        ]
-
-    return list(dict.fromkeys(document.in_image(paths, [])))
-
-
-def _texts(document, others):
-    """(path, `Text`) of the other files. others: {path: Text} of those that are open in the editor."""
-    for path in _files(document):
-        text = others.get(str(path))
-        yield str(path), text if text is not None else Text(path.read_text(encoding="utf-8", errors="replace"))
-
-
 def _in_system(document, token):
+    return _defined(document, token, neighbours.texts(document))
+
+
+def _defined(document, token, texts):
+    """The `Spot`s of the top-level forms in ``texts``, (path, `Text`), that define what ``token`` means."""
     bare = bare_name(token.text)
-    return [
+    named = [
         Spot(path, text, start, end)
-        for path, text in _texts(document, {})
+        for path, text in texts
         for _, name, _, _, start, end in outlines.definitions(text)
         if bare_name(name) == bare
     ]
+    return _meant(document, token, named) if named else []
+
+
+def _meant(document, token, spots):
+    """Those of the ``spots`` whose word means what ``token`` of the document means."""
+    if document.kind == "hy":
+        return spots
+
+    def chosen():
+        words = meanings.Meanings([document.text, *(text for _, text in neighbours.texts(document))])
+        wanted = words.of(document.text, token)
+        return [spot for spot in spots if words.of(spot.text, Token("word", spot.start, spot.end, spot.written)) == wanted]
+
+    return document.in_image(chosen, spots)
 
 
 def references(document, offset, others):
@@ -202,11 +196,12 @@ def references(document, offset, others):
     local = scopes.local(document.text, token)
     if local is not None:
         return [Spot(None, document.text, each.start, each.end) for each in local]
-    bare = token.text.rpartition(":")[2]
-    found = [Spot(None, document.text, each.start, each.end) for each in scopes.free(document.text, bare)]
-    for path, text in _texts(document, others):
-        found += [Spot(path, text, each.start, each.end) for each in scopes.free(text, bare)]
-    return found
+    return _everywhere(document, token, [(None, document.text), *neighbours.texts(document, others)])
+
+
+def _everywhere(document, token, texts):
+    bare = bare_name(token.text)
+    return _meant(document, token, [Spot(path, text, each.start, each.end) for path, text in texts for each in scopes.free(text, bare)])
 
 
 def renaming(document, offset, others):
@@ -214,15 +209,11 @@ def renaming(document, offset, others):
     token = document.text.word(offset)
     if token is None or token.text.startswith((":", "#", "&")):
         return None
-    if scopes.local(document.text, token) is None:
-        bare = bare_name(token.text)
-        texts = [document.text, *(text for _, text in _texts(document, others))]
-        if not any(bare_name(name) == bare for text in texts for _, name, *_ in outlines.definitions(text)):
-            return None
-    return [
-        spot._replace(start=spot.start + spot.text.text[spot.start : spot.end].rfind(":") + 1)
-        for spot in references(document, offset, others)
-    ]
+    if scopes.local(document.text, token) is None and not _defined(
+        document, token, [(None, document.text), *neighbours.texts(document, others)]
+    ):
+        return None
+    return [spot._replace(start=spot.start + spot.written.rfind(":") + 1) for spot in references(document, offset, others)]
 
 
 def body_starts(document):
@@ -234,7 +225,9 @@ def body_starts(document):
             return None
         if name not in known:
             symbol = arglists.symbol_named(name, package)
-            known[name] = body_start(symbol) if isinstance(symbol, Symbol) else None
+            count = body_start(symbol) if isinstance(symbol, Symbol) else None
+            defined = isinstance(symbol, Symbol) and arglists.is_callable(symbol)
+            known[name] = count if count is not None or defined else body_start_of_name(name)
         return known[name]
 
     return ask

@@ -33,7 +33,15 @@ def parsed(text):
             if not opened:
                 found.append(Finding(token.start, token.end, ERROR, f"This {token.text} closes nothing.", (_remove(token),)))
             else:
-                opened.pop()
+                before = opened.pop()
+                if _CLOSES[before.text] != token.text:
+                    line = text.place(before.start)[0] + 1
+                    fix = f"Write {_CLOSES[before.text]}", token.start, token.end, _CLOSES[before.text]
+                    found.append(
+                        Finding(
+                            token.start, token.end, ERROR, f"This {token.text} does not close the {before.text} of line {line}.", (fix,)
+                        )
+                    )
         elif token.kind == "string" and (len(token.text) < 2 or not token.text.endswith('"')):
             found.append(Finding(token.start, token.start + 1, ERROR, "This string is never closed."))
         elif token.kind == "comment" and token.text.startswith("#|") and not token.text.endswith("|#"):
@@ -70,8 +78,11 @@ def _never_closed(text, opened):
     return Finding(first.start, first.end, ERROR, message, ((f"Close it with {close}", before, before, close),))
 
 
-def compiled(text, path, filename, image):
-    """(the `Finding`s of the compiler, the package that is current at the end); image: a new one, which then holds the definitions."""
+def compiled(text, path, filename, image, further=None):
+    """(the `Finding`s of the compiler, the package that is current at the end).
+
+    image: a new one, which then holds the definitions. further: called in it with the findings; gives more of them.
+    """
     conditions = []
     with session_in(image), binding(PACKAGE, systems.asdf_user() if filename.endswith(".asd") else COMMON_LISP_USER):
         package = None
@@ -81,13 +92,16 @@ def compiled(text, path, filename, image):
             typed_texts.keep(filename, text.text) if path is None else None
             package = check_text(text.text, filename, conditions.extend, conditions.append)
         found = []
-        for condition in conditions:
-            try:
-                finding = of_condition(condition, text, filename)
-            except (Exception, Condition) as problem:
-                finding = Finding(0, 1, ERROR, f"{type(problem).__name__}: {problem}")
-            if finding is not None and finding not in found:
-                found.append(finding)
+        with binding(PACKAGE, package or COMMON_LISP_USER):
+            for condition in conditions:
+                try:
+                    finding = of_condition(condition, text, filename)
+                except (Exception, Condition) as problem:
+                    finding = Finding(0, 1, ERROR, f"{type(problem).__name__}: {problem}")
+                if finding is not None and finding not in found:
+                    found.append(finding)
+        if further:
+            found += further(found)
     return found, package
 
 

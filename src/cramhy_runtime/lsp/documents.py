@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-import re
-
 from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.packages import COMMON_LISP_USER, find_package
-from cramhy_runtime.languages.commonlisp.systems import systems
 from cramhy_runtime.languages.commonlisp.systems.loader import is_plain_hy
+from cramhy_runtime.session.arglists import symbol_named
+from cramhy_runtime.session.lookup import bare_name
 
-from . import checking, hy_files, manifests
+from . import checking, hy_files, manifests, neighbours, plan_checks
 from .budget import OutOfTime, budget
 from .findings import WARNING, Finding
+from .hy_files import plan_macros
+from .meanings import package_at
 from .surroundings import session_in
 from .texts import Text
 
+_OUR_PACKAGES = frozenset(
+    """COMMON-LISP ROSLISP CRAM-LANGUAGE CRAM-LANGUAGE-IMPLEMENTATION CRAM-DESIGNATORS CRAM-PROCESS-MODULES CRAM-EXECUTIVE
+    CRAM-PROLOG""".split()
+)
 SECONDS = 10.0
 """Processor time that macros of a text get each time that it is checked."""
-_IN_PACKAGE = re.compile(r"""^\s*\((?:cl:|common-lisp:)?in-package\s+[#:'"]*([^\s()"]+)"?\s*\)""", re.M | re.I)
 
 
 class Document:
@@ -26,8 +29,9 @@ class Document:
     def __init__(self, uri, path, source, surroundings):
         self.uri, self.path, self.surroundings = uri, path, surroundings
         self.filename = path or uri
-        self.image = None
+        self.image, self._inside = None, False
         self.findings = []
+        self.took = 0.1  # seconds, the last time that it was checked
         self.renew(source)
 
     def renew(self, source):
@@ -57,17 +61,44 @@ class Document:
             return found
         if self.kind == "hy":  # of which no macro of the user runs
             more = hy_files.check(self.text, self.filename)
+            more += [] if found else self.in_image(lambda: self._of_plans(more), [])
         else:
             image = self.surroundings.image_for(self.path)
             try:
                 with budget(SECONDS):
-                    more, _ = checking.compiled(self.text, self.path, self.filename, image)
+                    more, _ = checking.compiled(self.text, self.path, self.filename, image, () if found else self._of_plans)
             except OutOfTime:
                 message = f"Compiling this text was stopped after {SECONDS:.0f} s of processor time. Does a macro of it never end?"
                 return [*found, Finding(0, 1, WARNING, message)]
             self._keep(image)
         brackets = bool(found)
         return found + [each for each in more if not (brackets and _of_reader(each))]
+
+    def _of_plans(self, others):
+        """The `Finding`s of names that are data in plans, where nothing else is told; to be called in the image."""
+        if self.kind == "asd":
+            return []
+        before, self._inside = self._inside, True
+        try:
+            texts = [self.text, *(text for _, text in neighbours.texts(self))]
+            found = plan_checks.check(self.text, texts, self._resolve_in_hy if self.kind == "hy" else self._resolve)
+        finally:
+            self._inside = before
+        told = {each.start for each in others}
+        return [each for each in found if each.start not in told]
+
+    def _resolve(self, token, own=False):
+        symbol = symbol_named(token.text.lstrip("#'"), self.package_at(token.start))
+        if own:
+            return symbol
+        package = getattr(symbol, "package", None)
+        return (symbol.name, symbol) if package is not None and package.name in _OUR_PACKAGES else None
+
+    def _resolve_in_hy(self, token, own=False):
+        import hy
+
+        known = not own and hy.mangle(token.text) in plan_macros()
+        return (bare_name(token.text), None) if known else None
 
     def _keep(self, image):
         old, self.image = self.image, image
@@ -78,22 +109,22 @@ class Document:
         """The value of ``thunk()`` in the image that has the definitions of this text."""
         if self.image is None:
             self._keep(self.surroundings.image_for(None))
+        if self._inside:
+            return thunk()
         with session_in(self.image):
+            self._inside = True
             try:
                 return thunk()
             except Condition:
                 return otherwise
+            finally:
+                self._inside = False
 
     def package_at(self, offset):
         """The package that is current at ``offset``; to be called in the image."""
         if self.kind in ("hy", "xml"):
             return None
-        package = systems.asdf_user() if self.kind == "asd" else COMMON_LISP_USER
-        for match in _IN_PACKAGE.finditer(self.text.text):
-            if match.start() >= offset:
-                break
-            package = find_package(match[1].upper()) or package
-        return package
+        return package_at(self.text, offset, self.kind == "asd")
 
     def close(self):
         self._keep(None)

@@ -8,7 +8,10 @@ from __future__ import annotations
 
 import ast
 import builtins
+import functools
+import importlib.util
 import re
+import sys
 import types
 
 import hy
@@ -19,8 +22,16 @@ from hy.reader import HyReader
 from cramhy_runtime.ground.condition_types import Condition
 from cramhy_runtime.ground.packages import near_names
 from cramhy_runtime.languages.hy.malformed import MalformedForm, retold, unreadable
+from cramhy_runtime.languages.hy.plan_macros import macros
 
 from .findings import ERROR, WARNING, Finding, fixes
+
+
+@functools.cache
+def plan_macros():
+    """The mangled names of the macros of ``(require cramhy *)``."""
+    return frozenset(macros())
+
 
 TRUSTED = frozenset(("cramhy", "hyrule", "hy"))
 _REQUIRED = re.compile(r"^\s*\((?:require|eval-when-compile|eval-and-compile|do-mac)\b([^()]*)", re.M)
@@ -34,8 +45,9 @@ def check(text, filename):
     except (HyLanguageError, MalformedForm) as problem:
         made = problem if isinstance(problem, MalformedForm) else unreadable(problem)
         return [_of_malformed(made, text)]
-    if not _may_be_compiled(text.text):
-        return []
+    unknown = list(_unknown_modules(text))
+    if unknown or not _may_be_compiled(text.text):
+        return unknown
     module = types.ModuleType("checked_by_cramhy")
     module.__file__ = filename
     tree = ast.Module([], [])
@@ -58,6 +70,31 @@ def _may_be_compiled(text):
     if _RUNS.search(text):
         return False
     return all(set(_heads(match[1])) <= TRUSTED for match in _REQUIRED.finditer(text))
+
+
+def _unknown_modules(text):
+    """A `Finding` for each module that is not there and whose name is almost that of one that a plan imports."""
+    for form in text.forms:
+        if form.word(0) not in ("require", "import"):
+            continue
+        for item in form.items[1:]:
+            name = getattr(item, "text", "").split(".")[0]
+            if not re.match(r"[A-Za-z]", name) or getattr(item, "kind", "") != "word" or name in ("as",):
+                continue
+            known = [*TRUSTED, "cramhy_runtime", *sys.stdlib_module_names]
+            near = near_names(hy.mangle(name), known) if hy.mangle(name) not in known and not _found(hy.mangle(name)) else ()
+            if near:
+                hint = f"Did you mean {' or '.join(near)}?"
+                message = f"There is no module {name}."
+                fixing = tuple(fixes(message, hint, text, item.start, item.start + len(name)))
+                yield Finding(item.start, item.start + len(name), WARNING, f"{message}\n{hint}", fixing)
+
+
+def _found(name):
+    try:
+        return importlib.util.find_spec(name) is not None
+    except (ImportError, ValueError):
+        return False
 
 
 def _heads(words):
@@ -118,6 +155,14 @@ class _Names(ast.NodeVisitor):
     visit_MatchAs = visit_MatchStar = visit_MatchMapping = _match
 
 
+@functools.cache
+def _operators():
+    """The mangled names that may stand behind a parenthesis and are no values."""
+    return frozenset(name for name in {*plan_macros(), *builtins._hy_macros} if not name.startswith("_") and "hyx_" not in name) | {
+        hy.mangle(name) for name in ("try", "except", "finally", "while", "for", "if", "let", "fn", "setv", "defn", "do", "when", "cond")
+    }
+
+
 def _unknown_names(tree, text, module):
     names = _Names()
     names.visit(tree)
@@ -137,7 +182,8 @@ def _unknown_names(tree, text, module):
         if (start, written) in told:
             continue
         told.add((start, written))
-        near = [hy.unmangle(name) for name in near_names(node.id, known)]
+        called = text.text[:start].rstrip().endswith("(")
+        near = [hy.unmangle(name) for name in near_names(node.id, {*known, *(_operators() if called else ())})]
         hint = f"Did you mean {' or '.join(near)}?" if near else None
         message = f"Nothing in this file defines {written}."
         whole = f"{message}\n{hint}" if hint else message

@@ -14,6 +14,17 @@ _BODY_AT = (
 )
 _BODY = {name: count for count, names in _BODY_AT for name in names.split()}
 _ALIGNED = frozenset(("if", "and", "or", "setf", "setq", "setv", "cond", "loop", "import", "require"))
+_LOOP_BODIES = frozenset(("do", "doing", "initially", "finally"))
+_LOOP_CONDITIONS = frozenset(("when", "if", "unless"))
+_LOOP_CLAUSES = (
+    _LOOP_BODIES
+    | _LOOP_CONDITIONS
+    | frozenset(
+        """for as with repeat while until always never thereis collect collecting append appending nconc nconcing count counting sum summing
+    maximize maximizing minimize minimizing return named""".split()
+    )
+)
+_CLAUSED = frozenset(("handler-case", "restart-case"))
 _FIVE = frozenset(("unwind-protect",))
 _LOCAL_FUNCTIONS = frozenset(("flet", "labels", "macrolet"))
 
@@ -73,27 +84,63 @@ def _column(text, offset, line, columns, body_start):
     outer = around[1] if len(around) > 1 else None
     base, first = _now(text, form.start, columns), form.items[0] if form.items else None
     before = [item for item in form.items if item.start < offset]
+    if len(before) > 1 and outer is not None and outer.word(0).lower() == "defpackage":
+        aligned = _keyword_before(text, offset, before)
+        return _now(text, (aligned or before[1]).start, columns)
     if not before or text.text[form.start] != "(" or not _is_name(first) or _is_data(text, form, around):
         return base + 1 if not before else _now(text, before[0].start, columns)
     name = first.text.lower().rpartition(":")[2]
     arguments = [item for item in before[1:] if not (isinstance(item, Token) and item.kind == "quote")]
+    if outer is not None and outer.word(0).lower().rpartition(":")[2] in _CLAUSED and form in outer.items[2:]:
+        return base + (2 if arguments else 4)
     if name in _FIVE:
         return base + (5 if not arguments else 2)
-    if name in ("loop",) and arguments:
-        return base + 2 if _words_only(text, arguments, line) else _now(text, arguments[0].start, columns)
+    if name == "loop" and arguments:
+        return base + 2 if _words_only(text, arguments, line) else _in_loop(text, offset, form, arguments, columns, base)
     if name not in _ALIGNED:
         count = _count(name, first.text, form, outer, body_start)
         if count is not None:
             return base + (2 if len(arguments) >= count else 4)
+    aligned = _keyword_before(text, offset, arguments)
+    if aligned is not None:
+        return _now(text, aligned.start, columns)
     if arguments and text.place(before[1].start)[0] == text.place(form.start)[0]:
         return _now(text, before[1].start, columns)
     return base + 1
+
+
+def _keyword_before(text, offset, arguments):
+    """The first of the keyword arguments right before a line that begins with a keyword, too; ``None`` if there is none."""
+    found, rest = None, list(arguments)
+    while text.text[offset] == ":" and len(rest) > 1 and isinstance(rest[-2], Token) and rest[-2].text.startswith(":"):
+        found = rest[-2]
+        rest = rest[:-2]
+    return found
+
+
+def _in_loop(text, offset, form, arguments, columns, base):
+    """The column of a line in a ``loop`` with clauses, or of a form in one without."""
+    first = arguments[0]
+    if not isinstance(first, Token):
+        same = text.place(first.start)[0] == text.place(form.start)[0]
+        return _now(text, first.start, columns) if same else base + 2
+    words = [number for number, item in enumerate(arguments) if isinstance(item, Token) and item.kind == "word"]
+    if text.text[offset] in "(\"'`#":  # a form of a body
+        last = arguments[words[-1] + 1 :] if words else []
+        if last and arguments[words[-1]].text.lower().lstrip(":") in _LOOP_BODIES:
+            return _now(text, last[0].start, columns)
+        return _now(text, first.start, columns) + 3
+    clauses = [item for item in arguments if isinstance(item, Token) and item.text.lower().lstrip(":") in _LOOP_CLAUSES]
+    if clauses and clauses[-1].text.lower().lstrip(":") in _LOOP_CONDITIONS:
+        return _now(text, clauses[-1].start, columns) + 2
+    return _now(text, first.start, columns)
 
 
 def _words_only(text, arguments, line):
     """Whether all arguments of a ``loop`` before this line are one word on its first line: ``(loop do``."""
     return (
         len(arguments) == 1
+        and isinstance(arguments[0], Token)
         or all(isinstance(item, Token) or text.place(item.start)[0] == line - 1 for item in arguments[1:])
         and (isinstance(arguments[0], Token) and arguments[0].text.lower() == "do")
     )

@@ -5,8 +5,11 @@ from __future__ import annotations
 import re
 from xml.parsers import expat
 
+from cramhy_runtime.ground.packages import near_names
+
 from .findings import ERROR, WARNING, Finding
 
+ONCE = ("name", "version", "description")
 REQUIRED = ("name", "version", "description", "maintainer", "license")
 _NAME = re.compile(r"[a-z][a-z0-9_-]*\Z")
 _VERSION = re.compile(r"\d+\.\d+\.\d+\Z")
@@ -36,7 +39,17 @@ def check(text):
             if name != "package":
                 found.append(Finding(at, at + len(name), ERROR, f"A manifest is a <package>, and this is a <{name}>."))
         elif not export and len(stack) == 2 and name not in _KNOWN:
-            found.append(Finding(at, at + len(name), WARNING, f"A manifest has no element <{name}>."))
+            near = near_names(name, _KNOWN)
+            hint = f"\nDid you mean {' or '.join(near)}?" if near else ""
+            fixes = tuple((f"Write {each}", at, at + len(name), each) for each in near)
+            found.append(Finding(at, at + len(name), WARNING, f"A manifest has no element <{name}>.{hint}", fixes))
+        elif len(stack) == 2 and name in ONCE and name in seen:
+            found.append(Finding(at, at + len(name), ERROR, f"A manifest has one <{name}>, and this is the second."))
+        if name == "package" and attributes.get("format", "1") not in ("1", "2", "3"):
+            where = text.text.find("format", at)
+            found.append(Finding(where, text.text.find(">", where), ERROR, "The format of a manifest is 1, 2 or 3."))
+        if name == "maintainer" and not attributes.get("email"):
+            found.append(Finding(at, at + len(name), ERROR, 'A maintainer has an address: <maintainer email="user@example.org">.'))
         if name == "export":
             export.append(name)
 
@@ -47,6 +60,8 @@ def check(text):
         if len(stack) == 1:
             seen[element] = content.strip()
             places[element] = at
+            if "depend" in element and not content.strip():
+                found.append(Finding(at, at + len(element), ERROR, f"This <{element}> names no package."))
 
     def data(content):
         if stack:
@@ -64,6 +79,13 @@ def check(text):
         return [Finding(at, at + 1, ERROR, "A manifest declares no entities.")]
     except expat.ExpatError as problem:
         at = text.offset_of_reader(problem.lineno, problem.offset + 1)
+        written = re.match(r"[\w.-]*", text.text[at:])[0]
+        if stack and problem.code == expat.errors.codes[expat.errors.XML_ERROR_TAG_MISMATCH]:
+            name, opened, _ = stack[-1]
+            line = text.place(opened)[0] + 1
+            message = f"This is no XML: </{written}> does not close the <{name}> of line {line}."
+            fix = (f"Write {name}", at, at + len(written), name), (f"Close <{name}> before it", at - 2, at - 2, f"</{name}>")
+            return [*found, Finding(at, at + len(written), ERROR, message, fix)]
         return [*found, Finding(at, min(len(text.text), at + 1), ERROR, f"This is no XML: {expat.ErrorString(problem.code)}.")]
     at = places.get("", 0)
     for name in REQUIRED:

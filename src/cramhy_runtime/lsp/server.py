@@ -1,7 +1,7 @@
 """The language server: which messages of the protocol are answered, by pygls.
 
 Messages are answered one after the other, in the main thread. Brackets are looked at when the text changes; the compiler is asked when
-nothing has been typed for `QUIET` seconds.
+nothing has been typed for a moment (`WITHIN`).
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import sys
+from pathlib import Path
 
 from lsprotocol import types as lsp
 from pygls.lsp.server import LanguageServer
@@ -17,12 +18,17 @@ from pygls.uris import from_fs_path, to_fs_path
 import cramhy_runtime
 from cramhy_runtime.ground.condition_types import Condition
 
-from . import answers, outlines, stdio
+from . import answers, hy_files, lenses, outlines, stdio, system_files
 from .documents import Document
 from .indentation import indented
+from .running import Runs
 from .surroundings import Surroundings
 
-QUIET = 0.25
+WITHIN = 0.25
+"""Seconds after the last key within which diagnostics are to be told. The compiler is asked so much earlier as it took the last time,"""
+SHORTEST = 0.05
+"""but not before nothing has been typed for so many seconds."""
+PAUSE = 0.02
 _LEGEND = lsp.SemanticTokensLegend(token_types=outlines.KINDS, token_modifiers=[])
 _SYMBOL_KINDS = (
     ("defclass", lsp.SymbolKind.Class), ("defstruct", lsp.SymbolKind.Struct), ("define-condition", lsp.SymbolKind.Class),
@@ -39,10 +45,29 @@ class Server(LanguageServer):
         self.documents = {}
         self.surroundings = Surroundings()
         self._waiting = {}
+        self.runs = Runs(self)
 
     def report_server_error(self, error, source):
         """One line in the log; the session goes on."""
         print(f"cramhy lsp: {type(error).__name__}: {str(error).splitlines()[0][:300] if str(error) else ''}", file=sys.stderr, flush=True)
+
+    def prepare(self):
+        """Load, before the first text is opened, what the systems in the editor's folder depend on, between two messages each."""
+        root = self.workspace.root_path
+        waiting = iter(system_files.below(root) if root else ())
+
+        def one():
+            asd = next(waiting, None)
+            if asd is None:
+                hy_files.plan_macros()
+                return
+            try:
+                self.surroundings.warm(asd)
+            except (Exception, Condition) as problem:
+                self.report_server_error(problem, None)
+            asyncio.get_running_loop().call_later(PAUSE, one)
+
+        asyncio.get_running_loop().call_later(PAUSE, one)
 
     def document(self, uri):
         """The `Document` of that name with its present text, or ``None``."""
@@ -68,7 +93,9 @@ class Server(LanguageServer):
         waiting = self._waiting.pop(uri, None)
         if waiting is not None:
             waiting.cancel()
-        self._waiting[uri] = asyncio.get_running_loop().call_later(QUIET, self.check, uri)
+        document = self.documents.get(uri)
+        pause = max(SHORTEST, WITHIN - (document.took if document is not None else WITHIN))
+        self._waiting[uri] = asyncio.get_running_loop().call_later(pause, self.check, uri)
 
     def check(self, uri):
         """Compile the text of ``uri``, and tell what was found."""
@@ -76,11 +103,14 @@ class Server(LanguageServer):
         document = self.documents.get(uri)
         if document is None:
             return
+        clock = asyncio.get_running_loop().time
+        begin = clock()
         try:
             found = document.compile()
         except (Exception, Condition) as problem:
             self.report_server_error(problem, None)
             found = document.parse()
+        document.took = clock() - begin
         self.tell(document, found)
 
     def tell(self, document, found):
@@ -148,6 +178,10 @@ def made():
     server.feature(lsp.TEXT_DOCUMENT_DID_OPEN)(lambda params: server.renew(params.text_document.uri))
     server.feature(lsp.TEXT_DOCUMENT_DID_CHANGE)(lambda params: server.renew(params.text_document.uri))
     server.feature(lsp.TEXT_DOCUMENT_DID_CLOSE)(lambda params: server.close(params.text_document.uri))
+
+    @server.feature(lsp.INITIALIZED)
+    def initialized(params):
+        server.prepare()
 
     @server.feature(lsp.TEXT_DOCUMENT_DID_SAVE)
     def saved(params):
@@ -275,7 +309,48 @@ def made():
             for title, start, end, new in finding.fixes
         ]
 
+    @answering(lsp.TEXT_DOCUMENT_CODE_LENS, otherwise=[])
+    def above(document, params):
+        return [
+            lsp.CodeLens(
+                range=_range(document.text, lens.start, document.text.end_of_line(lens.start)),
+                command=lsp.Command(lens.title, f"cramhy.{lens.title.lower()}", arguments=[document.uri, lens.name]),
+            )
+            for lens in lenses.lenses(document)
+        ]
+
+    def starting(title):
+        async def start(*arguments):
+            uri, name = (list(arguments[0] if len(arguments) == 1 and isinstance(arguments[0], list) else arguments) + [None, None])[:2]
+            document = server.document(uri) if isinstance(uri, str) else None
+            if document is None or not isinstance(name, str):
+                return server.runs.refuse("Open the file first.")
+            if document.path is None or not _saved(document):
+                return server.runs.refuse("Save the file first: what runs is what is on the disk.")
+            try:
+                return await server.runs.run(lenses.errand(document, title, name))
+            except (LookupError, OSError, Condition) as problem:
+                return server.runs.refuse(str(problem))
+
+        server.command(f"cramhy.{title.lower()}")(start)
+
+    starting(lenses.RUN)
+    starting(lenses.TEST)
+
+    @server.command("cramhy.interrupt")
+    def interrupt(*arguments):
+        return server.runs.interrupt()
+
+    server.feature(lsp.SHUTDOWN)(lambda *arguments: server.runs.end())
+
     return server
+
+
+def _saved(document):
+    try:
+        return Path(document.path).read_text(encoding="utf-8") == document.text.text
+    except (OSError, UnicodeDecodeError):
+        return False
 
 
 def run():

@@ -23,56 +23,98 @@ from cramhy_runtime.session.image import Image
 from cramhy_runtime.session.session import Session
 
 FOLDERS_UP = 4
-MOST_KEPT = 8
-"""So many images are kept for systems."""
+MOST_KEPT = 40
+"""So many images are kept for systems and their files."""
 
 
 class Surroundings:
-    """Makes the images in which texts are checked."""
+    """Makes the images in which texts are checked.
+
+    Three kinds are kept: one for each folder of systems, in which its ``.asd`` files have been read, one for each system, in which what it
+    depends on is there, and one for each of its files, in which the files before it have been checked. Each is a copy of the one before.
+    """
 
     def __init__(self):
         self._bare = None
-        self._kept = {}  # (path of the .asd, path of the file) → (stamps of files, Image)
+        self._kept = {}  # what it is for → (stamps of files, Image, the image that it is a copy of)
+        self._members = {}  # folder → {name of a system: [paths of its files]}
 
     def image_for(self, path):
         """A new image in which a text at ``path`` can be checked. path: of its file, or ``None``."""
         with self._around(path).entered():
             return Image(as_now=True)
 
+    def warm(self, asd):
+        """Prepare for the files of the systems in the file ``asd``."""
+        self._of_folder(Path(asd))
+        for name in self._members[Path(asd).parent]:
+            self._of_system(Path(asd), name)
+
     def _around(self, path):
+        asd = None if path is None else _definition_of(path)
+        if asd is None:
+            return self._of_nothing()
+        path = Path(path)
+        image, _ = self._of_folder(asd)
+        system = next((name for name, paths in self._members[asd.parent].items() if path in paths), None)
+        if system is None:
+            return image
+        files = self._members[asd.parent][system]
+        image, stamps = self._of_system(asd, system)
+        for number, file in enumerate(files[: files.index(path)]):
+            image, stamps = self._made((asd, system, number, file), image, stamps, lambda seen: _check_file(file, seen))
+        return image
+
+    def _of_nothing(self):
         if self._bare is None:
             self._bare = Image()
             with session_in(self._bare):
                 pass
-        asd = None if path is None else _definition_of(path)
-        if asd is None:
-            return self._bare
-        key = asd, path
-        stamps, image = self._kept.get(key, (None, None))
-        if image is not None and stamps == {file: _stamp(file) for file in stamps}:
-            return image
-        with self._bare.entered():
+        return self._bare
+
+    def _of_folder(self, asd):
+        def read(seen):
+            for other in sorted(asd.parent.glob("*.asd")):
+                seen.add(str(other))
+                systems.load_asd(other)
+            mine = [each for each in systems.systems.values() if isinstance(each, System) and each.file and each.file.parent == asd.parent]
+            self._members[asd.parent] = {each.name: [component.pathname for component in systems.files_of(each)] for each in mine}
+
+        self._members.setdefault(asd.parent, {})
+        return self._made((asd.parent,), self._of_nothing(), {}, read)
+
+    def _of_system(self, asd, name):
+        image, stamps = self._of_folder(asd)
+        return self._made((asd, name), image, stamps, lambda seen: _depend(systems.systems[name], seen, set()))
+
+    def _made(self, key, before, stamps, prepare):
+        """(Image, stamps) for ``key``: the one that is kept, or a copy of the image ``before`` in which ``prepare`` has run.
+
+        stamps: {path: stamp} of the files that ``before`` was made of. prepare: gets a set, to which it adds the paths that it reads.
+        """
+        kept = self._kept.get(key)
+        if kept is not None and kept[2] is before and kept[0] == {file: _stamp(file) for file in kept[0]}:
+            self._kept[key] = self._kept.pop(key)  # used last
+            return kept[1], kept[0]
+        with before.entered():
             image = Image(as_now=True)
-        files = {str(asd)}
+        seen = set()
         with session_in(image):
             try:
-                _prepare(asd, Path(path), files)
+                prepare(seen)
             except (Exception, Condition):  # checking the .asd file or the file before tells it
                 pass
-        self._keep(key, ({file: _stamp(file) for file in files}, image))
-        return image
-
-    def _keep(self, key, kept):
-        _, old = self._kept.pop(key, (None, None))
-        if old is not None:
-            old.forget()
-        self._kept[key] = kept
+        if kept is not None:
+            self._kept.pop(key)[1].forget()
+        stamps = {**stamps, **{file: _stamp(file) for file in seen}}
+        self._kept[key] = stamps, image, before
         while len(self._kept) > MOST_KEPT:
             self._kept.pop(next(iter(self._kept)))[1].forget()
+        return image, stamps
 
     def forget(self):
         """Drop what is kept."""
-        for _, image in self._kept.values():
+        for _, image, _ in self._kept.values():
             image.forget()
         self._kept.clear()
 
@@ -126,22 +168,6 @@ def _names(asd, stem):
     return f'"{stem}"' in text and (not stem == "package" or "test" not in asd.stem)
 
 
-def _prepare(asd, path, files):
-    """Bring the current image to where the file ``path`` of a system in ``asd`` is about to be compiled. files: gets what was read."""
-    for other in sorted(asd.parent.glob("*.asd")):
-        systems.load_asd(other)
-    mine = [each for each in list(systems.systems.values()) if isinstance(each, System) and each.file and each.file.parent == asd.parent]
-    system = next((each for each in mine if path in [component.pathname for component in systems.files_of(each)]), None)
-    if system is None:
-        return
-    files.add(str(system.file))
-    _depend(system, files, set())
-    for component in systems.files_of(system):
-        if component.pathname == path:
-            return
-        _check_file(component.pathname, files)
-
-
 def _depend(system, files, seen):
     for name, _ in system.depends_on:
         name = str(name).lower()
@@ -151,7 +177,7 @@ def _depend(system, files, seen):
         if systems.is_provided(name) or f"{name}.asd" in systems.libraries() or name in systems.libraries():
             systems.load_system(name)
             continue
-        other = systems.find_system(name)
+        other = systems.systems.get(name) or systems.find_system(name)  # that of the same folder comes before others of its name
         files.add(str(other.file))
         _depend(other, files, seen)
         for component in systems.files_of(other):

@@ -52,6 +52,7 @@ class Text:
         self.text = text
         self.starts = [0, *(match.end() for match in re.finditer(r"\r\n|\n|\r", text))]
         self._tokens = self._forms = self._starts = None
+        self.packages = None  # see `meanings.package_name_at`
 
     # ------------------------------------------------------------------------------------------------------------ places
 
@@ -85,6 +86,11 @@ class Text:
         if not 0 < line <= len(self.starts):
             return len(self.text)
         return min(len(self.text), self.starts[line - 1] + max(0, column - 1))
+
+    def end_of_line(self, offset):
+        """The end of the line that ``offset`` stands in, without its line end."""
+        end = self.text.find("\n", offset)
+        return len(self.text) if end < 0 else end
 
     @property
     def starts_set(self):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.data import Cons, Symbol
 from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda_list_of
-from cramhy_runtime.languages.operators import operator_of
+from cramhy_runtime.languages.operators import OPERATORS, operator_of
 
 
 def before_body(symbol):
@@ -24,6 +24,10 @@ def before_body(symbol):
     return None
 
 
+BODIES = ("form...", "goal...", "fact...")
+"""What the body of an operator is called in its shape."""
+
+
 def before_forms(operator):
     """The same for an operator of the plan language, by its shape: its forms are the body."""
     depth, items, item = 0, [], ""
@@ -35,7 +39,7 @@ def before_forms(operator):
         else:
             item += character
     items = [*items, item][1:]
-    return items.index("form...") if "form..." in items else None
+    return next((number for number, each in enumerate(items) if each in BODIES), None)
 
 
 def body_start(symbol):
@@ -44,3 +48,14 @@ def body_start(symbol):
     if operator is not None:
         return before_forms(operator)
     return before_body(symbol) if getattr(symbol, "macro", None) is not None else None
+
+
+LOCAL = {"DO-RETRY": 1, "WITH-RETRY": 0}
+"""Macros that operators define in their bodies."""
+
+
+def body_start_of_name(name):
+    """The same for a name that no package is known for, such as one of a file whose system is not loaded."""
+    short = name.rpartition(":")[2].upper()
+    operator = next((each for each in OPERATORS.values() if each.name == short), None)
+    return LOCAL.get(short) if operator is None else before_forms(operator)

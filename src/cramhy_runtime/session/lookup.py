@@ -16,7 +16,7 @@ from typing import NamedTuple
 from cramhy_runtime.ground.data import Symbol, UndefinedFunction
 from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
 from cramhy_runtime.ground.function_codes import files_noted
-from cramhy_runtime.ground.packages import symbol_name
+from cramhy_runtime.ground.packages import find_package, symbol_name
 from cramhy_runtime.ground.source_places import file_of_text
 from cramhy_runtime.languages.commonlisp.evaluation.function_facts import plain
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
@@ -77,7 +77,7 @@ def definitions_of(symbol):
             elif definition is not None and not (operator is not None and kind == "DEFMACRO"):  # its macro is made of the row
                 found += place_of_function(definition, f"({kind} {symbol.name})")
     # Code of a macro or a method does not know its line as well as the text does.
-    in_text = in_texts(symbol_name(symbol))
+    in_text = in_texts(symbol_name(symbol), symbol)
     files = {each.file for each in in_text}
     return [each for each in found if each.file not in files] + in_text
 
@@ -187,14 +187,28 @@ def toplevel_forms(filename):
     return _toplevel(filename, hash(tuple(lines)))
 
 
-def in_texts(name):
-    """The `Place`s of top-level forms ``(def... name`` in the `known_files`."""
+def in_texts(name, symbol=None):
+    """The `Place`s of top-level forms ``(def... name`` in the `known_files`. symbol: only those whose name means it there."""
     found = []
     for filename in known_files():
+        package = None
         for line, operator, defined, _, qualifier in toplevel_forms(filename):
-            if operator.rpartition(":")[2].startswith(("DEF", "DECLARE-GOAL")) and bare_name(defined) == name:
+            if operator.rpartition(":")[2] == "IN-PACKAGE":
+                package = find_package(bare_name(defined.strip('"')))
+            if not operator.rpartition(":")[2].startswith(("DEF", "DECLARE-GOAL")) or bare_name(defined) != name:
+                continue
+            if symbol is None or means(defined, package, symbol):
                 found.append(place(f"({operator} {name}{qualifier})", filename, line))
     return found
+
+
+def means(word, package, symbol):
+    """Whether a ``word`` of a text means ``symbol``. package: the one that is current there; ``None`` if the text does not say, and then
+    any symbol of that name is meant."""
+    plain_word = word.lstrip("'#,@`")
+    if package is None and ":" not in plain_word.lstrip(":") or plain_word.startswith(":"):
+        return True
+    return symbol_named(plain_word, package) is symbol
 
 
 def bare_name(word):
@@ -202,13 +216,13 @@ def bare_name(word):
     return word.lstrip("'#:").rpartition(":")[2].upper()
 
 
-def uses(name, calls=False, sets=False):
+def uses(name, calls=False, sets=False, symbol=None):
     """The `Place`s at which ``name`` stands in the `known_files`, outside of its own definition, labelled with the form around.
 
-    calls: only where it is called or named as a function. sets: only where it is set.
+    calls: only where it is called or named as a function. sets: only where it is set. symbol: only where the word means it.
     """
     before = r"(?:\(|#')\s*" if calls else r"\((?:setf|setq|incf|decf|push|pop|pushnew)\s+" if sets else r"[\s()'`,@]"
-    wanted = re.compile(rf"{before}(?:[^\s()'`,;\"]*:)?({re.escape(name)})(?=[\s()])", re.I)
+    wanted = re.compile(rf"{before}([^\s()'`,;\"]*:)?({re.escape(name)})(?=[\s()])", re.I)
     found = []
     for filename in known_files():
         forms, lines = toplevel_forms(filename), text_lines(filename)
@@ -219,8 +233,16 @@ def uses(name, calls=False, sets=False):
                 around = next((form for form in forms if form[0] <= number <= form[3]), None)
                 if around is not None and around[0] == number and bare_name(around[2]) == name and around[1].startswith("DEF"):
                     continue
+                if symbol is not None and not means((match[1] or "") + match[2], _package_of_line(forms, number), symbol):
+                    continue
                 label = f"({around[1]} {around[2].upper()})" if around else "(the text)"
-                found.append(place(label, filename, number, max(1, match.start(1))))
+                found.append(place(label, filename, number, max(1, match.start(2))))
                 if len(found) >= MOST_USES:
                     return found
     return found
+
+
+def _package_of_line(forms, number):
+    """The package that is current in a line of a text with these top-level `forms`, or ``None`` if the text does not say."""
+    names = [name for line, operator, name, *_ in forms if line < number and operator.rpartition(":")[2] == "IN-PACKAGE"]
+    return find_package(bare_name(names[-1].strip('"'))) if names else None

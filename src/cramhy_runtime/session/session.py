@@ -212,13 +212,13 @@ class Session:
             hint=f"Did you mean {' or '.join(near)}?" if near else hint,
         )
 
-    def test(self, path: str, junit: str | None = None) -> bool:
+    def test(self, path: str, junit: str | None = None, only: list[str] | None = None) -> bool:
         """Run the tests of a system by name, a file, or the test files below a folder; whether there were some and all passed.
 
-        junit: a file for the results, too, in JUnit's XML, or ``None``.
+        junit: a file for the results, too, in JUnit's XML, or ``None``. only: the names of the tests to run, ``None``: all.
         """
         try:
-            return self._test(path, junit)
+            return self._test(path, junit, only)
         except kernel.Terminated:
             raise
         except (kernel.Interrupted, kernel.Abandoned):
@@ -226,12 +226,14 @@ class Session:
         finally:
             kernel.interrupt_over()
 
-    def _test(self, path, junit):
+    def _test(self, path, junit, only=None):
         from cramhy_runtime.languages.commonlisp.systems import test_reports
         from cramhy_runtime.languages.commonlisp.tools.advice import explanation
 
         try:
-            results = [test_reports.Result(*result) for result in unit_tests.run_all(self._tests(path))]
+            wanted = None if only is None else {name.rpartition(":")[2].upper() for name in only}
+            tests = [each for each in self._tests(path) if wanted is None or each.name.upper() in wanted]
+            results = [test_reports.Result(*result) for result in unit_tests.run_all(tests)]
             system = (
                 None if results or Path(path).suffix in (".lisp", ".hy") or Path(path).is_dir() else systems.find_system(Path(path).stem)
             )

@@ -56,13 +56,13 @@ def _uses(call, kind, name):
         return []
     bare = symbol_name(symbol)
     if kind in (":calls", ":macroexpands", ":calls-who"):
-        found = lookup.uses(bare, calls=True) if kind != ":calls-who" else None
+        found = lookup.uses(bare, calls=True, symbol=symbol) if kind != ":calls-who" else None
     elif kind == ":sets":
-        found = lookup.uses(bare, sets=True)
+        found = lookup.uses(bare, sets=True, symbol=symbol)
     elif kind in (":references", ":binds"):
-        found = lookup.uses(bare) if kind == ":references" else None
+        found = lookup.uses(bare, symbol=symbol) if kind == ":references" else None
     elif kind == ":specializes":
-        found = [place for place in lookup.uses(bare) if place.label.startswith("(DEFMETHOD")]
+        found = [place for place in lookup.uses(bare, symbol=symbol) if place.label.startswith("(DEFMETHOD")]
     else:
         found = None
     return NOT_IMPLEMENTED if found is None else [[place.label, places.location(place)] for place in found]

@@ -31,6 +31,7 @@ class TextCheck(Compilation):
     def __init__(self, text, filename):
         super().__init__(text, filename, False)
         self.unit = Unit(filename, self.reader.positions)
+        self.unit.at_once = False  # no form runs into an unknown name, so it is told
         self.package = None  # the one that is current at the end
 
     def run(self, fail):

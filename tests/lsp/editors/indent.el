@@ -1,0 +1,20 @@
+;;; Indents files of Lisp as SLIME does: emacs --batch -l indent.el FILE... Each is written with ".emacs" behind its name.
+(setq inhibit-message t make-backup-files nil)
+(dolist (folder (file-expand-wildcards "/usr/share/emacs/site-lisp/elpa-src/slime-*"))
+  (add-to-list 'load-path folder)
+  (add-to-list 'load-path (expand-file-name "contrib" folder)))
+(require 'slime-cl-indent)
+;; What SLIME learns from the server: the macros of CRAM with &body.
+(load (expand-file-name "bodies.el" (file-name-directory load-file-name)) t t)
+(dolist (entry (and (boundp 'cramhy-bodies) cramhy-bodies))
+  (put (car entry) 'common-lisp-indent-function (cdr entry)))
+(dolist (file command-line-args-left)
+  (with-temp-buffer
+    (insert-file-contents file)
+    (lisp-mode)
+    (setq-local lisp-indent-function 'common-lisp-indent-function)
+    (setq-local indent-tabs-mode nil)
+    (let ((case-fold-search t))
+      (indent-region (point-min) (point-max)))
+    (write-region (point-min) (point-max) (concat file ".emacs") nil 'quiet)))
+(setq command-line-args-left nil)
