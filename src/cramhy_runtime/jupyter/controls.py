@@ -29,8 +29,7 @@ def serve_widgets(handlers):
 def _control_opened(opened, message):
     """A page asks for the widgets that there are. The module is loaded only then."""
     try:
-        from ipywidgets import Widget
-        from ipywidgets.widgets.widget import register_comm_target
+        from ipywidgets import Widget, register_comm_target
     except ImportError:
         opened.close()
         return

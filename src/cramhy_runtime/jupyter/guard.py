@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import inspect
 import logging
+import sys
 from contextlib import suppress
 from functools import partial
 
@@ -24,6 +25,8 @@ FIELDS = {
     "comm_close": {"comm_id": str},
 }
 """The fields that a message must have, and their types in Python."""
+LOGS = ("Comm", "ipykernel.comm", "tornado.application", "tornado.general", "asyncio")
+"""Where the libraries below tell of messages that they do not understand."""
 NAMES = {str: "a string", int: "an integer"}
 
 
@@ -76,8 +79,12 @@ class Guarded(Kernel):
         """From now on, all messages are looked at first. To be called when the handlers are in their tables."""
         self.shell_handlers = Handlers(self, self.shell_handlers)
         self.control_handlers = Handlers(self, self.control_handlers)
-        for log in (self.log, logging.getLogger("ipykernel.comm"), logging.getLogger("tornado.application"), logging.getLogger("asyncio")):
+        self.log.addFilter(one_line)
+        terminal = logging.StreamHandler(sys.__stderr__)  # of Jupyter, and not a cell
+        for log in map(logging.getLogger, LOGS):
             log.addFilter(one_line)
+            log.addHandler(terminal)
+            log.propagate = False
 
     async def answer(self, kind, handler, stream, ident, parent):
         """Let ``handler`` answer a message, or answer that it is wrong."""

@@ -9,6 +9,7 @@ SIGINT, which Jupyter's stop button sends, interrupts the cell that runs: its pl
 
 from __future__ import annotations
 
+import asyncio
 import signal
 import sys
 from fnmatch import fnmatchcase
@@ -63,6 +64,7 @@ class CramhyKernel(Guarded):
         self.live = True  # whether cells show what they do while they run (%live)
         self.typed = []  # the cells so far, for ``history_request``: a number and a text
         self.comm_manager = controls.serve_widgets(self.shell_handlers)
+        self.control_handlers["execute_request"] = self._not_here
         self.guard()
         self.cell = None  # the Request of the cell that runs
         self.asks = False  # whether an error asks what to do (%debugger on)
@@ -87,13 +89,14 @@ class CramhyKernel(Guarded):
         self.plans.post(lambda: self.cell.interrupt() if self.cell is not None else None)
 
     def ask(self, work, name, debugger=None, cell=False):
-        """Do ``work()`` in a task of the session; a future of the finished `Request`. To be called in the loop."""
-        future = self.loop.create_future()
+        """Do ``work()`` in a task of the session; a future of the finished `Request`. To be called in a loop."""
+        loop = asyncio.get_running_loop()  # the control channel has one of its own
+        future = loop.create_future()
 
         def finished(request):
             if self.cell is request:
                 self.cell = None
-            self.loop.call_soon_threadsafe(lambda: future.done() or future.set_result(request))
+            loop.call_soon_threadsafe(lambda: future.done() or future.set_result(request))
 
         def begin():
             request = Request(work, finished, debugger=debugger or (lambda condition: None), name=name, owner=self)
@@ -319,6 +322,9 @@ class CramhyKernel(Guarded):
     def kernel_info(self):
         """What ``kernel_info_request`` is told. Neither subshells nor a debugger of Jupyter's are offered."""
         return {**super().kernel_info, "supported_features": []}
+
+    async def _not_here(self, stream, ident, parent):
+        raise Wrong("Cells are run by messages on the shell channel, one after the other.")
 
     async def interrupt_request(self, stream, ident, parent):
         """``interrupt_request``: as the signal, for front ends that send a message instead."""

@@ -21,6 +21,6 @@ def check(name, more):
     """Raise `Refused` if ``more`` cannot stand behind the setting ``name``."""
     allowed = WORDS[name]
     if allowed is not None and more not in allowed:
-        raise Refused(
-            f"%{name} stands alone." if allowed == ("",) else f"Behind %{name} stands {' or '.join(allowed)}, not {more or 'nothing'}."
-        )
+        if allowed == ("",):
+            raise Refused(f"%{name} stands alone, without {more}.")
+        raise Refused(f"Behind %{name} stands {' or '.join(allowed)}, not {more or 'nothing'}.")
