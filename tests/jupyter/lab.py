@@ -57,10 +57,8 @@ def server(folder):
                 break
         else:
             raise AssertionError("JupyterLab has not begun")
-        subprocess_log = Path(folder) / ".jupyter-home" / "log"
-        import threading
-
-        threading.Thread(target=lambda: subprocess_log.write_text(started.stderr.read()), daemon=True).start()
+        with open(home / "log", "wb") as log:
+            subprocess.Popen(["cat"], stdin=started.stderr, stdout=log)  # it ends with the server
         yield found[1]
     finally:
         started.terminate()
@@ -112,6 +110,34 @@ class Lab:
     def see(self, number, text):
         """Wait until the output of a cell contains ``text``."""
         self.cell(number).locator(".jp-OutputArea", has_text=text).wait_for()
+
+    def picture(self, number):
+        """Wait until the output of a cell has a picture, and return where it comes from."""
+        return self.cell(number).locator(".jp-OutputArea img").first.get_attribute("src")
+
+    def command(self, name):
+        """Press a button of the notebook's toolbar, such as ``interrupt-kernel``."""
+        self.page.locator(f'[data-command="notebook:{name}"]').first.click()
+
+    def press(self, label):
+        """Press a button of a widget."""
+        self.page.locator(".jupyter-widgets button", has_text=label).click()
+
+    def has_button(self, label):
+        """Wait until there is a button of a widget with this label."""
+        self.page.locator(".jupyter-widgets button", has_text=label).wait_for()
+
+    def speed(self, label):
+        """Choose a speed in the controls of time."""
+        self.page.locator(".jupyter-widgets select").select_option(label)
+
+    def keys(self, number, keys, seen):
+        """Press ``keys`` at the end of a cell, and return the text of what then appears, a CSS selector."""
+        self.focus(number)
+        self.page.keyboard.press(keys)
+        shown = self.page.locator(seen)
+        shown.wait_for()
+        return shown.inner_text()
 
 
 @contextmanager

@@ -112,5 +112,5 @@ class Live:
     def _show_plans(self, folded, what):
         lines = self._plans.lines()
         told = f"plan at {kernel.now():.1f} s{what}"
-        shown = f"<details{folded}><summary>{told}</summary>{outlines.of_tasks(lines)}</details>"
+        shown = f"<details{folded}><summary>{told}</summary><div>{outlines.of_tasks(lines)}</div></details>"
         self._displays.show("plan", {"text/html": shown, "text/plain": told})
