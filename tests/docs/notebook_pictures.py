@@ -20,28 +20,33 @@ CELLS = [
     "%pace",
     "(top-level\n  (pursue (sleep 6)\n    (loop (send-vel-cmd 2 1) (sleep 0.5))))",
     "%watch *turtle-pose*",
-    "(perform-draw-house)",
-    "(force-ll (prolog '(member ?colour (red green blue))))",
-    "(let ((motion (a motion (type driving) (speed 1.5) (angle 5))))\n  (reference motion)\n  motion)",
+    "(top-level\n  (pursue (sleep 3)\n    (loop (send-vel-cmd 1 1) (sleep 0.5))))",
+    "%watch off",
+    "(cut:force-ll (prolog:prolog '(member ?colour (red green blue))))",
+    "(let ((motion (desig:a motion (type driving) (speed 1.5) (angle 5))))\n  (reference motion)\n  motion)",
     '(roslisp:make-message "geometry_msgs/Twist" (:x :linear) 1.5)',
-    "(prolog:explain '(desig:motion-grounding 1 ?what))",
+    "(prolog:def-fact-group kitchen (graspable)\n  (prolog:<- (graspable ?x) (member ?x (cup bottle)) (empty ?x)))\n"
+    "(prolog:explain '(graspable cup))",
     '(top-level\n  (par (sleep 5)\n       (seq (sleep 1) (fail \'simple-plan-failure :format-control "lost"))))',
 ]
 
 
-def save(name, data):
-    """Save a PNG with few colours, so that it stays small."""
-    from PIL import Image
-
-    Image.open(io.BytesIO(data)).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE).save(PLACE / name, optimize=True)
+def save(name, image):
+    """Save an image as PNG with few colours, so that it stays small."""
+    image.quantize(COLOURS, dither=0).save(PLACE / name, optimize=True)
 
 
 def cells(shown, first, last):
-    """The picture of the cells from ``first`` to ``last``."""
-    boxes = [shown.cell(number).bounding_box() for number in range(first, last + 1)]
-    left, top = min(box["x"] for box in boxes), min(box["y"] for box in boxes)
-    right, below = max(box["x"] + box["width"] for box in boxes), max(box["y"] + box["height"] for box in boxes)
-    return shown.page.screenshot(clip={"x": left, "y": top, "width": right - left, "height": below - top})
+    """The picture of the cells from ``first`` to ``last``, one below the other."""
+    from PIL import Image
+
+    taken = [Image.open(io.BytesIO(shown.cell(number).screenshot())) for number in range(first, last + 1)]
+    whole = Image.new("RGB", (max(each.width for each in taken), sum(each.height for each in taken)), "white")
+    top = 0
+    for each in taken:
+        whole.paste(each, (0, top))
+        top += each.height
+    return whole
 
 
 def take():
@@ -64,8 +69,8 @@ def take():
         for number in range(3, len(CELLS)):
             shown.run(number)
         save("notebook-fluents.png", cells(shown, 3, 4))
-        save("notebook-values.png", cells(shown, 5, 8))
-        save("notebook-failure.png", cells(shown, 9, 9))
+        save("notebook-values.png", cells(shown, 6, 9))
+        save("notebook-failure.png", cells(shown, 10, 10))
 
 
 if __name__ == "__main__":

@@ -104,7 +104,11 @@ def test_the_controls_of_time_pause_step_and_go_on_while_a_cell_runs(cells):
     while not (came["msg_type"] == "comm_msg" and came["content"]["data"].get("state", {}).get("description") == "Go on"):
         came = cells.client.get_iopub_msg(timeout=PATIENCE)
 
+    statuses = []
+
     def use(kind, content):
+        if kind == "status":
+            statuses.append(content["execution_state"])
         if kind == "stream" and "begun" in content["text"]:
             send(session.msg("comm_msg", {"comm_id": step, "data": {"method": "custom", "content": {"event": "click"}}}))
         elif kind == "stream" and "stepped" in content["text"]:

@@ -15,6 +15,8 @@ CONTROL = "jupyter.widget.control"
 FAST, WALL = "as fast as possible", "wall time"
 SPEEDS = {FAST: None, "0.2 x": 0.2, "0.5 x": 0.5, "1 x": 1.0, "2 x": 2.0, "5 x": 5.0}
 """Speeds of virtual time, in plan seconds per second."""
+WIDTHS = {"pause": 8, "step": 6, "size": 9, "speed": 16}
+"""Of the controls, in em."""
 
 
 def serve_widgets(handlers):
@@ -44,12 +46,15 @@ class Controls:
         import ipywidgets
 
         self._post, self._told = post, told
-        self.pause = ipywidgets.ToggleButton(description="Pause", icon="pause")
-        self.step = ipywidgets.Button(description="Step", icon="step-forward")
-        self.size = ipywidgets.BoundedFloatText(value=0.5, min=0.001, max=3600, step=0.1, description="of (s)", layout={"width": "12em"})
-        self.speed = ipywidgets.Dropdown(options=[*SPEEDS, WALL], description="speed")
+        wide = {name: {"width": f"{width}em", "flex": "0 0 auto"} for name, width in WIDTHS.items()}
+        self.pause = ipywidgets.ToggleButton(description="Pause", icon="pause", layout=wide["pause"])
+        self.step = ipywidgets.Button(description="Step", icon="step-forward", layout=wide["step"])
+        plain = {"description_width": "initial"}
+        size = {"value": 0.5, "min": 0.001, "max": 3600, "step": 0.1}
+        self.size = ipywidgets.BoundedFloatText(**size, description="of (s)", style=plain, layout=wide["size"])
+        self.speed = ipywidgets.Dropdown(options=[*SPEEDS, WALL], description="speed", style=plain, layout=wide["speed"])
         self.time = ipywidgets.Label()
-        self.box = ipywidgets.HBox([self.pause, self.step, self.size, self.speed, self.time])
+        self.box = ipywidgets.HBox([self.pause, self.step, self.size, self.speed, self.time], layout={"flex_flow": "row wrap"})
         self._follows = False  # whether the controls are set to what is, and are not used
         self.pause.observe(self._paused, "value")
         self.step.on_click(self._stepped)

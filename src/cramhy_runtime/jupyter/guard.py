@@ -10,6 +10,7 @@ import inspect
 import logging
 import sys
 from contextlib import suppress
+from contextvars import ContextVar
 from functools import partial
 
 from ipykernel.kernelbase import Kernel
@@ -27,6 +28,8 @@ FIELDS = {
 """The fields that a message must have, and their types in Python."""
 LOGS = ("Comm", "ipykernel.comm", "tornado.application", "tornado.general", "asyncio")
 """Where the libraries below tell of messages that they do not understand."""
+_beside: ContextVar[bool] = ContextVar("beside", default=False)
+"""Whether a message, one of a widget, is answered while a cell runs."""
 NAMES = {str: "a string", int: "an integer"}
 
 
@@ -73,7 +76,9 @@ def one_line(record):
 
 
 class Guarded(Kernel):
-    """A kernel that answers messages that are wrong, too."""
+    """A kernel that answers messages that are wrong, too. ``parent_of_cell``: the message of the cell that runs, or ran last."""
+
+    parent_of_cell: dict
 
     def guard(self):
         """From now on, all messages are looked at first. To be called when the handlers are in their tables."""
@@ -101,9 +106,15 @@ class Guarded(Kernel):
             if kind.endswith("_request"):
                 content = {"status": "error", "ename": "WrongMessage", "evalue": told, "traceback": [told]}
                 self.session.send(stream, f"{kind.removesuffix('_request')}_reply", content, parent, ident=ident)
+        finally:
+            if _beside.get():  # ipykernel says nothing of it, and a widget sends its next message when it hears that this one is done
+                self._publish_status("busy", "shell", parent)
+                self._publish_status("idle", "shell", parent)
+                self._publish_status("busy", "shell", self.parent_of_cell)
 
     async def dispatch_shell(self, msg, *more, **named):
         """A message of the shell channel: what cannot even be read is left, with a line in the log."""
+        _beside.set(named.get("concurrent", False))
         try:
             await super().dispatch_shell(msg, *more, **named)
         except Exception as problem:

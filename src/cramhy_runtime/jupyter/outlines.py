@@ -40,8 +40,9 @@ def outline(rows):
 
 def of_text(text):
     """The outline of a text whose levels are its indentation."""
-    rows = [((len(line) - len(line.lstrip())) // 2, f"<code>{escape(line.strip())}</code>") for line in text.splitlines() if line.strip()]
-    return outline(rows)
+    lines = [line for line in text.splitlines() if line.strip()]
+    shown = outline(((len(line) - len(line.lstrip())) // 2, escape(line.strip())) for line in lines)
+    return f'<div style="font-family:monospace">{shown}</div>'
 
 
 def of_tasks(lines):

@@ -23,7 +23,7 @@ MOST_VALUES = 4000
 """Values that are kept of one fluent; with more, every second one of them is left out."""
 MOST_LINES = 6
 """Numbers of one message that are drawn."""
-WIDTH, HEIGHT, BAND = 640, 130, 26
+WIDTH, HEIGHT, BAND = 560, 130, 26
 LEFT, RIGHT, ABOVE, BELOW = 64, 12, 22, 18
 COLOURS = ["#1f77b4", "#d95f02", "#2e8b57", "#7b3fb0", "#c62828", "#6b5b4b"]
 

@@ -27,6 +27,7 @@ from . import outlines, plots
 
 MOST_ROWS = 200
 DEEPEST = 8
+TABLE, CELL = "<table>", '<td style="text-align:left">'
 
 
 def bundle(values, show=prin1_to_string, watched=None):
@@ -95,11 +96,11 @@ def table(rows):
     """The answers as a table: a column for each variable."""
     names = list(dict.fromkeys(name for row in rows for name in row))
     body = "".join(
-        "<tr>" + "".join(f"<td><code>{text(row[name]) if name in row else ''}</code></td>" for name in names) + "</tr>"
+        "<tr>" + "".join(f"{CELL}<code>{text(row[name]) if name in row else ''}</code></td>" for name in names) + "</tr>"
         for row in rows[:MOST_ROWS]
     )
     more = f"<p>and {len(rows) - MOST_ROWS} more answers</p>" if len(rows) > MOST_ROWS else ""
-    return f"<table><thead><tr>{''.join(f'<th>{escape(name)}</th>' for name in names)}</tr></thead><tbody>{body}</tbody></table>{more}"
+    return f"{TABLE}<thead><tr>{''.join(f'<th>{escape(name)}</th>' for name in names)}</tr></thead><tbody>{body}</tbody></table>{more}"
 
 
 # ---------------------------------------------------------------------------------------------------------------- messages
@@ -131,8 +132,8 @@ def designator(value):
     pairs = [(pair.car, classes.value_of(pair)) if isinstance(pair, Cons) else (pair, None) for pair in classes.pairs_of(value)]
     known = guarded(lambda: resolution.known(value), lambda problem: None)
     resolved = f"<code>{text(known)}</code>" if known is not None else "<i>not resolved yet</i>"
-    rows = "".join(f"<tr><th>{text(key)}</th><td>{_part(part)}</td></tr>" for key, part in pairs)
-    return f"<table><caption>{escape(_name(value))}</caption><tbody>{rows}<tr><th>resolution</th><td>{resolved}</td></tr></tbody></table>"
+    rows = "".join(f"<tr><th>{text(key)}</th>{CELL}{_part(part)}</td></tr>" for key, part in pairs)
+    return f"{TABLE}<caption>{escape(_name(value))}</caption><tbody>{rows}<tr><th>resolution</th>{CELL}{resolved}</td></tr></tbody></table>"
 
 
 def _part(value):
@@ -145,8 +146,8 @@ def _name(value):
 
 def facts(title, rows):
     """A table of facts."""
-    body = "".join(f"<tr><th>{escape(label)}</th><td><code>{text(value)}</code></td></tr>" for label, value in rows)
-    return f"<table><caption>{escape(title)}</caption><tbody>{body}</tbody></table>"
+    body = "".join(f"<tr><th>{escape(label)}</th>{CELL}<code>{text(value)}</code></td></tr>" for label, value in rows)
+    return f"{TABLE}<caption>{escape(title)}</caption><tbody>{body}</tbody></table>"
 
 
 def fluent(value, watched):
