@@ -1,24 +1,35 @@
-"""``make notebooks OUT=folder``: write the pages of the tutorial as notebooks, from the same sources as the site.
+"""``make notebooks OUT=folder``: write the pages of the tutorials as notebooks, from the same sources as the site.
 
-The sessions in Common Lisp on a page become cells, one for each thing that is typed; files become cells that write them. The rest of the page
-stays text, Hy and commands of the shell, too. What is typed into the debugger is left out, and the cell before it, which fails, says so to
-Jupyter with the tag ``raises-exception``.
+A page gives a notebook in Common Lisp, and one in Hy (``NAME-in-hy.ipynb``) if it has sessions in Hy. The sessions in that language become
+cells, one for each thing that is typed; files become cells that write them. The rest of the page stays text, the other language and
+commands of the shell, too. What is typed into the debugger is left out, and the cell before it, which fails, says so to Jupyter with the
+tag ``raises-exception``.
+
+A package grows on the pages of the lectures, so their notebooks are in a folder of their own, and are run one after the other. The others
+use the packages of ``tutorials``; those in plain Hy are copied beside them.
 """
 
 from __future__ import annotations
 
 import re
+import shutil
 import sys
 from pathlib import Path
 
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from tests.docs.pages import FENCE, LECTURES, ROOT, Block, exchanges  # noqa: E402
+from tests.docs.pages import COURSE, DOCS, FENCE, LECTURES, Block, Page, exchanges  # noqa: E402
 
-TUTORIALS = ROOT / "docs" / "tutorials"
+TUTORIALS = DOCS / "tutorials"
 PAGES = [TUTORIALS / name for name in LECTURES]
-"""The pages of the lectures, in their order: a package grows on them, so their notebooks are run in one folder."""
+"""The pages of the lectures, in their order."""
+MORE = [path for path in sorted(TUTORIALS.rglob("*.md")) if path not in PAGES and Page(path).texts("session")]
+"""The other pages of the tutorials, the kitchen's too. Each can be run by itself."""
+IN_HY = [path for path in PAGES + MORE if Page(path).texts("hy session")]
+"""The pages that give a notebook in Hy, too."""
+PACKAGES = {"lectures": [], "turtle": ["turtlesim_in_hy"], "kitchen": ["kitchen/kitchen_in_hy"]}
+"""The folders of notebooks, and the packages in plain Hy that are copied into each."""
 IN_DEBUGGER = re.compile(r"^\d+\] ")
 COMMAND = re.compile(r"^ros\w+ ")
 
@@ -33,15 +44,16 @@ def parts(text):
     yield text[end:]
 
 
-def cells(text):
-    """(kind, text, fails) of each cell of a page; kind: ``"markdown"`` or ``"code"``."""
-    found = []
+def cells(text, language="lisp"):
+    """(kind, text, fails) of each cell of a page; kind: ``"markdown"`` or ``"code"``. language: ``"lisp"`` or ``"hy"``."""
+    sessions = "session" if language == "lisp" else "hy session"
+    found = [] if language == "lisp" else [["code", "(in-hy)", False]]
     for part in parts(text):
         if isinstance(part, str):
             found.append(["markdown", part, False])
         elif part.kind == "file" and part.language in ("lisp", "xml", "hy"):
             found.append(["code", f"%%writefile {part.title}\n{part.text}", False])
-        elif part.kind == "session":
+        elif part.kind == sessions:
             for typed, whole in exchanges(part.text):
                 if IN_DEBUGGER.match(whole):
                     if found and found[-1][0] == "code":
@@ -61,14 +73,14 @@ def cells(text):
     return [(kind, content.strip("\n"), fails) for kind, content, fails in joined if content.strip()]
 
 
-def notebook(page):
-    """The notebook, an `nbformat.NotebookNode`, of the page at a path."""
+def notebook(page, language="lisp"):
+    """The notebook, an `nbformat.NotebookNode`, of the page at a path, in ``language``."""
     import nbformat.v4 as made
 
     from cramhy_runtime.jupyter import kernelspec
 
     written = []
-    for number, (kind, content, fails) in enumerate(cells(Path(page).read_text(encoding="utf-8"))):
+    for number, (kind, content, fails) in enumerate(cells(Path(page).read_text(encoding="utf-8"), language)):
         cell = made.new_markdown_cell(content) if kind == "markdown" else made.new_code_cell(content)
         cell["id"] = f"{Path(page).stem}-{number}"
         if fails:
@@ -78,15 +90,30 @@ def notebook(page):
     return made.new_notebook(cells=written, metadata={"kernelspec": spec, "language_info": {"name": "common-lisp"}})
 
 
+def folder_of(page):
+    """The name of the folder of a page's notebooks, of those in `PACKAGES`."""
+    return "lectures" if page in PAGES else "kitchen" if page.parent.name == "kitchen" else "turtle"
+
+
+def prepare(folder, page):
+    """Make ``folder``, and copy into it the packages that the notebooks of ``page`` import."""
+    Path(folder).mkdir(parents=True, exist_ok=True)
+    for name in PACKAGES[folder_of(page)]:
+        copied = Path(folder) / Path(name).name
+        shutil.copytree(COURSE / name, copied, ignore=shutil.ignore_patterns("__pycache__"), dirs_exist_ok=True)
+
+
 def write(folder):
-    """Write the notebooks into ``folder``, and return their paths."""
+    """Write the notebooks into folders below ``folder``, and return their paths."""
     import nbformat
 
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    paths = [folder / f"{page.stem}.ipynb" for page in PAGES]
-    for page, path in zip(PAGES, paths):
-        nbformat.write(notebook(page), path)
+    paths = []
+    for language, pages, ending in (("lisp", PAGES + MORE, ""), ("hy", IN_HY, "-in-hy")):
+        for page in pages:
+            place = Path(folder) / folder_of(page)
+            prepare(place, page)
+            paths.append(place / f"{page.stem}{ending}.ipynb")
+            nbformat.write(notebook(page, language), paths[-1])
     return paths
 
 

@@ -30,10 +30,10 @@ def jupyter(tmp_path, monkeypatch):
     return tmp_path
 
 
-def executed(page, folder):
+def executed(page, folder, language="lisp"):
     import nbclient
 
-    made = notebooks.notebook(page)
+    made = notebooks.notebook(page, language)
     client = nbclient.NotebookClient(made, timeout=300, startup_timeout=200, kernel_name="cramhy", resources={"metadata": {"path": folder}})
     return client.execute()
 
@@ -61,6 +61,35 @@ def test_the_notebooks_of_all_lectures_run_one_after_the_other(jupyter):
     place.mkdir(parents=True)
     for page in notebooks.PAGES:
         executed(page, str(place))  # a cell that fails, and is not said to, ends it
+
+
+@takes_long
+@pytest.mark.parametrize("language", ["lisp", "hy"])
+@pytest.mark.parametrize("page", notebooks.MORE, ids=lambda page: page.stem)
+def test_the_notebooks_of_the_other_pages_run(jupyter, page, language):
+    if page.parent.name == "kitchen":
+        pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
+    if language == "hy" and page not in notebooks.IN_HY:
+        pytest.skip("the page has no session in Hy")
+    notebooks.prepare(jupyter / "place", page)
+    done = executed(page, str(jupyter / "place"), language)
+    code = [cell for cell in done.cells if cell.cell_type == "code"]
+    failed = [cell.source for cell in code if any(output["output_type"] == "error" for output in cell["outputs"])]
+    assert failed == [cell.source for cell in code if cell.metadata.get("tags")]
+    if page.parent.name == "kitchen":
+        shown = [output for cell in code for output in outputs(cell) if output["output_type"] == "display_data"]
+        assert any("image/png" in output["data"] for output in shown), "the robot's world has changed"
+
+
+def test_all_pages_of_the_tutorials_are_notebooks(tmp_path):
+    written = {path.relative_to(tmp_path).as_posix() for path in notebooks.write(tmp_path)}
+    pages = {path.stem for path in notebooks.TUTORIALS.rglob("*.md")} - {"index", "the-package"}
+    assert {Path(name).stem.removesuffix("-in-hy") for name in written} == pages
+    assert {"lectures/lecture-34.ipynb", "turtle/first-plan-in-hy.ipynb", "kitchen/table-for-two.ipynb"} <= written
+    assert (tmp_path / "turtle" / "turtlesim_in_hy").is_dir() and (tmp_path / "kitchen" / "kitchen_in_hy").is_dir()
+    first = json.loads((tmp_path / "turtle" / "first-plan-in-hy.ipynb").read_text())
+    code = ["".join(cell["source"]) for cell in first["cells"] if cell["cell_type"] == "code"]
+    assert code[0] == "(in-hy)" and not any("CL-USER>" in text or "=> " in text for text in code)
 
 
 def test_each_thing_typed_is_a_cell_and_what_the_debugger_hears_is_none():

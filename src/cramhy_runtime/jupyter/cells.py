@@ -20,6 +20,7 @@ from cramhy_runtime.ground.source_places import keep_text
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.languages.commonlisp.reader.reader import incomplete
+from cramhy_runtime.languages.hy import module_names, plan_code
 
 LISP, HY = "lisp", "hy"
 MODULE = "notebook"
@@ -77,6 +78,15 @@ class Notebook:
             raise Aborted
         return values
 
+    def values_of(self, text):
+        """The value of each form in ``text``, a list, in the notebook's language and package."""
+        if self.language == HY:
+            import hy
+
+            return [hy.eval(model, module=self.hy_module()) for model in hy.read_many(text)]
+        with binding(evaluator.PACKAGE, self.package):
+            return [value for form in self.session.forms(self.session.reader(text)) for value in self.session.evaluate(form)[:1]]
+
     # ---------------------------------------------------------------------------------------------------------------- Lisp
 
     def _lisp(self, text):
@@ -127,10 +137,21 @@ class Notebook:
                 lines = text.split("\n")
                 line, column = model.start_line - 1, model.start_column - 1
                 return self._lisp("\n" * line + "\n".join([" " * column + lines[line][column:], *lines[line + 1 :]]))
-            value = hy.eval(model, module=module)
+            value = self._evaluated_in_hy(model, module, name)
         if kernel.current() is kernel.active().main:
             kernel.settle()
         return [] if value is None else [value]
+
+    @staticmethod
+    def _evaluated_in_hy(model, module, filename):
+        """As ``hy.eval``. Loops have checkpoints and cleanup is shielded, as at the prompt, so the stop button ends them in order."""
+        from hy.compiler import hy_compile
+
+        statements, expression = hy_compile(model, module, get_expr=True, filename=filename)
+        plan_code.complete([statements], module_names.at_prompt(module))
+        space = vars(module)
+        exec(compile(statements, filename, "exec"), space)
+        return eval(compile(expression, filename, "eval"), space)
 
     def shown(self, value):
         """The text of a value of the last cell: as Lisp prints it, and as Hy does where Hy has answered and the value is not ours."""

@@ -69,7 +69,7 @@ def cramhy(line, cell):
             told = debugger.told or told_of(problem)
         finally:
             conditions.install_debugger(None)
-    for picture in opened.watcher.pictures():
+    for _, picture in opened.watcher.pictures():
         display(picture, raw=True)
     if told is not None:
         print("\n".join(told.lines), file=sys.stderr)

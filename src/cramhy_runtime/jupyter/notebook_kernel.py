@@ -9,26 +9,33 @@ SIGINT, which Jupyter's stop button sends, interrupts the cell that runs: its pl
 
 from __future__ import annotations
 
+import asyncio
 import signal
 import sys
+from fnmatch import fnmatchcase
 
-from ipykernel.kernelbase import Kernel
 from traitlets import Any as AnyTrait
 from zmq.eventloop.zmqstream import ZMQStream
 
-from cramhy_runtime import __version__
+from cramhy_runtime import __version__, kernel
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.session import requests
 from cramhy_runtime.session.requests import Mailbox, Request
 
-from . import asking, rich, streams
+from . import asking, controls, rich, settings, streams
 from .cells import Aborted, Notebook
 from .failures import CellDebugger, told_of
+from .guard import Guarded, Wrong
+from .live import Displays, Live
 from .pictures import Watcher
+from .plans import Plans
+from .plots import Watched
+
+REFUSED = "This kernel has no debugger of Jupyter's. After a cell with %debugger on, an error asks which restart to take."
 
 
-class CramhyKernel(Kernel):
+class CramhyKernel(Guarded):
     """See the top of this file. plans: the session's `kernel.Kernel`; made: the `Session`."""
 
     implementation = "cramhy"
@@ -52,6 +59,13 @@ class CramhyKernel(Kernel):
         """Answer messages of the asyncio ``loop`` from now on. To be called with the baton, before the loop runs."""
         self.loop = loop
         self.notebook, self.watcher = Notebook(self.made), Watcher()
+        self.watched, self.tasks = Watched(), Plans()
+        self.controls = None  # those of ``%pace``, once a cell has shown them
+        self.live = True  # whether cells show what they do while they run (%live)
+        self.typed = []  # the cells so far, for ``history_request``: a number and a text
+        self.comm_manager = controls.serve_widgets(self.shell_handlers)
+        self.control_handlers["execute_request"] = self._not_here
+        self.guard()
         self.cell = None  # the Request of the cell that runs
         self.asks = False  # whether an error asks what to do (%debugger on)
         self.parent_of_cell = {}
@@ -61,7 +75,7 @@ class CramhyKernel(Kernel):
         self._stdin = ZMQStream(self.stdin_socket)
         self._stdin.on_recv(self._line_came)
         requests.ask_whoever_asked()
-        streams.route(self.write, self.read_line)
+        streams.route(self.write, self.read_line, self.show_value)
         sys.stdout, sys.stderr = streams.PythonOutput("stdout", self.write), streams.PythonOutput("stderr", self.write)
         signal.signal(signal.SIGINT, lambda number, frame: self.stop_cell())
 
@@ -75,13 +89,14 @@ class CramhyKernel(Kernel):
         self.plans.post(lambda: self.cell.interrupt() if self.cell is not None else None)
 
     def ask(self, work, name, debugger=None, cell=False):
-        """Do ``work()`` in a task of the session; a future of the finished `Request`. To be called in the loop."""
-        future = self.loop.create_future()
+        """Do ``work()`` in a task of the session; a future of the finished `Request`. To be called in a loop."""
+        loop = asyncio.get_running_loop()  # the control channel has one of its own
+        future = loop.create_future()
 
         def finished(request):
             if self.cell is request:
                 self.cell = None
-            self.loop.call_soon_threadsafe(lambda: future.done() or future.set_result(request))
+            loop.call_soon_threadsafe(lambda: future.done() or future.set_result(request))
 
         def begin():
             request = Request(work, finished, debugger=debugger or (lambda condition: None), name=name, owner=self)
@@ -118,6 +133,13 @@ class CramhyKernel(Kernel):
             if text := "".join(texts):
                 self._say("stream", {"name": name, "text": text.encode("utf-8", "replace").decode()}, parent)
 
+    def show_value(self, value):
+        """Show ``value``, which a program prints, below the cell; whether it was more than its text."""
+        shown = rich.html(value)
+        if shown is not None:
+            self.say("display_data", {"data": {"text/html": shown, "text/plain": str(value)}, "metadata": {}, "transient": {}})
+        return shown is not None
+
     # ---------------------------------------------------------------------------------------------------------------- input
 
     def read_line(self, prompt=""):
@@ -153,12 +175,14 @@ class CramhyKernel(Kernel):
         """``execute_request``"""
         self.parent_of_cell, self.identity_of_cell = self.get_parent("shell"), self._shell_parent_ident.get()
         self._may_ask = bool(allow_stdin)
-        code = _text(code)
-        if (said := self._setting(code)) is not None:
-            return self._setting_reply(said, silent)
+        if store_history and not silent:
+            self.typed.append((self.execution_count, code))
+        if (said := settings.parsed(code)) is not None:
+            return await self._set(*said, silent)
         ask = (lambda prompt: self.read_line(prompt)) if self.asks and allow_stdin else None
         debugger = CellDebugger(self.made, lambda text: self.write("stderr", text), ask)
-        request = await self.ask(lambda: self._evaluated(code, silent), "a cell", debugger, cell=True)
+        live = self.live and self._may_ask and not silent
+        request = await self.ask(lambda: self._evaluated(code, silent, live), "a cell", debugger, cell=True)
         self._send_printed(self.parent_of_cell)
         if request.outcome == requests.DONE:
             return self._ok(await self._expressions(user_expressions))
@@ -172,18 +196,19 @@ class CramhyKernel(Kernel):
     async def _told(self, failure):
         return (await self.ask(lambda: told_of(failure), "the report of an error")).result
 
-    def _evaluated(self, code, silent):
-        self.watcher.begin()
-        try:
+    def _evaluated(self, code, silent, looked_at):
+        displays = Displays(self.say if not silent else lambda kind, content: None, f"cell-{self.ident}-{self.execution_count}")
+        with Live(displays, self.watcher, self.watched, self.tasks, self._follow).during(looked_at):
             values = self.notebook.evaluate(code)
+        if not silent:
             with binding(PACKAGE, self.notebook.package):
-                shown = None if silent else rich.bundle(values, self.notebook.shown)
-        finally:
-            if not silent:
-                for picture in self.watcher.pictures():
-                    self.say("display_data", {"data": picture, "metadata": {}, "transient": {}})
-        if shown is not None:
-            self.say("execute_result", {"execution_count": self.execution_count, "data": shown, "metadata": {}})
+                shown = rich.bundle(values, self.notebook.shown, self.watched)
+            if shown is not None:
+                self.say("execute_result", {"execution_count": self.execution_count, "data": shown, "metadata": {}})
+
+    def _follow(self):
+        if self.controls is not None:
+            self.controls.follow()
 
     def _ok(self, expressions):
         return {"status": "ok", "execution_count": self.execution_count, "payload": [], "user_expressions": expressions}
@@ -208,26 +233,54 @@ class CramhyKernel(Kernel):
 
     # ------------------------------------------------------------------------------------------------------------- settings
 
-    def _setting(self, code):
-        """The words of a cell that is a setting, ``%debugger on`` or ``%time wall``; else ``None``."""
-        words = code.split()
-        return words if len(words) == 2 and words[0] in SETTINGS and words[1] in SETTINGS[words[0]] else None
-
-    def _setting_reply(self, words, silent):
-        if words[0] == "%debugger":
-            self.asks = words[1] == "on"
-        else:
-            from cramhy_runtime import kernel
-
-            self.plans.post(lambda: kernel.set_clock(words[1]))
+    async def _set(self, name, rest, silent):
+        """A cell that sets something: ``%name rest``."""
+        try:
+            settings.check(name, rest)
+            data = await getattr(self, f"_set_{name}")(rest)
+        except settings.Refused as problem:
+            return self._error("WrongSetting", str(problem), [str(problem)], silent)
+        if data is not None and not silent:
+            self._say("display_data", {"data": data, "metadata": {}, "transient": {}}, self.parent_of_cell)
         return self._ok({})
+
+    async def _done(self, work):
+        """The result of ``work()``, done in a task of the session. What goes wrong is a `settings.Refused`."""
+        request = await self.ask(work, "a setting", cell=True)
+        if request.outcome == requests.DONE:
+            return request.result
+        problem = request.failure or Aborted("The setting was interrupted.")
+        raise settings.Refused(str(problem) if isinstance(problem, (ValueError, Aborted)) else (await self._told(problem)).text)
+
+    async def _set_debugger(self, word):
+        self.asks = word == "on"
+
+    async def _set_live(self, word):
+        self.live = word == "on"
+
+    async def _set_time(self, word):
+        await self._done(lambda: (kernel.set_clock(word), self._follow()))
+
+    async def _set_watch(self, forms):
+        if forms == "off":
+            return await self._done(self.watched.end)
+        await self._done(lambda: self.watched.watch(self.notebook.values_of(forms)))
+        return None
+
+    async def _set_pace(self, _):
+        try:
+            if self.controls is None:
+                self.controls = controls.Controls(self.plans.post, self.loop.call_soon_threadsafe)
+        except ImportError:
+            raise settings.Refused(settings.NO_WIDGETS) from None
+        await self._done(self.controls.follow)
+        return self.controls.bundle()
 
     # ------------------------------------------------------------------------------------------------------------- the keys
 
     async def do_complete(self, code, cursor_pos):
         """``complete_request``"""
-        code = _text(code)
-        cursor = len(code) if not isinstance(cursor_pos, int) else max(0, min(cursor_pos, len(code)))
+        cursor = max(0, min(cursor_pos, len(code)))
         request = await self.ask(lambda: asking.completed(self.notebook, code, cursor), "completion")
         names, known, start = request.result or ([], [], cursor)
         kinds = [
@@ -239,17 +292,55 @@ class CramhyKernel(Kernel):
 
     async def do_inspect(self, code, cursor_pos, detail_level=0, omit_sections=()):
         """``inspect_request``"""
-        code = _text(code)
-        cursor = len(code) if not isinstance(cursor_pos, int) else max(0, min(cursor_pos, len(code)))
+        cursor = max(0, min(cursor_pos, len(code)))
         request = await self.ask(lambda: asking.inspected(self.notebook, code, cursor), "inspection")
         told = request.result
         return {"status": "ok", "found": bool(told), "data": {"text/plain": told} if told else {}, "metadata": {}}
 
     async def do_is_complete(self, code):
         """``is_complete_request``"""
-        request = await self.ask(lambda: self.notebook.completeness(_text(code)), "a look at parentheses")
+        request = await self.ask(lambda: self.notebook.completeness(code), "a look at parentheses")
         status = request.result or "unknown"
         return {"status": status, "indent": "  "} if status == "incomplete" else {"status": status}
+
+    async def do_history(self, hist_access_type, output, raw, session=None, start=None, stop=None, n=None, pattern=None, unique=False):
+        """``history_request``: the cells of this kernel, whose session has the number 0."""
+        cells = self.typed
+        if hist_access_type == "range":
+            cells = [cell for cell in cells if (start or 0) <= cell[0] and (stop is None or cell[0] < stop)]
+        elif hist_access_type == "search":
+            cells = [cell for cell in cells if fnmatchcase(cell[1], pattern or "*")]
+        if unique:
+            cells = list({text: (number, text) for number, text in cells}.values())
+        if hist_access_type != "range" and n is not None:
+            cells = cells[-n:] if n > 0 else []
+        return {"status": "ok", "history": [(0, number, (text, None) if output else text) for number, text in cells]}
+
+    # ---------------------------------------------------------------------------------------------------------- other messages
+
+    @property
+    def kernel_info(self):
+        """What ``kernel_info_request`` is told. Neither subshells nor a debugger of Jupyter's are offered."""
+        return {**super().kernel_info, "supported_features": []}
+
+    async def _not_here(self, stream, ident, parent):
+        raise Wrong("Cells are run by messages on the shell channel, one after the other.")
+
+    async def interrupt_request(self, stream, ident, parent):
+        """``interrupt_request``: as the signal, for front ends that send a message instead."""
+        self.stop_cell()
+        self.session.send(stream, "interrupt_reply", {"status": "ok"}, parent, ident=ident)
+
+    async def do_debug_request(self, msg):
+        """``debug_request``: it is refused, in the form of the Debug Adapter Protocol."""
+        command, number = msg.get("command"), msg.get("seq", 0)
+        return {"type": "response", "request_seq": number, "success": False, "command": command, "message": REFUSED, "body": {}}
+
+    async def create_subshell_request(self, stream, ident, parent):
+        """``create_subshell_request``: one cell runs at a time, so there is one shell."""
+        raise Wrong("This kernel has one shell, in which cells run one after the other.")
+
+    delete_subshell_request = list_subshell_request = create_subshell_request
 
     # -------------------------------------------------------------------------------------------------------------- the end
 
@@ -257,14 +348,3 @@ class CramhyKernel(Kernel):
         """``shutdown_request``: the plans end through their cleanup when the loop has stopped."""
         self.stop_cell()
         return {"status": "ok", "restart": restart}
-
-
-def _text(code):
-    """The text of a cell; what a client sends instead of one counts as an empty cell."""
-    return code if isinstance(code, str) else ""
-
-
-SETTINGS = {"%debugger": ("on", "off"), "%time": ("virtual", "wall")}
-"""Cells that set something, and the words behind them."""
-
-__all__ = ["SETTINGS", "CramhyKernel"]

@@ -6,14 +6,12 @@ A picture is made only if something is different, so cells that compute show non
 from __future__ import annotations
 
 import io
-import os
-import tempfile
 
 from cramhy_runtime.turtlesim import stills
 from cramhy_runtime.turtlesim.node import simulators
 
 MOST_SVG = 1 << 20
-"""Bytes of an SVG; a paper with more lines becomes a PNG."""
+"""Characters of an SVG; a paper with more lines becomes a PNG."""
 WIDTH, HEIGHT = 640, 480  # of a picture of the robot's world
 
 
@@ -55,31 +53,32 @@ class Watcher:
         if world is shown.current():
             self._changes += 1
 
+    def papers(self):
+        """(name of its place, mime bundle) of each turtle's paper that has changed since `begin`."""
+        return [
+            (f"paper-{number}", paper(simulator))
+            for number, (simulator, now) in enumerate(zip(simulators(), self._seen_turtles()))
+            if now not in self._turtles
+        ]
+
     def pictures(self):
-        """The mime bundles of what has changed since `begin`."""
-        found = []
-        seen = self._seen_turtles()
-        if seen and seen != self._turtles:
-            found += [paper(simulator) for simulator, now in zip(simulators(), seen) if now not in self._turtles]
+        """(name of its place, mime bundle) of all that has changed since `begin`. From now on, that counts as seen."""
+        found = self.papers()
         if self._changes != self._shown:
             from cramhy_runtime.robot_world import shown
 
             world = shown.current()
             if world is not None:
-                found.append(of_world(world))
-        self._turtles, self._shown = seen, self._changes
+                found.append(("world", of_world(world)))
+        self._turtles, self._shown = self._seen_turtles(), self._changes
         return found
 
 
 def paper(simulator):
     """The mime bundle of a simulator's window: SVG, or PNG where that has very many lines."""
     words = f"turtlesim: {', '.join(simulator.turtles) or 'no turtle'}"
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "paper.svg")
-        stills.still_svg(simulator, path)
-        if os.path.getsize(path) <= MOST_SVG:
-            with open(path, encoding="utf-8") as file:
-                return {"image/svg+xml": file.read(), "text/plain": words}
+    if len(drawn := stills.svg(simulator)) <= MOST_SVG:
+        return {"image/svg+xml": drawn, "text/plain": words}
     return {"image/png": _png(stills.picture(simulator)), "text/plain": words}
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from html import escape
 
+from cramhy_runtime import kernel
 from cramhy_runtime.cpl.fluents.fluents import Fluent
 from cramhy_runtime.cpl.tasks.tasks import AbstractTask
 from cramhy_runtime.designators import classes, resolution
@@ -16,26 +17,34 @@ from cramhy_runtime.ground.data import Cons, list_end
 from cramhy_runtime.ground.printing import guarded, prin1_to_string
 from cramhy_runtime.languages.commonlisp.objects.classes import class_of
 from cramhy_runtime.languages.commonlisp.tools.advice import explanation
+from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_type
+from cramhy_runtime.prolog.explanations.explanations import Explanation
 from cramhy_runtime.ros.messages import RosMessage
 from cramhy_runtime.session.inspection import inspected
 from cramhy_runtime.utilities.patterns import is_var
 
+from . import outlines, plots
+
 MOST_ROWS = 200
 DEEPEST = 8
+TABLE, CELL = "<table>", '<td style="text-align:left">'
 
 
-def bundle(values, show=prin1_to_string):
-    """The mime bundle of the values of a cell; ``None`` if there are none. show: how a value is printed as text."""
+def bundle(values, show=prin1_to_string, watched=None):
+    """The mime bundle of the values of a cell; ``None`` if there are none.
+
+    show: how a value is printed as text. watched: the `plots.Watched` of the notebook, for the past of fluents, or ``None``.
+    """
     if not values:
         return None
     found = {"text/plain": "\n".join(map(show, values))}
-    if len(values) == 1 and (shown := guarded(lambda: html(values[0]), lambda problem: None)):
+    if len(values) == 1 and (shown := guarded(lambda: html(values[0], watched), lambda problem: None)):
         found["text/html"] = shown
     return found
 
 
-def html(value):
-    """The HTML of a value, or ``None`` where its text says all."""
+def html(value, watched=None):
+    """The HTML of a value, or ``None`` where its text says all. watched: see `bundle`."""
     if isinstance(value, RosMessage):
         return message(value)
     if isinstance(value, classes.Designator):
@@ -45,7 +54,9 @@ def html(value):
     if isinstance(value, Condition):
         return failure(value)
     if isinstance(value, Fluent):
-        return facts("fluent", [(part.label, part.value) for part in inspected(value).parts if part.label in ("Name", "Value", "Pulses")])
+        return fluent(value, watched)
+    if isinstance(value, Explanation):
+        return outlines.of_text(value.text)
     if isinstance(value, Cons) and (rows := answers(value)) is not None:
         return table(rows)
     return None
@@ -85,11 +96,11 @@ def table(rows):
     """The answers as a table: a column for each variable."""
     names = list(dict.fromkeys(name for row in rows for name in row))
     body = "".join(
-        "<tr>" + "".join(f"<td><code>{text(row[name]) if name in row else ''}</code></td>" for name in names) + "</tr>"
+        "<tr>" + "".join(f"{CELL}<code>{text(row[name]) if name in row else ''}</code></td>" for name in names) + "</tr>"
         for row in rows[:MOST_ROWS]
     )
     more = f"<p>and {len(rows) - MOST_ROWS} more answers</p>" if len(rows) > MOST_ROWS else ""
-    return f"<table><thead><tr>{''.join(f'<th>{escape(name)}</th>' for name in names)}</tr></thead><tbody>{body}</tbody></table>{more}"
+    return f"{TABLE}<thead><tr>{''.join(f'<th>{escape(name)}</th>' for name in names)}</tr></thead><tbody>{body}</tbody></table>{more}"
 
 
 # ---------------------------------------------------------------------------------------------------------------- messages
@@ -121,8 +132,8 @@ def designator(value):
     pairs = [(pair.car, classes.value_of(pair)) if isinstance(pair, Cons) else (pair, None) for pair in classes.pairs_of(value)]
     known = guarded(lambda: resolution.known(value), lambda problem: None)
     resolved = f"<code>{text(known)}</code>" if known is not None else "<i>not resolved yet</i>"
-    rows = "".join(f"<tr><th>{text(key)}</th><td>{_part(part)}</td></tr>" for key, part in pairs)
-    return f"<table><caption>{escape(_name(value))}</caption><tbody>{rows}<tr><th>resolution</th><td>{resolved}</td></tr></tbody></table>"
+    rows = "".join(f"<tr><th>{text(key)}</th>{CELL}{_part(part)}</td></tr>" for key, part in pairs)
+    return f"{TABLE}<caption>{escape(_name(value))}</caption><tbody>{rows}<tr><th>resolution</th>{CELL}{resolved}</td></tr></tbody></table>"
 
 
 def _part(value):
@@ -135,24 +146,26 @@ def _name(value):
 
 def facts(title, rows):
     """A table of facts."""
-    body = "".join(f"<tr><th>{escape(label)}</th><td><code>{text(value)}</code></td></tr>" for label, value in rows)
-    return f"<table><caption>{escape(title)}</caption><tbody>{body}</tbody></table>"
+    body = "".join(f"<tr><th>{escape(label)}</th>{CELL}<code>{text(value)}</code></td></tr>" for label, value in rows)
+    return f"{TABLE}<caption>{escape(title)}</caption><tbody>{body}</tbody></table>"
 
 
-def task(value, depth=0):
+def fluent(value, watched):
+    """A fluent: its name, its value and its pulses; and its values over time, if it is watched."""
+    told = facts("fluent", [(part.label, part.value) for part in inspected(value).parts if part.label in ("Name", "Value", "Pulses")])
+    series = watched.of(value) if watched is not None else None
+    return told if series is None else told + plots.svg([series], kernel.now())
+
+
+def task(value):
     """A task with the tasks below it, as an outline."""
-    head = f"<b>{escape(str(value.name))}</b> {escape(_word(value.status))}"
-    told = value.result
-    if isinstance(told, Condition):
-        head += f" <code>{escape(str(told.report()))}</code>"
-    below = "".join(f"<li>{task(each, depth + 1)}</li>" for each in value.children) if depth < DEEPEST else ""
-    return f"<details open><summary>{head}</summary><ul>{below}</ul></details>" if below else f"<span>{head}</span>"
+    return outlines.of_tasks(outlines.task_lines([value]))
 
 
-def _word(status):
-    return str(getattr(status, "name", status)).lower()
-
-
-def failure(condition):
-    """A failure: its type, what it says, where and what to try, and the failures behind it."""
-    return f"<details open><summary><b>{text(type(condition))}</b></summary><pre>{escape(explanation(condition))}</pre></details>"
+def failure(condition, depth=0):
+    """A failure: its type, what it says, where and what to try, and below it the failures that belong to it."""
+    told = f"<pre>{escape(explanation(condition))}</pre>"
+    parts = [(label, each) for label, each in getattr(condition, "beside", ()) if isinstance(each, Condition)] if depth < DEEPEST else []
+    items = "".join(f"<li>{escape(label)}{failure(each, depth + 1)}</li>" for label, each in parts)
+    below = f"<ul>{items}</ul>" if items else ""
+    return f"<details open><summary><b>{escape(str(condition_type(condition)))}</b></summary>{told}{below}</details>"

@@ -9,12 +9,13 @@ from cramhy_runtime.languages.commonlisp.streams import streams
 
 
 class CellOutput(streams.OutputStream):
-    """Output for a notebook. name: ``"stdout"`` or ``"stderr"``. write: a function of that name and a text."""
+    """Output for a notebook. name: ``"stdout"`` or ``"stderr"``. write: a function of that name and a text. show: a function that shows
+    a value as more than its text, if it can, and returns whether it has."""
 
     label = "the notebook"
 
-    def __init__(self, name, write):
-        self.name, self._write = name, write
+    def __init__(self, name, write, show):
+        self.name, self._write, self.show = name, write, show
 
     def emit(self, text):
         self._write(self.name, text)
@@ -64,10 +65,10 @@ class PythonOutput:
         return False
 
 
-def route(write, read_line):
+def route(write, read_line, show):
     """Let the standard streams of Lisp lead to a notebook, from now on."""
-    output = CellOutput("stdout", write)
+    output = CellOutput("stdout", write, show)
     streams.STANDARD_OUTPUT.value = streams.TRACE_OUTPUT.value = output
-    streams.ERROR_OUTPUT.value = CellOutput("stderr", write)
+    streams.ERROR_OUTPUT.value = CellOutput("stderr", write, show)
     streams.STANDARD_INPUT.value = CellInput(read_line)
     streams.TERMINAL_IO.value = streams.TwoWayStream(streams.STANDARD_INPUT.value, output)

@@ -56,10 +56,12 @@ def picture(simulator: Turtlesim) -> Picture:
 
 
 def still_svg(simulator: Turtlesim, path: str) -> None:
-    """Write the window to ``path``, as an SVG file. Lines become straight if that moves them by at most a fifth of a pixel.
+    """Write the window to ``path``, as an SVG file (`svg`). Errors: `OSError`."""
+    storage.write_whole(path, svg(simulator))
 
-    Errors: `OSError`.
-    """
+
+def svg(simulator: Turtlesim) -> str:
+    """The window as an SVG document. Lines become straight if that moves them by at most a fifth of a pixel."""
     parts = [svg_head(f"turtlesim: {', '.join(simulator.turtles) or 'no turtle'}"), svg_paper(simulator.canvas.background)]
     for colour, width, points in simulator.canvas.polylines():
         parts.append(svg_line(colour, width, points))
@@ -67,7 +69,7 @@ def still_svg(simulator: Turtlesim, path: str) -> None:
         if math.isfinite(turtle.x + turtle.y + turtle.heading):
             place = f"translate({turtle.x * METRE:.2f} {turtle.y * METRE:.2f}) rotate({-math.degrees(turtle.heading):.1f})"
             parts.append(f'<g transform="{place}"><title>{escape(turtle.name)}</title>{svg_turtle(turtle.number)}</g>')
-    storage.write_whole(path, "\n".join([*parts, "</svg>\n"]))
+    return "\n".join([*parts, "</svg>\n"])
 
 
 def svg_head(title: str) -> str:

@@ -128,10 +128,12 @@ def print_explanation(goal=UNSUPPLIED, *, limit=LIMIT):
             if to_explain
             else error("There is nothing to explain yet: give EXPLAIN a goal, quoted as for PROLOG, or a designator.")
         )
-    text = str(explain(goal, limit))
+    found = explain(goal, limit)
     stream = standard_output()
     stream.fresh_line()
-    stream.write(text + "\n")
+    show = getattr(stream, "show", None)  # a notebook shows it as an outline
+    if show is None or not show(found):
+        stream.write(f"{found}\n")
     return MultipleValues(())
 
 
