@@ -356,3 +356,22 @@
 (progn (defclass a{number} (nope{number}) ()) (allocate-instance (find-class 'nope{number})))
 (progn (defclass a{number} (nope{number}) ()) (make-instance 'a{number} :x 1))
 (progn (defclass a{number} (nope{number}) ()) (defclass nope{number} () ((x :initform 3))) (slot-value (make-instance 'a{number}) 'x))
+; what is printed readably is written for the standard readtable
+(mapcar (lambda (case) (let ((*readtable* (copy-readtable nil)) (*print-readably* t)) (setf (readtable-case *readtable*) case) (mapcar #'prin1-to-string '(foo |foo| |Foo| |f o| :key :|key| #:gen #:|gen|)))) '(:upcase :downcase :preserve :invert))
+(mapcar (lambda (case) (let ((*readtable* (copy-readtable nil)) (*print-readably* t) (*print-case* :downcase)) (setf (readtable-case *readtable*) case) (mapcar #'prin1-to-string '(foo |foo| |Foo| car nil t)))) '(:upcase :downcase :preserve :invert))
+(mapcar (lambda (case) (let ((*readtable* (copy-readtable nil)) (*print-readably* t) (*print-case* :capitalize)) (setf (readtable-case *readtable*) case) (format nil "~a ~s ~w ~s" 'foo-bar :bar '(|b| c) "Str"))) '(:upcase :downcase :preserve :invert))
+(mapcar (lambda (case) (let ((*readtable* (copy-readtable nil)) (*print-readably* nil)) (setf (readtable-case *readtable*) case) (list (write-to-string '|foo| :readably t) (write-to-string 'foo :readably nil) (write-to-string 'foo :readably t :escape nil)))) '(:upcase :downcase :preserve :invert))
+(let ((*readtable* (copy-readtable nil)) (*print-readably* t)) (setf (readtable-case *readtable*) :invert) (let ((text (prin1-to-string '(foo |foo| |Foo| #c(1 2) 1/2)))) (setf (readtable-case *readtable*) :upcase) (list text (equal (read-from-string text) '(foo |foo| |Foo| #c(1 2) 1/2)))))
+; a list grown by push: the item is computed before the list is read
+(let ((l (list 1))) (push (progn (setq l (list 9)) 2) l) l)
+(let ((l nil)) (dotimes (i 3) (push (let ((m nil)) (push i m) (push (length l) m) m) l)) l)
+(let ((l nil)) (push (funcall (lambda () (push 1 l) 2)) l) (push (if l (progn (push 5 l) 7) 8) l) (setq l (cons l l)) l)
+(let ((l (list 0))) (list (block b (push (return-from b l) l)) (push 1 l) l))
+(labels ((f (n l) (when (plusp n) (push n l) (setq l (f (1- n) l)) (push (- n) l)) l)) (f 3 nil))
+; what ~D is given: an integer, a float, something else, a variable that is always an integer
+(let ((i 5) (x 1.5)) (incf i) (list (format nil "~d|~d|~d" i x 'a) (format nil "~d!" (length "abc")) (let ((*print-base* 2) (*print-radix* t)) (format nil "~d ~d" i (expt 10 30)))))
+(mapcar (lambda (x) (format nil "<~d ~a ~d>" x x x)) '(1 -3 10/3 1.5 nil t "s" #\a 100000000000000000000 1000000000000000000 -1000000000000000000))
+; the type that stands in what cannot be read
+(mapcar (lambda (x) (with-output-to-string (s) (print-unreadable-object (x s :type t) (princ 1 s)))) (list :key 'a '#:b 'car nil t 1 5 -7 (expt 10 30) (- (expt 10 30)) 1.5 2d0 1/2 #c(1 2) #c(1/2 2) #c(1.5 2.0) #c(1d0 2d0) #\a #\é))
+(mapcar (lambda (x) (with-output-to-string (s) (print-unreadable-object (x s :type t)))) (list "abc" (copy-seq "abc") (list 1) #(1 2) #*10 (make-array 3 :fill-pointer 2) (make-array '(2 2)) *package* #p"x" (make-hash-table) #'car (find-class 'integer) (make-condition 'error) *random-state* #'print-object))
+(let ((*print-length* 1) (*print-level* 1) (*print-case* :downcase)) (mapcar (lambda (x) (with-output-to-string (s) (print-unreadable-object (x s :type t) (prin1 '(1 2) s)))) (list :key #c(1 2) 5 "abc" 'a)))
