@@ -207,7 +207,7 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerat
         return argument.__class__ is nodes.LocalVariable and argument.variable is node.variable
 
     def new_cell(self, item, rest):
-        """The name of a new cons of the node ``item`` and ``rest``. Its constructor, which would be a call of a Python function, is left out."""
+        """The name of a new cons of ``item``, a node, and ``rest``. It is made without its constructor, a call of a Python function."""
         cell, item = word(self.temporary("Lnew")), self.value(item)
         self.emit(word("setv"), cell, expression(word("Lnew_object"), word("LCons")))
         self.emit(word("setv"), expression(word("."), cell, word("car")), item)
