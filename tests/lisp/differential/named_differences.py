@@ -120,8 +120,9 @@ def _bounds_pass(question: str, theirs: str, ours: str) -> bool:
     return crossed and bool(re.search(r"\((position|find)", question)) and "TYPE-ERROR" in _types(ours) and not _types(theirs)
 
 
-def _elt_behind_the_end(question: str, theirs: str, ours: str) -> bool:
-    return "(elt " in question and "TYPE-ERROR" in _types(ours) and not _types(theirs) and "NIL" in theirs
+def _behind_the_end(question: str, theirs: str, ours: str) -> bool:
+    asked = re.search(r"\(elt |\(subseq .* (\d+) \1\)", question)
+    return bool(asked) and "TYPE-ERROR" in _types(ours) and not _types(theirs) and "NIL" in theirs
 
 
 def _map_to_lists(question: str, theirs: str, ours: str) -> bool:
@@ -201,7 +202,7 @@ NAMED = [
     ),
     Named("Arrays of the element type nil", lambda question, theirs, ours: not _types(theirs) and _has_empty_type(question, ELEMENT_TYPE)),
     Named("A start behind the end is always an error", _bounds_pass),
-    Named("An index behind the end of a list is always an error for `elt`", _elt_behind_the_end),
+    Named("An index behind the end of a list is always an error for `elt` and `subseq`", _behind_the_end),
     Named("`map` to a type of lists is an error", _map_to_lists),
     Named("A method with qualifiers that its combination does not know", _inapplicable),
     Named(
