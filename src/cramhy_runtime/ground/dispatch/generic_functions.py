@@ -38,7 +38,8 @@ ALLOW_OTHER_KEYS = keyword("ALLOW-OTHER-KEYS")
 @when_classes_change
 def _forget_dispatch():
     for function in all_generic_functions:
-        function.forget()
+        if function.cache:  # on which arguments the methods specialize is no matter of the classes
+            function.cache = {}
 
 
 class FunctionObject:

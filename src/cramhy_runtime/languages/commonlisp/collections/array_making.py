@@ -19,7 +19,7 @@ from .arrays import array_element_type, dimensions_of, without_fill_pointer
 from .element_types import check_element, upgraded_element_type
 from .element_types import initial_element as default_element
 from .lists import items_of
-from .sequence_types import INDEX_TYPE, char_of, elements, text
+from .sequence_types import DIMENSION_LIMIT, INDEX_TYPE, char_of, elements, text
 from cramhy_runtime.ground.arrays import CHARACTER, LispArray, SimpleArray, TypedVector, Vector, take_storage
 
 LISP_NAMES = "make-array vector adjust-array"
@@ -36,10 +36,10 @@ def _dimensions(designator):
     if isinstance(designator, Cons):
         dimensions = tuple(items_of(designator))
         for dimension in dimensions:
-            if dimension.__class__ is not int or dimension < 0:
+            if dimension.__class__ is not int or not 0 <= dimension < DIMENSION_LIMIT:
                 type_error(dimension, INDEX_TYPE)
         return dimensions
-    if designator.__class__ is not int or designator < 0:
+    if designator.__class__ is not int or not 0 <= designator < DIMENSION_LIMIT:
         type_error(designator, f"(OR LIST {INDEX_TYPE})", "\nwhen binding SB-VM::DIMENSIONS")
     return (designator,)
 
@@ -76,6 +76,8 @@ def make_array(
     element_type = upgraded_element_type(element_type)
     adjustable = adjustable is not None and adjustable is not False
     size = math.prod(dimensions)
+    if size >= DIMENSION_LIMIT:
+        type_error(size, INDEX_TYPE)
     if displaced_to is None or displaced_to is False:
         check_room(size)
     if len(dimensions) != 1 and fill_pointer is not None and fill_pointer is not False:

@@ -213,6 +213,8 @@ def list_star(item, *items):
 def make_list(size, *, initial_element=None):
     """``make-list``: a list of ``size`` elements."""
     size = index_of(size, expected="(UNSIGNED-BYTE 58)")
+    if size >= 1 << 58:
+        type_error(size, "(UNSIGNED-BYTE 58)")
     check_room(size, CONS)
     return list_from([initial_element] * size)
 

@@ -20,7 +20,8 @@ from .element_types import check_element, upgraded_element_type
 from .lists import items_of
 from cramhy_runtime.ground.arrays import BIT, CHARACTER, LispArray, TypedVector, Vector, array_type, is_simple
 
-INDEX_TYPE = "(MOD 4611686018427387901)"
+DIMENSION_LIMIT = 4611686018427387901
+INDEX_TYPE = f"(MOD {DIMENSION_LIMIT})"
 
 
 class BoundingIndicesBad(TypeError_):

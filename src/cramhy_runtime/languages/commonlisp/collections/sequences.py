@@ -17,7 +17,18 @@ from cramhy_runtime.ground.packages import sym
 from .element_types import check_element
 from .element_types import initial_element as default_element
 from .lists import cells, items_of, not_a_list
-from .sequence_types import INDEX_TYPE, IndexTooLarge, bounds, elements, not_a_sequence, part, same_kind, sequence_type, store_all
+from .sequence_types import (
+    DIMENSION_LIMIT,
+    INDEX_TYPE,
+    IndexTooLarge,
+    bounds,
+    elements,
+    not_a_sequence,
+    part,
+    same_kind,
+    sequence_type,
+    store_all,
+)
 from cramhy_runtime.ground.arrays import LispArray, TypedVector, Vector
 
 LISP_NAMES = "length elt subseq copy-seq reverse nreverse concatenate make-sequence fill replace"
@@ -137,7 +148,7 @@ def concatenate(result_type, *sequences):
 def make_sequence(result_type, size, *, initial_element=UNSUPPLIED):
     """``make-sequence``: a new sequence of type ``result_type`` with ``size`` elements."""
     wanted = sequence_type(result_type)
-    if size.__class__ is not int or size < 0:
+    if size.__class__ is not int or not 0 <= size < DIMENSION_LIMIT:
         type_error(size, INDEX_TYPE, "\nwhen binding LENGTH")
     wanted.check_length(size)
     check_room(size, POINTER if wanted.element_type is not None else CONS)

@@ -17,7 +17,7 @@ from cramhy_runtime.ground.packages import is_symbol, symbol_name
 from cramhy_runtime.ground.heap import check_room
 from .arrays import InvalidArrayIndex
 from .characters import downcased, is_alphanumeric, upcased
-from .sequence_types import INDEX_TYPE, bounds, constant_changed, elements, in_turns
+from .sequence_types import DIMENSION_LIMIT, INDEX_TYPE, bounds, constant_changed, elements, in_turns
 
 LISP_NAMES = """
 string string= string/= string< string> string<= string>= string-equal string-not-equal string-lessp string-greaterp
@@ -62,7 +62,7 @@ def _text(designator, context=None):
 
 def make_string(size, *, initial_element=UNSUPPLIED, element_type=None):
     """``make-string``: a string of ``size`` characters that can be changed in place."""
-    if size.__class__ is not int or size < 0:
+    if size.__class__ is not int or not 0 <= size < DIMENSION_LIMIT:
         type_error(size, INDEX_TYPE, "\nwhen binding COUNT")
     check_room(size, 1)
     if initial_element is UNSUPPLIED:

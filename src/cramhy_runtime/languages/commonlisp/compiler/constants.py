@@ -120,6 +120,8 @@ class Constants:
 
 def is_circular(obj):
     """Whether the conses and vectors of a constant come back to themselves."""
+    if not isinstance(obj, (Cons, list)):
+        return False
     active, done, stack = set(), set(), [(obj, False)]
     while stack:
         item, leaving = stack.pop()

@@ -22,8 +22,10 @@ MUFFLE-CONDITIONS""".split()
 """Declarations whose name is no type."""
 
 UNCHECKED = {sym("T"), sym("*"), True}
-CLASSES = {sym("INTEGER"): "int", sym("FIXNUM"): "int", sym("SINGLE-FLOAT"): "float"}
-"""Types that one comparison of classes proves, and the kind of a value that has passed it."""
+FIXNUM = sym("FIXNUM")
+CLASSES = {sym("INTEGER"): "int", FIXNUM: "int", sym("SINGLE-FLOAT"): "float"}
+"""Types that one comparison of classes proves (for a fixnum also one of size), and the kind of a value that has passed it."""
+LEAST_FIXNUM, GREATEST_FIXNUM = -(2**62), 2**62 - 1
 DOUBLE = {sym("DOUBLE-FLOAT"), sym("LONG-FLOAT")}
 
 
@@ -55,6 +57,10 @@ def checkable(specifier):
     if isinstance(specifier, Cons):
         return specifier.car.name not in ("VALUES", "FUNCTION")
     return specifier is None or isinstance(specifier, Symbol) and (specifier.compiler_data or {}).get("declaration") is None
+
+
+def is_fixnum(value):
+    return value.__class__ is int and LEAST_FIXNUM <= value <= GREATEST_FIXNUM
 
 
 def kind_of_type(specifier):

@@ -180,8 +180,14 @@ class Env:
             env = env.parent
         return None
 
-    def variable(self, symbol):
-        return self._find("variables", symbol)
+    def variable(self, symbol):  # asked so often that it does not go through `_find`
+        env = self
+        while env is not None:
+            found = env.variables.get(symbol)
+            if found is not None:
+                return found
+            env = env.parent
+        return None
 
     def function(self, name):
         return self._find("functions", name)

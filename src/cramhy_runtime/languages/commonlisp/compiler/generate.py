@@ -22,7 +22,7 @@ from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS,
 from .generate_texts import TextGenerator
 
 
-COLLECT, FORMAT, GETHASH = map(sym, "CRAMHY::COLLECT FORMAT GETHASH".split())
+COLLECT, CONS, FORMAT, GETHASH = map(sym, "CRAMHY::COLLECT CONS FORMAT GETHASH".split())
 KNOWN_SETTERS = {sym(name) for name in "GETHASH AREF SVREF ELT NTH GET CHAR".split()}
 """Functions of Common Lisp whose ``setf`` is a function, which nobody may redefine or give methods."""
 DISPATCHERS = {"UnaryGeneric": 1, "FirstOfTwo": 2}
@@ -179,30 +179,40 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerat
 
     def SetLocal(self, node, destination):
         variable = node.variable
-        value = node.value
-        if (
-            value.__class__ is nodes.Call
-            and value.symbol is COLLECT
-            and len(value.arguments) == 2
-            and destination.kind == "effect"
-            and value.arguments[0].__class__ is nodes.LocalVariable
-            and value.arguments[0].variable is variable
-            and not variable.boxed
-        ):
-            cell, tail = word(self.temporary("Lnew")), word(variable.name)
-            item = self.value(value.arguments[1])
-            # made without its constructor, which would be a call of a Python function
-            self.emit(word("setv"), cell, expression(word("Lnew_object"), word("LCons")))
-            self.emit(word("setv"), expression(word("."), cell, word("car")), item)
-            self.emit(word("setv"), expression(word("."), cell, word("cdr")), NONE)
-            self.emit(word("setv"), expression(word("."), tail, word("cdr")), cell)
-            self.emit(word("setv"), tail, cell)
-            return None
+        if destination.kind == "effect" and not variable.boxed:
+            grown = word(variable.name)
+            if self.grows(node, COLLECT, 0):
+                cell = self.new_cell(node.value.arguments[1], NONE)
+                self.emit(word("setv"), expression(word("."), grown, word("cdr")), cell)
+                self.emit(word("setv"), grown, cell)
+                return None
+            if self.grows(node, CONS, 1):  # as push writes it
+                cell = self.new_cell(node.value.arguments[0], grown)
+                self.emit(word("setv"), grown, cell)
+                self.emit(word("setv"), cell, NONE)  # or it would keep the list for as long as the function runs
+                return None
         if not variable.boxed:
             self.gen(node.value, Destination("assign", variable.name))
         else:
             self.emit(word("setv"), self.reference(variable), self.value(node.value))
         return self.finish(self.reference(variable), node, destination, pure=True)
+
+    @staticmethod
+    def grows(node, symbol, position):
+        """Whether ``node`` gives a variable the value of a call of ``symbol`` with the variable itself as argument ``position`` of two."""
+        value = node.value
+        if value.__class__ is not nodes.Call or value.symbol is not symbol or len(value.arguments) != 2:
+            return False
+        argument = value.arguments[position]
+        return argument.__class__ is nodes.LocalVariable and argument.variable is node.variable
+
+    def new_cell(self, item, rest):
+        """The name of a new cons of ``item``, a node, and ``rest``. It is made without its constructor, a call of a Python function."""
+        cell, item = word(self.temporary("Lnew")), self.value(item)
+        self.emit(word("setv"), cell, expression(word("Lnew_object"), word("LCons")))
+        self.emit(word("setv"), expression(word("."), cell, word("car")), item)
+        self.emit(word("setv"), expression(word("."), cell, word("cdr")), rest)
+        return cell
 
     def SetGlobal(self, node, destination):
         value = self.value(node.value)

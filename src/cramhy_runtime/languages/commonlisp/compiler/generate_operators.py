@@ -13,7 +13,7 @@ import sys
 from cramhy_runtime.ground.packages import sym
 from . import nodes
 from .core import NONE, TRUE, Expression, Symbol, expression, word
-from .declared_types import kind_of_type
+from .declared_types import FIXNUM, GREATEST_FIXNUM, LEAST_FIXNUM, is_fixnum, kind_of_type
 from .destinations import FIRST_OF_VALUES
 from .facts import DIVIDE, MINUS, PLUS, TIMES, kind_of
 
@@ -108,21 +108,24 @@ class OperatorGenerator:
         return first, later
 
     def Checked(self, node, destination):
-        """A value of a declared type: one comparison of classes where that proves it."""
+        """A value of a declared type: one comparison of classes, and of size for a fixnum, where that proves it."""
         kind = kind_of_type(node.type)
-        if kind is not None and not node.entry and kind_of(node.value) == kind:
+        known = kind is not None and not node.entry and kind_of(node.value) == kind
+        if known and (node.type is not FIXNUM or node.value.__class__ is nodes.Constant and is_fixnum(node.value.value)):
             return self.gen(node.value, destination)
         (first,), (later,) = self.operands([node.value])
         place = [self.constant(node.place)] if node.place is not None else []
         if kind is None:
             return self.finish(self.positioned(self.call("checked", first, self.literal(node.type), *place), node), node, destination)
         slow = self.positioned(self.call("checked", later, self.literal(node.type), *place), node)
-        wanted = INT if kind == "int" else FLOAT
+        test = expression(IS, self.class_of(first), INT if kind == "int" else FLOAT)
+        if node.type is FIXNUM:
+            test = expression(AND, test, expression(word("<="), LEAST_FIXNUM, later, GREATEST_FIXNUM))
         if destination.kind == "effect":
-            self.emit(word("when"), expression(IS_NOT, self.class_of(first), wanted), slow)
+            self.emit(word("when"), expression(word("not"), test), slow)
             self.effects += 1
             return None
-        return self.finish(expression(IF, expression(IS, self.class_of(first), wanted), later, slow), node, destination)
+        return self.finish(expression(IF, test, later, slow), node, destination)
 
     def arithmetic(self, node, symbol, arguments):
         """The expression of a sum, difference, product or quotient of two operands."""

@@ -9,6 +9,7 @@ from ..printer.print_controls import PRINT_BASE, PRINT_CASE, UPCASE
 from ..printer.print_names import symbol_text
 from ..reader.readtables import READTABLE
 from .core import NONE, expression, word
+from .facts import kind_of
 
 
 class TextGenerator:
@@ -35,14 +36,14 @@ class TextGenerator:
                 tests.append(self.customary_printing())
                 continue
             known.append(None)
+            if kind == "D":  # an integer, so small that Python surely prints it
+                tests.append(self.small_integer(name, argument))
+                parts.append(name)
+                continue
             part, text = word(self.temporary()), self.call("text" + kind, name)
             if kind == "A":
                 is_text = expression(word("is"), expression(word("."), name, word("__class__")), word("Lstr"))
                 text = expression(word("if"), is_text, name, text)
-            elif kind == "D":  # so small that Python surely prints it
-                is_integer = expression(word("is"), expression(word("."), name, word("__class__")), word("Lint"))
-                small = expression(word("<"), -SMALL, name, SMALL)
-                text = expression(word("if"), expression(word("and"), is_integer, small), name, text)
             tests.append(expression(word("is-not"), expression(word("setx"), part, text), NONE))
             parts.append(part)
         text = with_known(found[0], known)
@@ -52,6 +53,14 @@ class TextGenerator:
         general = expression(word(self.constants.name("function", node.symbol)), NONE, control, *names)
         simple = tests[0] if len(tests) == 1 else expression(word("and"), *tests)
         return expression(word("if"), simple, filled, self.positioned(general, node))
+
+    def small_integer(self, name, argument):
+        """The test that the value of ``argument``, which ``name`` has, is an integer that Python prints at once."""
+        small = expression(word("<"), -SMALL, name, SMALL)
+        if kind_of(argument) == "int":
+            return small
+        is_integer = expression(word("is"), expression(word("."), name, word("__class__")), word("Lint"))
+        return expression(word("and"), is_integer, small)
 
     def customary_printing(self):
         """The test that keywords are printed in upper case and numbers in decimal, as they are unless a program says otherwise."""

@@ -245,7 +245,9 @@ def value(form, place):
     if kind is Symbol:
         if form in _CONSTANTS:
             return _at(ast.Constant(_CONSTANTS[form]), place)
-        return _at(ast.Name(str(form), _LOAD), place)
+        node = ast.Name(str(form), _LOAD)  # most expressions are names, so here stands what `_at` does
+        node.lineno, node.col_offset, node.end_lineno, node.end_col_offset = place
+        return node
     if kind is Expression:
         own, place = _inner(form, place)
         head = form[0]

@@ -74,9 +74,8 @@ class Scrutiny:
 
     def _refuse(self, symbol):
         """Fail when ``symbol`` is one of Common Lisp that is not there."""
-        problem = missing(symbol, self._at_symbol(symbol))
-        if problem is not None:
-            error(problem)
+        if missing(symbol) is not None:  # its place is looked for only then, which takes a while
+            error(missing(symbol, self._at_symbol(symbol)))
 
     def read_variable(self, variable):
         if variable.ignored and self.unit is not None:

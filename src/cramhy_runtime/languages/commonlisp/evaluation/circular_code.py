@@ -19,7 +19,7 @@ def refuse_circular_code(form, place=lambda part: None):
 
     place: the position of a list in the user's text, or ``None``.
     """
-    if form.__class__ is not Cons:
+    if form.__class__ is not Cons or _is_tree(form):
         return
     state, path = {}, [form]  # the state of a cons: its parts are being looked at, or have been
     while path:
@@ -41,3 +41,21 @@ def refuse_circular_code(form, place=lambda part: None):
                     )
                 if seen is None:
                     path.append(part)
+
+
+def _is_tree(form):
+    """Whether no cons of ``form`` is in two places outside of a quoted constant. Most code is so, and this is found fast."""
+    seen, rest = set(), [form]
+    while rest:
+        cell = rest.pop()
+        while cell.__class__ is Cons:
+            if id(cell) in seen:
+                return False
+            seen.add(id(cell))
+            part = cell.car
+            if part is QUOTE:
+                break
+            if part.__class__ is Cons:
+                rest.append(part)
+            cell = cell.cdr
+    return True

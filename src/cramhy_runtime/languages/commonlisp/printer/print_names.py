@@ -200,8 +200,12 @@ _quoted: dict = {}
 
 
 def token(name):
-    """``name`` as it stands in a symbol's printed form: between bars if need be, in the case of ``*print-case*``."""
-    base, case = PRINT_BASE.value, READTABLE.value.case.name
+    """``name`` as it stands in a symbol's printed form: between bars if need be, in the case of ``*print-case*``.
+
+    With ``*print-readably*`` it is written for the standard readtable, which will read it (ANSI, ``*print-readably*``).
+    """
+    reads_as = READTABLE.value.case if PRINT_READABLY.value is None else UPCASE
+    base, case = PRINT_BASE.value, reads_as.name
     text = _quoted.get((name, base, case))
     if text is None:
         if needs_bars(name, base, case) or looks_numeric(name, base) or not unicodedata.is_normalized("NFKC", name):
@@ -213,7 +217,7 @@ def token(name):
             _quoted[name, base, case] = text
     if text:
         return text
-    shown = in_print_case(name)
+    shown = in_print_case(name, reads_as)
     if not name.isascii() and CASES[case](shown) != name:  # a letter whose other case is not one letter, as in STRASSE
         return _between_bars(name)
     return shown
@@ -223,13 +227,16 @@ def _between_bars(name):
     return "|" + name.replace("\\", "\\\\").replace("|", "\\|") + "|"
 
 
-def in_print_case(name):
-    """``name`` in the case that ``*print-case*`` asks for; the readtable decides where its case is not :upcase (ANSI 22.1.3.3.2)."""
-    case, readtable_case = PRINT_CASE.value, READTABLE.value.case
-    if readtable_case is not UPCASE:
-        if readtable_case.name == "INVERT":
+def in_print_case(name, reads_as=None):
+    """``name`` in the case that ``*print-case*`` asks for; the readtable decides where its case is not :upcase (ANSI 22.1.3.3.2).
+
+    reads_as: the readtable case for which it is written; that of ``*readtable*`` by default.
+    """
+    case, reads_as = PRINT_CASE.value, reads_as or READTABLE.value.case
+    if reads_as is not UPCASE:
+        if reads_as.name == "INVERT":
             return invert(name)
-        if readtable_case.name == "PRESERVE" or case is DOWNCASE:
+        if reads_as.name == "PRESERVE" or case is DOWNCASE:
             return name
         if case is UPCASE:
             return upcase(name)

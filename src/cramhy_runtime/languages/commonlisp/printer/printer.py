@@ -284,8 +284,8 @@ def class_symbol(cls):
 
 
 def type_name(obj):
-    """What stands for the type of ``obj`` in ``#<...>``: a symbol, or a list for arrays."""
-    if isinstance(obj, (list, str, int, Character, LispString, LispArray)):
+    """What stands for the type of ``obj`` in ``#<...>``: a symbol, or a list for arrays and numbers."""
+    if isinstance(obj, (list, str, int, complex, Character, Keyword, LispString, LispArray)):
         return PORTS.types.of(obj)
     return class_symbol(type(obj))
 

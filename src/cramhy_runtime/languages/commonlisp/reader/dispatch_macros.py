@@ -245,6 +245,7 @@ def _radix_reader(fixed):
             _ignore_argument(sub, argument)
         token_start = reader.offset
         token = _constituents(reader)
+        apart = not token and (reader.peek_char() or "x") in READTABLE.value.whitespace
         if _suppressed():
             return None
         if base is None:
@@ -253,7 +254,7 @@ def _radix_reader(fixed):
             return fail(reader, start, "illegal radix for #R: ~D.", base, hint="A radix is between 2 and 36.")
         if not token and not reader.peek_char():
             return reader.ended()
-        if token.startswith("#"):  # #x#b101: what is read counts, as long as it is rational
+        if apart or token.startswith("#"):  # #x#b101, #x 10: what is read counts, as long as it is rational
             reader.offset = token_start
             with binding(tokens.READ_BASE, base):
                 inner = reader.required()

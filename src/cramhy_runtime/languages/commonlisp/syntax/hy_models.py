@@ -10,7 +10,7 @@ from fractions import Fraction
 
 from hy import models
 
-from cramhy_runtime.ground.data import Character, Cons, Symbol, list_from
+from cramhy_runtime.ground.data import Character, Cons, Keyword, Symbol, list_from
 from cramhy_runtime.ground.packages import keyword, sym
 from .macro_symbols import symbol_in
 
@@ -61,16 +61,22 @@ def _vectors_in(form):
     return found
 
 
+_AS_THEY_ARE = frozenset((Cons, Symbol, Keyword, str, int, float, Fraction, Character, type(None)))
+_LISTS = models.Expression, models.List, models.Tuple, list, tuple
+_DOT = sym("CRAMHY::|.|")
+
+
 def _converted(model, package, convert):
     kind = type(model)
-    if kind in (Cons, str, int, float, Fraction, Character, type(None), bool) or isinstance(model, Symbol):
-        return None if model is False else model
+    if kind in _AS_THEY_ARE:
+        return model
+    if kind is bool:
+        return model or None
     if isinstance(model, models.Symbol):
         return symbol_in(str(model), package)
-    if isinstance(model, (models.Expression, models.List, models.Tuple)) or kind in (list, tuple):
+    if kind in _LISTS:
         items = [convert(item) for item in model]
-        dot = sym("CRAMHY::|.|")
-        if len(items) > 2 and items[-2] is dot:
+        if len(items) > 2 and items[-2] is _DOT:
             return list_from(items[:-2], items[-1])
         return list_from(items)
     return atom(model)

@@ -36,6 +36,7 @@ _NUMBERED = re.compile(r"\bK\d+\b")
 _AROUND = set(map(sym, ("PROGN", "EVAL-WHEN", "LOCALLY")))
 _NOT_COMPILED = {sym("DECLAIM"), sym("DEFINE-SYMBOL-MACRO")}
 """What stands in these forms is kept as it is."""
+_WITH_PARTS = frozenset((Cons, Comma, list))
 _ABOUT_USERS = ("documentation", "advice")
 """Parts of the names of a compiler's notes that tell people something, and the compiler nothing."""
 _state = attrgetter("macro", "function", "setf_function", "special", "constant", "reads", "writes")
@@ -52,17 +53,26 @@ def symbols_in(form: object) -> list[Symbol]:
     stack = [form]
     while stack:
         item = stack.pop()
+        while item.__class__ is Cons and id(item) not in seen:
+            seen.add(id(item))
+            first, item = item.car, item.cdr
+            kind = first.__class__
+            if kind is Symbol:  # most items are, so it is counted here and does not go through the stack
+                times[first] = times.get(first, 0) + 1
+            elif kind in _WITH_PARTS:
+                stack.append(first)
         kind = item.__class__
         if kind is Symbol:
-            if item.package is not None:
-                times[item] = times.get(item, 0) + 1
-        elif kind in (Cons, Comma, list) and id(item) not in seen:
+            times[item] = times.get(item, 0) + 1
+        elif kind is Comma:
+            stack.append(item.form)
+        elif kind is list and id(item) not in seen:
             seen.add(id(item))
-            stack += (item.cdr, item.car) if kind is Cons else (item.form,) if kind is Comma else reversed(item)
+            stack += item
     for name in _given_names(form):
         if times.get(name) == 1:
             del times[name]
-    return list(times)
+    return [symbol for symbol in times if symbol.package is not None]
 
 
 def _given_names(form: object) -> Iterator[Symbol]:
@@ -133,7 +143,8 @@ class Notes:
 
         When another file was loaded meanwhile, also what has changed of the rest.
         """
-        wanted = {_key(symbol, package): self._wish(symbol, package) for symbol in symbols_in(form)}
+        current = package.name
+        wanted = {(symbol.package.name, symbol.name, current): self._wish(symbol, package) for symbol in symbols_in(form)}
         if self._loads != self._load_count():
             self._loads = self._load_count()
             wanted = {**{key: _found(key, self._meanings) for key in self._noted}, **wanted}
@@ -160,10 +171,6 @@ class Expectations:
             self._loads = self._load_count()
             wanted = self._wanted
         return all(_found(key, self._meanings) == wish for key, wish in wanted.items())
-
-
-def _key(symbol: Symbol, package: Any) -> tuple[str, str, str]:
-    return symbol.package.name, symbol.name, package.name
 
 
 def _found(key: tuple[str, str, str], meanings: Meanings) -> tuple[bool, str] | None:

@@ -141,11 +141,14 @@ def _is_subtype(first, second):
 
 
 def _has_no_functions(first, second, unknown):
-    """Whether ``first`` is a type of functions with arguments, which has members, and ``second`` has no functions."""
+    """Whether ``first`` is a type of functions with arguments, which has members, and ``second`` has no functions, or no plain ones."""
     if not isinstance(first, Cons) or first.car is not sym("FUNCTION"):
         return False
-    choices = product((False, True), repeat=len(unknown))
-    return all(_FUNCTIONS.meet(_Reading(unknown, choice).of(second)).empty() for choice in choices)
+    readings = [_Reading(unknown, choice) for choice in product((False, True), repeat=len(unknown))]
+    plain = _FUNCTIONS
+    for others in ("GENERIC-FUNCTION", "STANDARD-OBJECT", "STREAM"):
+        plain = plain.minus(readings[0].of(sym(others)))
+    return all(plain.meet(reading.of(second)).empty() for reading in readings)
 
 
 def _difference(first, second, reading):
