@@ -317,6 +317,22 @@ def test_every_call_of_the_table_is_in_a_test():
     assert [name for name in known() if name not in texts] == []
 
 
+def test_the_version_is_that_of_the_slime_that_is_installed(tmp_path, monkeypatch):
+    """Debian's SLIME names a swank-loader.lisp that is not there, so slime.el is not beside it."""
+    installed = tmp_path / "elpa" / "slime-2.31" / "slime.el"
+    installed.parent.mkdir(parents=True)
+    installed.write_text(";;; slime.el --- x\n;; Version: 2.31\n")
+    monkeypatch.setattr(slime_version, "PLACES", [str(tmp_path / "elpa" / "slime-*" / "slime.el")])
+    monkeypatch.setattr(slime_version, "_said", [])
+    slime_version.started_from(str(tmp_path / "no-such-folder" / "swank-loader.lisp"))
+    assert slime_version.slime_version() == "2.31"
+    own = tmp_path / "own"
+    own.mkdir()
+    (own / "slime.el").write_text(";; Version: 2.28\n")
+    slime_version.started_from(str(own / "swank-loader.lisp"))
+    assert slime_version.slime_version() == "2.28"
+
+
 # ------------------------------------------------------------------------------------------------------------------ command line
 
 

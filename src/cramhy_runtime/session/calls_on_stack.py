@@ -11,7 +11,7 @@ import re
 import sys
 
 from cramhy_runtime.ground.data import lisp_list, list_from
-from cramhy_runtime.ground.frame_exits import FrameExit, can_be_left
+from cramhy_runtime.languages.commonlisp.compiler.frame_exits import FrameExit, can_be_left
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.printing import guarded
 from cramhy_runtime.ground.python_names import lisp_spelling, python_name

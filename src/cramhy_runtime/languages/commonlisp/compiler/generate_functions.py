@@ -64,7 +64,7 @@ class FunctionGenerator:
         return word(name)
 
     def leavable(self, statements):
-        """``statements``, the body of a function, so that a debugger can end the call or begin it anew (`ground.frame_exits`)."""
+        """``statements``, the body of a function, so that a debugger can end the call or begin it anew (`frame_exits`)."""
         caught = self.temporary("Lexit")
         leave = expression(
             word("when"),

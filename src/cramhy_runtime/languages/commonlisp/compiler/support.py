@@ -30,7 +30,7 @@ from cramhy_runtime.ground.conditions import (
     unbound_variable,
     unknown_key,
 )
-from cramhy_runtime.ground.frame_exits import FrameExit, ends_here
+from .frame_exits import FrameExit, ends_here
 from cramhy_runtime.ground.data import (
     FreshString,
     Character,
