@@ -79,6 +79,18 @@ def test_an_interrupt_ends_a_cell_of_hy_through_its_cleanup(cells, form):
     assert cells.run("(+ 2 2)").text == "4"
 
 
+def test_an_interrupt_while_time_is_paused_lets_the_cleanup_end(cells):
+    def stop(kind, content):
+        if kind == "stream" and "begun" in content["text"]:
+            cells.manager.interrupt_kernel()
+
+    cells.run("%%hy\n(import cramhy-runtime [kernel]) (.pause (kernel.pace))")
+    plan = '(unwind-protect (progn (format t "begun~%") (cpl:sleep 100)) (cpl:sleep 1) (format t "cleaned up~%"))'
+    answer = cells.run(f"(cpl:top-level {plan})", on_message=stop)
+    assert answer.reply["ename"] == "Interrupted" and "cleaned up" in answer.printed
+    assert cells.run("(cpl:top-level (cpl:sleep 1) :goes-on)").text == ":GOES-ON"
+
+
 def test_a_display_is_updated_while_a_plan_runs_and_not_where_nobody_looks_on(cells):
     plan = "(cpl:top-level (cpl:par (cpl:sleep 2) (cpl:sleep 1)))"
     cells.run("%%hy\n(import cramhy-runtime.jupyter [live]) (setv live.SOON 0 live.OFTEN 0)")
