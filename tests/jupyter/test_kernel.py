@@ -66,6 +66,45 @@ def test_an_interrupt_ends_a_cell_through_the_cleanup_of_its_plan(cells, form):
     assert cells.run("(+ 2 2)").text == "4"
 
 
+@pytest.mark.parametrize(
+    "form", ["(while True)", "(for [i (range (** 10 12))])", "(wait-for (make-fluent :value None))", "(while True (sleep 1))"]
+)
+def test_an_interrupt_ends_a_cell_of_hy_through_its_cleanup(cells, form):
+    def stop(kind, content):
+        if kind == "stream" and "begun" in content["text"]:
+            cells.manager.interrupt_kernel()
+
+    answer = cells.run(f'%%hy\n(top-level (try (print "begun") {form} (finally (sleep 1) (print "cleaned up"))))', on_message=stop)
+    assert answer.reply["ename"] == "Interrupted" and "cleaned up" in answer.printed
+    assert cells.run("(+ 2 2)").text == "4"
+
+
+def test_an_interrupt_while_time_is_paused_lets_the_cleanup_end(cells):
+    def stop(kind, content):
+        if kind == "stream" and "begun" in content["text"]:
+            cells.manager.interrupt_kernel()
+
+    cells.run("%%hy\n(import cramhy-runtime [kernel]) (.pause (kernel.pace))")
+    plan = '(unwind-protect (progn (format t "begun~%") (cpl:sleep 100)) (cpl:sleep 1) (format t "cleaned up~%"))'
+    answer = cells.run(f"(cpl:top-level {plan})", on_message=stop)
+    assert answer.reply["ename"] == "Interrupted" and "cleaned up" in answer.printed
+    assert cells.run("(cpl:top-level (cpl:sleep 1) :goes-on)").text == ":GOES-ON"
+
+
+def test_a_display_is_updated_while_a_plan_runs_and_not_where_nobody_looks_on(cells):
+    plan = "(cpl:top-level (cpl:par (cpl:sleep 2) (cpl:sleep 1)))"
+    cells.run("%%hy\n(import cramhy-runtime.jupyter [live]) (setv live.SOON 0 live.OFTEN 0)")
+    try:
+        kinds = [kind for kind, _ in cells.run(plan, typed=[]).messages if "display" in kind]
+        assert kinds[0] == "display_data" and "update_display_data" in kinds
+        assert not [kind for kind, _ in cells.run(plan).messages if "display" in kind]  # as with nbconvert
+        cells.run("%live off")
+        assert not [kind for kind, _ in cells.run(plan, typed=[]).messages if "display" in kind]
+    finally:
+        cells.run("%live on")
+        cells.run("%%hy\n(setv live.SOON 0.5 live.OFTEN 0.25)")
+
+
 def test_an_interrupt_between_cells_does_nothing(cells):
     cells.manager.signal_kernel(signal.SIGINT)
     assert cells.run("(+ 3 3)").text == "6"
@@ -176,3 +215,13 @@ def test_values_that_are_shown_as_html(cells):
     assert "geometry_msgs/Twist" in tree and "1.5" in tree
     assert "lost" in cells.run('(make-condition \'simple-error :format-control "lost")').html
     assert cells.run("(list 1 2)").html is None
+    (outline,) = cells.run("(prolog:explain '(member 3 (1 2)))").of("display_data")
+    assert "3 is not among (1 2)." in outline["data"]["text/html"] and "3 is not among (1 2)." in outline["data"]["text/plain"]
+    assert "no solution" in cells.run("(with-output-to-string (*standard-output*) (prolog:explain '(member 3 (1 2))))").text
+    cells.run("(defvar *speed* (cpl:make-fluent :name 'speed :value 0))")
+    cells.run("%watch *speed*")
+    (plot,) = cells.run("(cpl:top-level (cpl:sleep 1) (setf (cpl:value *speed*) 5))").of("display_data")
+    assert "SPEED" in plot["data"]["image/svg+xml"]
+    assert "<svg" in cells.run("*speed*").html and not cells.run("(+ 1 1)").of("display_data")
+    cells.run("%watch off")
+    assert "<svg" not in cells.run("*speed*").html

@@ -55,6 +55,8 @@ def nested(html):
             if child.tag == "details":
                 summary, below = child
                 found.append(["".join(summary.itertext()), *parts(below)])
+            elif child.find(".//div") is not None:
+                found += parts(child)
             else:
                 found.append("".join(child.itertext()))
         return found

@@ -85,8 +85,19 @@ class CramhyKernel(Guarded):
     post_handler_hook = pre_handler_hook
 
     def stop_cell(self):
-        """Interrupt the cell that runs. May be called in a signal handler or another thread."""
-        self.plans.post(lambda: self.cell.interrupt() if self.cell is not None else None)
+        """Interrupt the cell that runs. Time that is paused goes on, so that its cleanup can end. May be called in a signal handler or
+        another thread."""
+
+        def stop():
+            if self.cell is None:
+                return
+            pace = self.plans.clock.pace
+            if pace is not None and pace.virtual and pace.paused:
+                pace.resume()
+                self._follow()
+            self.cell.interrupt()
+
+        self.plans.post(stop)
 
     def ask(self, work, name, debugger=None, cell=False):
         """Do ``work()`` in a task of the session; a future of the finished `Request`. To be called in a loop."""
