@@ -13,7 +13,7 @@ from systems import takes_long
 URI = "untitled:frames.lisp"
 METHODS = """initialized textDocument/didOpen textDocument/didChange textDocument/didClose textDocument/hover textDocument/completion
 textDocument/rename textDocument/formatting textDocument/codeAction textDocument/foldingRange textDocument/semanticTokens/full
-textDocument/nothing workspace/executeCommand $/cancelRequest""".split()
+textDocument/codeLens textDocument/nothing workspace/executeCommand $/cancelRequest""".split()
 VALUES = [None, True, -1, 0, 10**30, 1.5, "", "x", URI, "file:///nowhere.hy", [], {}, {"line": 0, "character": 0}, {"uri": URI}, "\ud800"]
 TEXTS = ["(", ")", "(defun f (x)", '"', "#|", "(in-package :cpl)\n(par", "#.(", "\u00e9\U0001f422(", "", "'" * 500, "(" * 300]
 

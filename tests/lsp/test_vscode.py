@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import subprocess
+import sys
 import zipfile
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from systems import takes_long
 
 import cramhy_runtime
 
-from .mistakes import HIGH, HY, ROOT
+from .mistakes import COURSE, HIGH, HY, ROOT
 
 EXTENSION = Path(__file__).parents[2] / "editors" / "vscode"
 MANIFEST = json.loads((EXTENSION / "package.json").read_text(encoding="utf-8"))
@@ -158,3 +159,28 @@ def test_it_can_be_packaged(tmp_path):
     assert "extension/client/extension.js" in names and "extension/syntaxes/hy.tmLanguage.json" in names
     assert any(name.startswith("extension/node_modules/vscode-languageclient/") for name in names)
     assert not any("vscode-textmate" in name or name.endswith("package-lock.json") for name in names)
+
+
+@node
+@pytest.mark.skipif(not (EXTENSION / "node_modules" / "vscode-languageclient").is_dir(), reason="vscode-languageclient is missing")
+def test_the_client_speaks_with_the_server(tmp_path):
+    """The extension's own code and the library of VS Code for such clients, with what VS Code offers them, start the real server."""
+    course = tmp_path / "course"
+    shutil.copytree(COURSE, course)
+    file = course / "src" / HIGH.name
+    file.write_text(file.read_text(encoding="utf-8").replace("(rotate-to goal)", "(rotate-too goal)"), encoding="utf-8")
+    cramhy = Path(sys.executable).parent / "cramhy"
+    words = ["node", Path(__file__).parent / "node" / "drive.js", EXTENSION, cramhy, file]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr[-3000:]
+    found = json.loads(done.stdout.splitlines()[-1])
+    contributed = {each["command"] for each in MANIFEST["contributes"]["commands"]}
+    assert set(found["commands"]) == contributed | {"cramhy.run", "cramhy.test", "cramhy.interrupt"}
+    assert [(line, severity) for line, severity, _ in found["told"]] == [(63, 1)] and "ROTATE-TOO" in found["told"][0][2]
+    assert {"registerCompletionItemProvider", "registerHoverProvider", "registerCodeLensProvider"} <= set(found["providers"])
+    prompt, page = found["terminals"]
+    assert prompt[0] == ["repl", "--time", "virtual"] and page[0] == [*prompt[0], "--view"]
+    assert prompt[2][:2] == ['(cl:in-package "TUT")', "(defun perform-draw-house ()"] and prompt[2][-1] == f'(cl:load "{file}")'
+    assert page[1] == ["BROWSER", "CRAMHY_ADDRESS_FILE"]
+    assert found["ran"]["status"] == 0 and found["ran"]["what"] == "(tut::init) (tut::perform-draw-house)"
+    assert found["interrupted"] == 0

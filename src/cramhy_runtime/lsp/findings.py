@@ -53,7 +53,9 @@ def of_condition(condition, text, filename):
     if hint is None and getattr(condition, "undefined", None) in ("function", "variable") and named:
         near = near_names(condition.name.name, _names_of(condition.name, condition.undefined, text, start))
         hint = f"Did you mean {' or '.join(name.lower() for name in near)}?" if near else None
-    hint = hint and _MEANT.sub(lambda match: match[0] if match[1] != match[1].upper() else f"Did you mean {match[1].lower()}?", hint)
+    hint = hint and _MEANT.sub(
+        lambda match: match[0] if re.search("[a-z]", match[1].replace(" or ", " ")) else f"Did you mean {match[1].lower()}?", hint
+    )
     severity = _severity(condition, message)
     return Finding(start, end, severity, f"{message}\n{hint}" if hint else message, tuple(fixes(message, hint, text, start, end)))
 
