@@ -149,7 +149,7 @@ NAMED = [
     ),
     Named(
         "hash tables are not printed readably",
-        lambda question, theirs, ours: "MAKE-HASH-TABLE" in theirs and ours.startswith("!! PRINT-NOT"),
+        lambda question, theirs, ours: "MAKE-HASH-TABLE" in theirs.upper() and ours.startswith("!! PRINT-NOT"),
     ),
     Named("overflows where doubles do", lambda question, theirs, ours: "FLOATING-POINT-OVERFLOW" in _types(theirs) and not _types(ours)),
     Named("Single-floats are kept at double precision", _precision),
