@@ -426,3 +426,10 @@
 (with-input-from-string (s "#36r #x1a") (list (read-preserving-whitespace s nil) (read-char s nil :eof)))
 (let ((*read-suppress* t)) (read-from-string "#x 1a 2"))
 (read-from-string "(1 #-cl #x 1a 2)")
+; a format control is a string or a function, not the name of one
+(format nil 'a)
+(progn (defun f{number} (s &rest r) (princ 1 s) r) (format nil 'f{number}))
+(progn (defun f{number} (s &rest r) (princ 1 s) r) (format nil #'f{number}))
+(format nil :k)
+(format nil "~?" 'a nil)
+(format nil (formatter "~a!") 1)

@@ -149,7 +149,7 @@ NAMED = [
     ),
     Named(
         "hash tables are not printed readably",
-        lambda question, theirs, ours: "MAKE-HASH-TABLE" in theirs and ours.startswith("!! PRINT-NOT"),
+        lambda question, theirs, ours: "MAKE-HASH-TABLE" in theirs.upper() and ours.startswith("!! PRINT-NOT"),
     ),
     Named("overflows where doubles do", lambda question, theirs, ours: "FLOATING-POINT-OVERFLOW" in _types(theirs) and not _types(ours)),
     Named("Single-floats are kept at double precision", _precision),
@@ -207,7 +207,9 @@ NAMED = [
     Named("A method with qualifiers that its combination does not know", _inapplicable),
     Named(
         "A symbol without a function may be given to a function that never calls it",
-        lambda question, theirs, ours: "UNDEFINED-FUNCTION" in _types(theirs) and not _types(ours) and bool(re.search(r"'[a-z]", question)),
+        lambda question, theirs, ours: (
+            "UNDEFINED-FUNCTION" in _types(theirs) and not _types(ours) and bool(re.search(r"'[a-z]|[( ](nil|t)[ )]", question))
+        ),
     ),
     Named(
         "shows the parameters that its Python code has",

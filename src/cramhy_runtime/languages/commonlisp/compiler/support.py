@@ -132,6 +132,7 @@ def block_value(exit_, token):
     """The values that ``token`` was left with; any other exit goes on."""
     if exit_ is not token:
         raise exit_
+    exit_.__traceback__ = None  # it leads to frames that hold the token: a circle that only the garbage collector would find
     return exit_.value
 
 

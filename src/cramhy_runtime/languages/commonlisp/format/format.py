@@ -9,7 +9,7 @@ argument is next. What each directive does is in ``format_directives.py`` and th
 from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Cons, FreshString, LispString, MultipleValues, Symbol, list_from, one, python_list
+from cramhy_runtime.ground.data import Cons, FreshString, LispString, MultipleValues, list_from, one, python_list
 from ..printer.print_names import character_name
 from ..streams.streams import OutputStream, StringOutputStream, output_stream, standard_output
 from .format_parser import Directive, FormatError, parse
@@ -79,8 +79,6 @@ def format_on(stream, control, args, state=None):
     ``state`` the arguments are taken from there.
     """
     if control.__class__ is not str:
-        if isinstance(control, Symbol):
-            control = control.function
         if callable(control):
             return _call_formatter(stream, control, args, state)
         if not isinstance(control, (str, LispString)):
