@@ -36,7 +36,7 @@ def definitions(file):
 
 def _defined(body, prefix):
     for node in body:
-        if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
             yield prefix + node.name
         if isinstance(node, ast.ClassDef):
             yield from _defined(node.body, f"{prefix}{node.name}.")

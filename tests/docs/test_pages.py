@@ -34,7 +34,7 @@ def rounded(text):
 
 
 STALE = "the page shows other answers than come now; if these are right, `make docs` writes them into the page"
-PICTURES_FROM_ELSEWHERE = {"page.png", "architecture.svg", "spiral.replay.svg"}
+PICTURES_FROM_ELSEWHERE = {"page.png", "architecture.svg", "spiral.replay.svg", "emacs.png"}
 PICTURES_FROM_ELSEWHERE |= {f"notebook-{name}.png" for name in ("live", "values", "fluents", "failure")}  # `notebook_pictures.py`
 
 
