@@ -7,70 +7,28 @@ from __future__ import annotations
 
 import io
 
+from cramhy_runtime.session.moved import Moved
 from cramhy_runtime.turtlesim import stills
-from cramhy_runtime.turtlesim.node import simulators
 
 MOST_SVG = 1 << 20
 """Characters of an SVG; a paper with more lines becomes a PNG."""
 WIDTH, HEIGHT = 640, 480  # of a picture of the robot's world
 
 
-class Watcher:
-    """Looks whether the turtles or the robot's world have changed. To be asked in a task of the session."""
-
-    def __init__(self):
-        self._turtles = self._seen_turtles()
-        self._changes, self._watched = 0, False
-        self._shown = 0
-
-    def _seen_turtles(self):
-        return [
-            (
-                id(simulator),
-                simulator.canvas.clears,
-                simulator.canvas.background,
-                [(name, turtle.x, turtle.y, turtle.heading) for name, turtle in simulator.turtles.items()],
-            )
-            for simulator in simulators()
-        ]
-
-    def begin(self):
-        """A cell begins: what has changed before it is not its own."""
-        self._turtles = self._seen_turtles()
-        self._shown = self._changes
-        self._watch_worlds()
-
-    def _watch_worlds(self):
-        if not self._watched:
-            from cramhy_runtime.robot_world import shown
-
-            self._watched = True
-            shown.watch(self._changed)
-
-    def _changed(self, world):
-        from cramhy_runtime.robot_world import shown
-
-        if world is shown.current():
-            self._changes += 1
+class Watcher(Moved):
+    """Pictures of what has moved, each with the name of its place on the page."""
 
     def papers(self):
         """(name of its place, mime bundle) of each turtle's paper that has changed since `begin`."""
-        return [
-            (f"paper-{number}", paper(simulator))
-            for number, (simulator, now) in enumerate(zip(simulators(), self._seen_turtles()))
-            if now not in self._turtles
-        ]
+        return [(f"paper-{number}", paper(simulator)) for number, simulator in self.simulators().items()]
 
     def pictures(self):
         """(name of its place, mime bundle) of all that has changed since `begin`. From now on, that counts as seen."""
         found = self.papers()
-        if self._changes != self._shown:
-            from cramhy_runtime.robot_world import shown
-
-            world = shown.current()
-            if world is not None:
-                found.append(("world", of_world(world)))
-        self._turtles, self._shown = self._seen_turtles(), self._changes
+        world = self.world()
+        if world is not None:
+            found.append(("world", of_world(world)))
+        self.begin()
         return found
 
 
