@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol
 from cramhy_runtime.languages.commonlisp.objects.classes import find_class
 from cramhy_runtime.prolog.engine import database
@@ -17,6 +19,7 @@ class KnownNames:
 
     def __init__(self, texts):
         self.definitions, self.predicates, self.modules, self.keys, self.types = set(), set(), set(), set(), set()
+        self.heads = Counter()  # predicate → how many clauses have it
         self.slots = {}  # MAKE-NAME → slots, of the structures in the texts
         for text in texts:
             self._read(text)
@@ -42,6 +45,7 @@ class KnownNames:
             inner = [item for item in form.items[1:] if isinstance(item, Form)]
             if head == "<-" and inner:
                 self.predicates.add(bare_name(inner[0].word(0)))
+                self.heads[bare_name(inner[0].word(0))] += 1
             elif head == "DEF-FACT-GROUP" and inner:
                 self.predicates |= {bare_name(item.text) for item in inner[0].items if not isinstance(item, Form)}
             elif head == "WITH-DESIG-PROPS" and inner:

@@ -7,6 +7,7 @@ A name that might be defined elsewhere is told only if it is almost one that is 
 from __future__ import annotations
 
 import re
+from difflib import SequenceMatcher
 
 from cramhy_runtime.designators import classes as designators
 from cramhy_runtime.ground.condition_types import Condition
@@ -30,6 +31,8 @@ _CONTROL = frozenset(("AND", "OR", "NOT", "ONCE", "FORALL", "->"))
 _ONE_ARGUMENT = frozenset("ASDFEG$XOBCRW")
 _NO_ARGUMENT = frozenset("%&|~T\n")
 _FACT_GROUP = "A fact group is written (def-fact-group name (predicate...) (<- head goal...)...)."
+_ALMOST = 0.8
+"""How alike two variables are of which one is probably misspelt: ?sped and ?speed, and not ?subtype and ?type."""
 _CHECKS = {}
 
 
@@ -281,7 +284,8 @@ class Checks:
     def _head(self, head, predicates):
         named = [bare_name(item.text) for item in predicates.items if not isinstance(item, Form)]
         word = head.items[0] if head.items else None
-        if _is_word(word) and bare_name(word.text) not in named and (near := near_names(bare_name(word.text), named)):
+        alone = _is_word(word) and self.known.heads[bare_name(word.text)] == 1  # a predicate of several clauses is meant so
+        if alone and bare_name(word.text) not in named and (near := near_names(bare_name(word.text), named)):
             message = f"This fact group does not extend {word.text}."
             self.tell(word, WARNING, message, f"Did you mean {' or '.join(each.lower() for each in near)}?")
 
@@ -366,6 +370,7 @@ class Checks:
             counts.setdefault(token.text.upper(), []).append(token)
         for name, found in counts.items():
             near = near_names(name, [other for other in counts if other != name], 1) if len(found) == 1 and name[-1].isalpha() else ()
+            near = [each for each in near if SequenceMatcher(None, name, each).ratio() >= _ALMOST]
             if near and not near[0][-1].isdigit() and (len(counts[near[0]]) > 1 or counts[near[0]][0].start < found[0].start):
                 hint = f"Did you mean {near[0].lower()}?"
                 self.tell(found[0], HINT, f"The variable {found[0].text} occurs only once in this clause.", hint)
