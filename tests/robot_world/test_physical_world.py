@@ -11,6 +11,7 @@ from test_simulated_robot import CARRYING, arm
 
 from cramhy_runtime.robot_world import models
 from cramhy_runtime.robot_world.descriptions import Shape, turned
+from cramhy_runtime.robot_world.physical import arm_ways
 from cramhy_runtime.robot_world.physical.contacts import contact_shapes
 from cramhy_runtime.robot_world.physical.robot import NotReached, NoWay, PhysicalRobot, Slipped
 from cramhy_runtime.robot_world.physical.trajectory import Trajectory
@@ -211,6 +212,20 @@ def test_friction_holds_a_bottle(robot):
     robot.open_gripper("left")
     robot.world.simulate(3)
     assert height(robot.world) < 0.2  # nothing else held it
+
+
+@pytest.mark.parametrize("arm_is", ["parked", "stretched aside"])
+def test_a_hand_that_is_around_something_leaves_it_standing(robot, arm_is, monkeypatch):
+    """Where no way around is found, it is drawn back first, though nobody has asked for a pose from which it is free."""
+    monkeypatch.setattr(arm_ways, "_MOST_BRANCHES", 0)
+    at = robot.world.item("bottle").placement
+    robot.open_gripper("left")
+    grasp = placement(at.position).moved(x=0.02, z=0.005)
+    robot.move_tools({"left": grasp.moved(x=-0.15)})
+    robot.move_tools({"left": grasp}, lenient=True)
+    joints = {"parked": CARRYING["left"], "stretched aside": (1.6, 0.2, 1.5, -0.3, 0.0, -0.2, 0.0)}[arm_is]
+    robot.move_joints("left", joints)
+    assert robot.world.item("bottle").placement.near(at, 0.02, 0.1)
 
 
 def test_a_hand_goes_on_gripping_when_things_come_and_joints_are_put(robot):

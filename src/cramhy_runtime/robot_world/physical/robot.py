@@ -38,6 +38,7 @@ _CLOSE = {"prismatic": 0.005}  # how near a joint must come
 _CLOSE_BY = 0.03  # radians
 _LINE = (0.35, 0.6)  # metres, radians: so far a tool goes along a line
 _LINE_STEP = (0.02, 0.1)
+_BACK = (0.15, 0.1, 0.06)  # metres: how far a hand is drawn back, the first that can be
 _JUMP = 0.35  # radians between two steps of a line
 _DIFFERENT = 1e-3  # radians: postures that are nearer to each other are one
 _TRIED = 6  # postures to which ways are looked for
@@ -159,11 +160,28 @@ class PhysicalRobot(SimulatedRobot):
         wanted = dict(zip(joints, positions, strict=True))
         now = self._now(joints)
         goal = np.array([self._nearest(joint, wanted[joint], at) for joint, at in zip(joints, now, strict=True)])
-        way = Room(self.world, self.name, self.parts, joints).way(goal) or [now, goal]
+        room = Room(self.world, self.name, self.parts, joints)
+        way = room.way(goal) or self._way_back(room, arm, goal) or [now, goal]
         behind = self._follow(joints, way, self._speeds(joints))
         self._keep_hold([arm])
         if behind:
             raise NotReached(behind)
+
+    def _way_back(self, room: Room, arm: Hashable, goal: np.ndarray) -> list[np.ndarray] | None:
+        """A way that first draws the hand back from what is between its open fingers, or lifts it from there; ``None`` if neither goes."""
+        parts = self.parts.arms[arm]
+        joints = [self.parts.torso, *parts.joints]
+        tool, now = self._tool(arm), self._now(joints)
+        ahead = tool.position - (tool @ parts.tool.inverse()).position
+        length = float(np.linalg.norm(ahead))
+        for direction in ([-ahead / length] if length else []) + [np.array([0.0, 0.0, 1.0])]:
+            for metres in _BACK:
+                line = self._line({arm: Placement(tool.position + metres * direction, tool.rotation)}, joints, now)
+                back = [posture[1:] for posture in line or ()]
+                if back and room.clear(back):
+                    room.start = back[-1]
+                    return [*back, *(room.way(goal) or [back[-1], goal])[1:]]
+        return None
 
     def _nearest(self, joint: str, wanted: float, now: float) -> float:
         """The same position, without the whole turns of a joint that has no limits."""
