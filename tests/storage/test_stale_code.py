@@ -124,6 +124,14 @@ def without_kept_code(*paths, before=""):
     return found(*paths, before=before)
 
 
+@pytest.mark.parametrize("name", ["nav_msgs-msg:data", "geometry_msgs-msg:x", "alexandria:flatten", "turtlesim-srv:teleportabsolute"])
+def test_a_package_that_is_made_when_it_is_named_makes_no_difference(files, name):
+    """A reader makes it, or loads it; kept code is not read, and is used all the same."""
+    _, use = files
+    use.write_text(f"(in-package :cl-user)\n(defun use () '{name})\n(defparameter *found* (use))\n")
+    assert found(use) == found(use) and loader.why_not_kept(use) is None
+
+
 @pytest.mark.parametrize("case", CASES)
 def test_what_has_changed_in_another_file_is_seen(files, case):
     definitions, use = files
