@@ -28,6 +28,8 @@ SHARED = REPOSITORY.parent / "shared"
 
 
 LONG = (
+    "session",
+    "test_standard_page.py",
     "newcomer",
     "test_interpreters.py",
     "test_missing_systems.py",

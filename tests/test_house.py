@@ -57,6 +57,20 @@ def tree_of(path):
     return ast.parse(path.read_text())
 
 
+@functools.cache
+def imports_of(path):
+    """The import statements of a file, wherever they stand, and those of them that only type checkers read."""
+    unread = {
+        inner
+        for node in ast.walk(tree_of(path))
+        if isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"
+        for statement in node.body
+        for inner in ast.walk(statement)
+    }
+    found = [node for node in ast.walk(tree_of(path)) if isinstance(node, (ast.Import, ast.ImportFrom))]
+    return found, unread
+
+
 def offences(check, paths=FILES):
     """What ``check`` finds wrong, by the file's path: all at once, since a test for each file and each rule would be thousands."""
     return {str(path.relative_to(ROOT)): wrong for path in paths if (wrong := check(path))}
@@ -70,28 +84,19 @@ def imported_names(path, when_run=False):
     """The dotted names of modules, or of things in them, that a file imports, wherever in it the import stands; WHEN_RUN: without those
     that only type checkers read, below ``if TYPE_CHECKING:``."""
     package = ["cramhy_runtime", *path.relative_to(SOURCE).with_suffix("").parts[:-1]]
-    tree = tree_of(path)
-    unread = {
-        inner
-        for node in ast.walk(tree)
-        if when_run and isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
-        for statement in node.body
-        for inner in ast.walk(statement)
-    }
-    for node in ast.walk(tree):
-        if node in unread:
+    found, unread = imports_of(path)
+    for node in found:
+        if when_run and node in unread:
             continue
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
+        else:
             base = package[: len(package) - node.level + 1] if node.level else []
             module = [*base, *(node.module or "").split(".")] if node.module else base
             names = []
             for alias in node.names:  # a module of the package, or something in its ``__init__``
                 part = SOURCE.parent.joinpath(*module, alias.name)
                 names.append(".".join([*module, alias.name] if part.is_dir() or part.with_suffix(".py").exists() else module))
-        else:
-            continue
         yield from names
 
 
@@ -99,7 +104,7 @@ def bound_modules(path):
     """For each local name of a file that stands for a module of cramhy_runtime, wherever the import stands: the dotted name."""
     package = ["cramhy_runtime", *path.relative_to(SOURCE).with_suffix("").parts[:-1]]
     bound = {}
-    for node in ast.walk(tree_of(path)):
+    for node in imports_of(path)[0]:
         if isinstance(node, ast.Import):
             bound |= {alias.asname or alias.name.split(".")[0]: alias.name for alias in node.names if alias.name.startswith("cramhy")}
         elif isinstance(node, ast.ImportFrom):

@@ -36,7 +36,7 @@ from cramhy_runtime.languages.commonlisp.reader.readtables import STANDARD
 from cramhy_runtime.languages.commonlisp.packages.package_errors import PackageLockedError
 
 SOAK = bool(os.environ.get("CRAMHY_SOAK"))
-FORMS, TEXTS, SECONDS_A_TEXT = (10_000, 100_000, 5) if SOAK else (300, 3_000, 5)
+FORMS, TEXTS, SECONDS_A_TEXT = (10_000, 100_000, 5) if SOAK else (120, 3_000, 5)
 
 
 @pytest.fixture(scope="module", autouse=True)
