@@ -331,6 +331,37 @@ print("hy" in sys.modules)"""
     ], runs[1].stderr
 
 
+@pytest.mark.parametrize(
+    "literal",
+    [
+        '#2A((1 a) ("x" #\\y))',
+        "#0A(1)",
+        "#3A(((1 2)) ((3 4)))",
+        "#*10110",
+        "#*",
+        "#(1 #2A((1)) #*1)",
+        "(1 . #2A((b)))",
+        "#2A((#1=(1) #1#))",
+    ],
+)
+def test_a_literal_array_is_kept(folder, compiled, literal):
+    path = write(folder, f"(defun make () '{literal}) (defparameter *array* (list (make) (type-of (make)) (eq (make) (make))))")
+    loader.load_file(path)
+    before, array = compiled[0], value("*ARRAY*")
+    assert array.endswith(" T)")
+    sym("CL-USER::*ARRAY*").value = None
+    loader.load_file(path)
+    assert (compiled[0], value("*ARRAY*")) == (before, array)
+
+
+def test_a_circular_array_is_loaded_but_not_kept(folder, compiled):
+    path = write(folder, "(defparameter *ring* '#1=#2A((1 #1#))) (defparameter *inner* (aref (aref *ring* 0 1) 0 0))")
+    for _ in range(2):
+        loader.load_file(path)
+        assert value("*INNER*") == "1"
+    assert compiled[0] >= 4
+
+
 def test_a_circular_literal_is_loaded_but_not_kept(folder, compiled):
     path = write(folder, "(defparameter *ring* '#1=(1 #2=#(#2# 2) . #1#)) (defparameter *third* (third *ring*))")
     for _ in range(2):

@@ -3,9 +3,7 @@
 (in-package #:cram-pr2-description)
 
 (defvar *standard-to-pr2-gripper-transform*
-  (cl-transforms:make-transform
-   (cl-transforms:make-identity-vector)
-   (cl-transforms:matrix->quaternion (make-array '(3 3) :initial-contents '((0 1 0) (0 0 1) (1 0 0)))))
+  (cl-transforms:make-transform (cl-transforms:make-identity-vector) (cl-transforms:matrix->quaternion #2A((0 1 0) (0 0 1) (1 0 0))))
   "From the standard gripper, whose z axis points at the object, to that of the PR2, whose x axis does.")
 
 (defvar *tcp-in-ee-pose*

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from cramhy_runtime.ground.arrays import SimpleArray, TypedVector
 from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Symbol
 from ..numbers.complex_numbers import parts
 from ..syntax.backquote import Comma
@@ -115,12 +116,16 @@ class Constants:
             return expression(word("Lcomma"), obj.kind, self.builder(obj.form))
         if kind is list:
             return List([self.builder(item) for item in obj])
+        if kind is SimpleArray and obj.element_type is True:
+            return expression(word("Larray"), List([*obj.dimensions]), List([self.builder(item) for item in obj.storage]))
+        if isinstance(obj, TypedVector):
+            return expression(word("Ltyped_vector"), List([self.builder(item) for item in obj]), self.builder(obj.element_type))
         raise NotStorable(obj)
 
 
 def is_circular(obj):
-    """Whether the conses and vectors of a constant come back to themselves."""
-    if not isinstance(obj, (Cons, list)):
+    """Whether the conses and arrays of a constant come back to themselves."""
+    if not isinstance(obj, (Cons, list, SimpleArray)):
         return False
     active, done, stack = set(), set(), [(obj, False)]
     while stack:
@@ -128,12 +133,13 @@ def is_circular(obj):
         if leaving:
             active.discard(id(item))
             done.add(id(item))
-        elif isinstance(item, (Cons, list)) and id(item) not in done:
+        elif isinstance(item, (Cons, list, SimpleArray)) and id(item) not in done:
             if id(item) in active:
                 return True
             active.add(id(item))
             stack.append((item, True))
-            stack += [(part, False) for part in ((item.car, item.cdr) if isinstance(item, Cons) else item)]
+            parts = (item.car, item.cdr) if isinstance(item, Cons) else item.storage if isinstance(item, SimpleArray) else item
+            stack += [(part, False) for part in parts]
     return False
 
 

@@ -13,6 +13,7 @@ from itertools import zip_longest
 from operator import itemgetter
 from types import FunctionType
 
+from cramhy_runtime.ground.arrays import SimpleArray, TypedVector
 from cramhy_runtime.ground.catching import ThrowExit, catch, throw  # noqa: F401  compiled code calls them
 from cramhy_runtime.ground.functions import fdefinition, setf_function  # noqa: F401  compiled code calls them
 from cramhy_runtime import kernel
@@ -320,6 +321,8 @@ NAMESPACE = {
     "Lgethash": value_in_table,
     "Llen": len,
     "Lcharacter": Character,
+    "Larray": SimpleArray,
+    "Ltyped_vector": TypedVector,
     "Lfloat": float,
     "Lcomma": Comma,
     "Ladd2": arithmetic.add2,
