@@ -7,6 +7,7 @@ import fnmatch
 import gc
 import os
 import re
+import zlib
 from pathlib import Path
 
 import late_threads
@@ -60,16 +61,20 @@ if "CRAMHY_LATE" in os.environ:
 
 def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: not any(part in LONG for part in item.path.parts))
-    siblings: collections.Counter[str] = collections.Counter()
+    families: dict[str, list] = collections.defaultdict(list)
     for item in items:
         name = item.path.relative_to(TESTS).as_posix() + "::" + item.name
-        for pattern, share in LEFT_OUT:
-            if pattern.match(name):
-                family = name.partition("[")[0]
-                if not share or siblings[family] % share:
-                    item.add_marker(takes_long)
-                siblings[family] += 1
-                break
+        share = next(share for pattern, share in LEFT_OUT if pattern.match(name))
+        if share:
+            families[f"{share} {name.partition('[')[0]}"].append(item)
+        else:
+            item.add_marker(takes_long)
+    for name, siblings in families.items():
+        share = min(int(name.partition(" ")[0]), len(siblings))
+        kept = zlib.crc32(name.encode()) % share  # not always the first one, which is that on threads
+        for number, item in enumerate(siblings):
+            if number % share != kept:
+                item.add_marker(takes_long)
 
 
 @pytest.fixture(scope="session")

@@ -5,6 +5,7 @@ a page it is ``cpl.md``. The marks are read from the sources of all tests, so th
 """
 
 import ast
+import functools
 import re
 from pathlib import Path
 
@@ -26,11 +27,13 @@ PAGES = {
 """Page -> how many invariants it lists."""
 
 
+@functools.cache
 def marks():
     """Page -> number of an invariant -> the tests that claim it."""
     found = {}
     for path in sorted(TESTS.rglob("test_*.py")):
-        for node in ast.walk(ast.parse(path.read_text())):
+        text = path.read_text()
+        for node in ast.walk(ast.parse(text)) if "mark.law(" in text else ():
             if isinstance(node, ast.FunctionDef):
                 for decorator in node.decorator_list:
                     if isinstance(decorator, ast.Call) and ast.unparse(decorator.func) == "pytest.mark.law":

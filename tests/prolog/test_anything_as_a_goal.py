@@ -76,7 +76,7 @@ def tried(goal):
 
 
 @given(goals)
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=150, deadline=None)
 def test_anything_can_be_asked(goal):
     tried(goal)
 
@@ -100,7 +100,7 @@ def test_anything_can_be_asked(goal):
     forms,
     forms,
 )
-@settings(max_examples=250, deadline=None)
+@settings(max_examples=100, deadline=None)
 def test_anything_can_be_a_fact_group(clauses, extendable, argument):
     kernel.start(clock="virtual")
     name = read("at-random")
