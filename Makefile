@@ -1,5 +1,5 @@
 # make tutorial: both lectures, typed into the REPL. make view: the turtle draws a house on a page. make kitchen: a robot sets a table.
-# make test: everything.
+# make test: the tests. make soak: each case of them, for hours.
 # make docs: the pages with what happens now. make site: the pages as a site, in site/index.html.
 # make notebooks OUT=folder: the tutorial as notebooks.
 # The first call of tutorial, view or kitchen makes a small environment in .venv; the first call of any other target adds the rest to it.
