@@ -24,6 +24,8 @@ LEFT_OUT = [
 ]
 """Which tests `make soak` alone runs: patterns of their names, and of how many siblings one runs everywhere (0: none does)."""
 
+A_FEW_ROOMS = 8000
+"""So many cases or fewer run whole: who works on a room wants every case of it."""
 REPOSITORY = Path(__file__).parents[1]
 SHARED = REPOSITORY.parent / "shared"
 
@@ -65,9 +67,9 @@ def pytest_collection_modifyitems(items):
     for item in items:
         name = item.path.relative_to(TESTS).as_posix() + "::" + item.name
         share = next(share for pattern, share in LEFT_OUT if pattern.match(name))
-        if share:
+        if share and len(items) > A_FEW_ROOMS:
             families[f"{share} {name.partition('[')[0]}"].append(item)
-        else:
+        elif not share:
             item.add_marker(takes_long)
     for name, siblings in families.items():
         share = min(int(name.partition(" ")[0]), len(siblings))
