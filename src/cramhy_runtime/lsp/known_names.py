@@ -55,7 +55,7 @@ class KnownNames:
                 self.keys.add(key)
                 if key == "TYPE" and value and not value.startswith("?"):
                     self.types.add(bare_name(value))
-            elif not head.startswith(("A", "AN")):
+            elif head not in ("A", "AN"):
                 self.keys |= {bare_name(each.text) for each in form.items[1:] if not isinstance(each, Form) and each.text.startswith(":")}
 
     def _structure(self, form):
