@@ -41,6 +41,16 @@ class Finding(NamedTuple):
     fixes: tuple = ()
 
 
+def meant(names, before=""):
+    """The hint that asks for one of ``names``, or ``None`` if there are none. before: what stands before each of them in the text."""
+    return f"Did you mean {' or '.join(before + name for name in names)}?" if names else None
+
+
+def meant_in_lisp(names, before=""):
+    """The same for names in capitals, which a text of Lisp has in small letters."""
+    return meant([name.lower() for name in names], before)
+
+
 def of_condition(condition, text, filename):
     """The `Finding` that tells of ``condition``, or ``None`` if its place is in another file."""
     position = getattr(condition, "position", None)
@@ -52,7 +62,7 @@ def of_condition(condition, text, filename):
     start, end = named or (start, _end(text, start))
     if hint is None and getattr(condition, "undefined", None) in ("function", "variable") and named:
         near = near_names(condition.name.name, _names_of(condition.name, condition.undefined, text, start))
-        hint = f"Did you mean {' or '.join(name.lower() for name in near)}?" if near else None
+        hint = meant_in_lisp(near)
     hint = hint and _MEANT.sub(
         lambda match: match[0] if re.search("[a-z]", match[1].replace(" or ", " ")) else f"Did you mean {match[1].lower()}?", hint
     )

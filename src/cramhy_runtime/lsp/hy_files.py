@@ -24,7 +24,7 @@ from cramhy_runtime.ground.packages import near_names
 from cramhy_runtime.languages.hy.malformed import MalformedForm, retold, unreadable
 from cramhy_runtime.languages.hy.plan_macros import macros
 
-from .findings import ERROR, WARNING, Finding, fixes
+from .findings import ERROR, WARNING, Finding, fixes, meant
 
 
 @functools.cache
@@ -84,7 +84,7 @@ def _unknown_modules(text):
             known = [*TRUSTED, "cramhy_runtime", *sys.stdlib_module_names]
             near = near_names(hy.mangle(name), known) if hy.mangle(name) not in known and not _found(hy.mangle(name)) else ()
             if near:
-                hint = f"Did you mean {' or '.join(near)}?"
+                hint = meant(near)
                 message = f"There is no module {name}."
                 fixing = tuple(fixes(message, hint, text, item.start, item.start + len(name)))
                 yield Finding(item.start, item.start + len(name), WARNING, f"{message}\n{hint}", fixing)
@@ -184,7 +184,7 @@ def _unknown_names(tree, text, module):
         told.add((start, written))
         called = text.text[:start].rstrip().endswith("(")
         near = [hy.unmangle(name) for name in near_names(node.id, {*known, *(_operators() if called else ())})]
-        hint = f"Did you mean {' or '.join(near)}?" if near else None
+        hint = meant(near)
         message = f"Nothing in this file defines {written}."
         whole = f"{message}\n{hint}" if hint else message
         found.append(Finding(start, end, WARNING, whole, tuple(fixes(message, hint, text, start, end))))

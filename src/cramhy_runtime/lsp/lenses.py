@@ -14,7 +14,7 @@ from typing import NamedTuple
 from cramhy_runtime.languages.commonlisp.systems import systems
 from cramhy_runtime.session.lookup import bare_name
 
-from . import outlines
+from . import neighbours, outlines
 from .meanings import package_name_at
 from .texts import Form
 
@@ -111,8 +111,6 @@ def _system_file(path):
 
 
 def _defines_init(document):
-    from . import neighbours
-
     for text in [document.text, *(text for _, text in neighbours.texts(document))]:
         for form in text.forms:
             if form.word(0).lower() in _FUNCTIONS and form.word(1).lower() == "init" and _takes_none(form):

@@ -7,7 +7,7 @@ from xml.parsers import expat
 
 from cramhy_runtime.ground.packages import near_names
 
-from .findings import ERROR, WARNING, Finding
+from .findings import ERROR, WARNING, Finding, meant
 
 ONCE = ("name", "version", "description")
 REQUIRED = ("name", "version", "description", "maintainer", "license")
@@ -40,7 +40,7 @@ def check(text):
                 found.append(Finding(at, at + len(name), ERROR, f"A manifest is a <package>, and this is a <{name}>."))
         elif not export and len(stack) == 2 and name not in _KNOWN:
             near = near_names(name, _KNOWN)
-            hint = f"\nDid you mean {' or '.join(near)}?" if near else ""
+            hint = f"\n{meant(near)}" if near else ""
             fixes = tuple((f"Write {each}", at, at + len(name), each) for each in near)
             found.append(Finding(at, at + len(name), WARNING, f"A manifest has no element <{name}>.{hint}", fixes))
         elif len(stack) == 2 and name in ONCE and name in seen:

@@ -21,7 +21,7 @@ from cramhy_runtime.ros import messages
 from cramhy_runtime.session.completion import keywords_of_symbol
 from cramhy_runtime.session.lookup import bare_name
 
-from .findings import ERROR, HINT, WARNING, Finding, fixes
+from .findings import ERROR, HINT, WARNING, Finding, fixes, meant_in_lisp
 from .known_names import KnownNames
 from .texts import Form
 
@@ -126,9 +126,7 @@ class Checks:
 
         asked = SimpleWarning("undefined type")
         asked.name, asked.undefined = symbol, "type"
-        hint = hint_for(asked)
-        near = near_names(symbol.name, self.known.definitions)
-        return f"Did you mean {' or '.join(each.lower() for each in near)}?" if near else hint
+        return meant_in_lisp(near_names(symbol.name, self.known.definitions)) or hint_for(asked)
 
     @_for("MAKE-MESSAGE", "MAKE-MSG", "SUBSCRIBE", "ADVERTISE")
     def _message(self, form, name):
@@ -176,8 +174,8 @@ class Checks:
         for item in items:
             if key and not isinstance(item, Form) and item.text.startswith(":"):
                 if messages.lisp_attribute(message, item.text[1:]) is None:
-                    near = [each.lower() for each in near_names(item.text[1:].upper(), message.attributes)]
-                    hint = f"Did you mean :{' or :'.join(near)}?" if near else f"Its fields are {', '.join(message.field_names) or 'none'}."
+                    near = near_names(item.text[1:].upper(), message.attributes)
+                    hint = meant_in_lisp(near, ":") or f"Its fields are {', '.join(message.field_names) or 'none'}."
                     self.tell(item, WARNING, f"{message.ros_type} has no field {item.text[1:]}.", hint)
             elif key and not isinstance(item, Form):
                 return  # a quote, or a value that is not a pair
@@ -191,10 +189,9 @@ class Checks:
         """Tell of those ``items`` that are almost one of the keywords ``known`` of what is ``called``."""
         for item in items if known else ():
             if _is_word(item) and item.text.startswith(":") and item.text[1:].upper() not in known:
-                near = [each.lower() for each in near_names(item.text[1:].upper(), known)]
-                if near:
-                    message = f"{called.text} takes no argument {item.text}."
-                    self.tell(item, WARNING, message, f"Did you mean :{' or :'.join(near)}?")
+                hint = meant_in_lisp(near_names(item.text[1:].upper(), known), ":")
+                if hint:
+                    self.tell(item, WARNING, f"{called.text} takes no argument {item.text}.", hint)
 
     @_for("PM-EXECUTE", "PM-RUN")
     def _module(self, form, name):
@@ -217,9 +214,9 @@ class Checks:
         symbol = self.resolve(word, True)
         if isinstance(symbol, Symbol) and not isinstance(symbol.function, UndefinedFunction) and symbol.function is not None:
             return
-        near = [each.lower() for each in near_names(bare, self.known.modules)]
-        if near:
-            self.tell(word, WARNING, f"Nothing defines the process module {word.text}.", f"Did you mean {' or '.join(near)}?")
+        hint = meant_in_lisp(near_names(bare, self.known.modules))
+        if hint:
+            self.tell(word, WARNING, f"Nothing defines the process module {word.text}.", hint)
 
     # ---------------------------------------------------------------------------------------------------------- designators
 
@@ -230,10 +227,10 @@ class Checks:
             return
         kinds = [key.name for key in designators._classes]
         if bare_name(kind.text) not in kinds:
-            near = [each.lower() for each in near_names(bare_name(kind.text), kinds)]
-            if not near:
+            hint = meant_in_lisp(near_names(bare_name(kind.text), kinds))
+            if not hint:
                 return  # perhaps a list of variables that begins with one of this name
-            self.tell(kind, WARNING, f"There is no designator for {kind.text}.", f"Did you mean {' or '.join(near)}?")
+            self.tell(kind, WARNING, f"There is no designator for {kind.text}.", hint)
         for item in form.items[2:]:
             if _is_word(item) and not item.text.startswith(("?", "#", "&")):
                 self.tell(item, ERROR, f"{item.text} is not a property of a designator.", "A property is written (key value).")
@@ -246,14 +243,14 @@ class Checks:
             return
         bare = bare_name(key.text)
         if bare not in self.known.keys and bare != "TYPE":
-            near = [each.lower() for each in near_names(bare, {*self.known.keys, "TYPE"})]
-            if near:
-                self.tell(key, WARNING, f"No rule asks for the property {key.text}.", f"Did you mean {' or '.join(near)}?")
+            hint = meant_in_lisp(near_names(bare, {*self.known.keys, "TYPE"}))
+            if hint:
+                self.tell(key, WARNING, f"No rule asks for the property {key.text}.", hint)
         elif bare == "TYPE" and value is not None and _is_word(value) and not value.text.startswith("?"):
             named = bare_name(value.text)
-            near = [each.lower() for each in near_names(named, self.known.types)] if named not in self.known.types else ()
-            if near:
-                self.tell(value, WARNING, f"No rule is about the type {value.text}.", f"Did you mean {' or '.join(near)}?")
+            hint = meant_in_lisp(near_names(named, self.known.types)) if named not in self.known.types else None
+            if hint:
+                self.tell(value, WARNING, f"No rule is about the type {value.text}.", hint)
 
     # ---------------------------------------------------------------------------------------------------------- fact groups
 
@@ -286,8 +283,7 @@ class Checks:
         word = head.items[0] if head.items else None
         alone = _is_word(word) and self.known.heads[bare_name(word.text)] == 1  # a predicate of several clauses is meant so
         if alone and bare_name(word.text) not in named and (near := near_names(bare_name(word.text), named)):
-            message = f"This fact group does not extend {word.text}."
-            self.tell(word, WARNING, message, f"Did you mean {' or '.join(each.lower() for each in near)}?")
+            self.tell(word, WARNING, f"This fact group does not extend {word.text}.", meant_in_lisp(near))
 
     def _count(self, goal, symbol):
         """A built-in predicate that nobody extends knows how many arguments it takes."""
@@ -317,14 +313,14 @@ class Checks:
         elif bare not in self.known.predicates:
             symbol = self.resolve(head, True)
             if symbol is None:
-                near = near_names(bare, {functor.name for functor in self.known.functors if isinstance(functor, Symbol)})
-                if near and bare not in {functor.name for functor in self.known.functors if isinstance(functor, Symbol)}:
-                    self.tell(head, WARNING, f"Nothing defines the predicate {head.text}.", f"Did you mean {near[0].lower()}?")
+                functors = {functor.name for functor in self.known.functors if isinstance(functor, Symbol)}
+                near = near_names(bare, functors) if bare not in functors else ()
+                if near:
+                    self.tell(head, WARNING, f"Nothing defines the predicate {head.text}.", meant_in_lisp(near[:1]))
             elif symbol in self.known.functors:
                 self._count(goal, symbol)
             else:
-                near = near_names(bare, self.known.predicates)
-                told = f"Did you mean {' or '.join(each.lower() for each in near)}?" if near else advice(symbol)
+                told = meant_in_lisp(near_names(bare, self.known.predicates)) or advice(symbol)
                 told = told and told.partition("; ")[2] if told and told.startswith("nobody") else told
                 told = told and told[0].upper() + told[1:]
                 self.tell(head, WARNING, f"Nothing defines the predicate {head.text}.", told or None)
@@ -345,8 +341,7 @@ class Checks:
         if not isinstance(symbol.function, UndefinedFunction) and symbol.function is not None or bare in self.known.definitions:
             return True
         near = near_names(bare, {*self.known.definitions, *_functions_seen_from(symbol)})
-        hint = f"Did you mean {' or '.join(each.lower() for each in near)}?" if near else None
-        self.tell(word, WARNING, f"Nothing defines the function {word.text}.", hint)
+        self.tell(word, WARNING, f"Nothing defines the function {word.text}.", meant_in_lisp(near))
         return False
 
     @_for("REGISTER-LOCATION-GENERATOR", "REGISTER-LOCATION-VALIDATION-FUNCTION")
@@ -372,8 +367,7 @@ class Checks:
             near = near_names(name, [other for other in counts if other != name], 1) if len(found) == 1 and name[-1].isalpha() else ()
             near = [each for each in near if SequenceMatcher(None, name, each).ratio() >= _ALMOST]
             if near and not near[0][-1].isdigit() and (len(counts[near[0]]) > 1 or counts[near[0]][0].start < found[0].start):
-                hint = f"Did you mean {near[0].lower()}?"
-                self.tell(found[0], HINT, f"The variable {found[0].text} occurs only once in this clause.", hint)
+                self.tell(found[0], HINT, f"The variable {found[0].text} occurs only once in this clause.", meant_in_lisp(near[:1]))
 
 
 def _is_word(item):

@@ -25,7 +25,7 @@ class Runs:
     async def run(self, errand):
         """Run an `Errand` to its end. Returns ``{"status", "output", "what"}``; the output is shown line by line in the editor's log."""
         if len(self.processes) >= MOST_RUNNING:
-            return self._refuse(f"{MOST_RUNNING} plans run already. Interrupt one first.")
+            return self.refuse(f"{MOST_RUNNING} plans run already. Interrupt one first.")
         process = await asyncio.create_subprocess_exec(
             *errand.words,
             cwd=errand.folder,
@@ -53,13 +53,10 @@ class Runs:
         self._tell(errand.what, status, output)
         return {"status": status, "output": output, "what": errand.what}
 
-    def _refuse(self, why):
-        self._show(lsp.MessageType.Warning, why)
-        return {"status": None, "output": why, "what": ""}
-
     def refuse(self, why):
         """Tell the user why nothing runs. Returns the answer for the client."""
-        return self._refuse(why)
+        self._show(lsp.MessageType.Warning, why)
+        return {"status": None, "output": why, "what": ""}
 
     def _tell(self, what, status, output):
         lines = [line for line in output.strip().split("\n") if line.strip()]

@@ -15,6 +15,8 @@ from cramhy_runtime.languages.commonlisp.systems import systems
 from cramhy_runtime.languages.commonlisp.systems.loader import locate
 from cramhy_runtime.languages.commonlisp.systems.system_definitions import define_system
 
+from .findings import meant, meant_in_lisp
+
 COMPONENTS = ("FILE", "MODULE", "STATIC-FILE", "DOC-FILE", "HTML-FILE", "CL-SOURCE-FILE")
 OPTIONS = """DEPENDS-ON COMPONENTS SERIAL PATHNAME IF-FEATURE WEAKLY-DEPENDS-ON DEFSYSTEM-DEPENDS-ON IN-ORDER-TO PERFORM AROUND-COMPILE
 NAME AUTHOR MAINTAINER LICENSE LICENCE DESCRIPTION LONG-DESCRIPTION VERSION LONG-NAME MAILTO HOMEPAGE BUG-TRACKER SOURCE-CONTROL CLASS
@@ -62,7 +64,7 @@ def check(text, filename, fail):
             elif name in _EVALUATED:
                 evaluate(form, filename, reader.positions)
             elif name is not None and (near := near_names(name, ("DEFSYSTEM", *_EVALUATED))):
-                hint = f"Did you mean {near[0].lower()}?"
+                hint = meant_in_lisp(near[:1])
                 _warn(fail, f"A file of systems has no {name.lower()}.", name.lower(), hint, reader, reader.positions.get(id(form), (1, 1)))
         except (Exception, Condition) as problem:
             condition = from_python(problem)
@@ -76,15 +78,18 @@ def _check_words(form, reader, fail):
     for item, place in _lists(form, reader):
         words = [each for each in item if isinstance(each, Keyword)]
         kind = item.car if isinstance(item.car, Keyword) else None
-        if kind is not None and kind.name not in COMPONENTS and (near := near_names(kind.name, COMPONENTS)):
-            _warn(fail, f"There is no component :{kind.name.lower()}.", f":{kind.name.lower()}", _meant(near), reader, place)
+        if kind is not None:
+            _check_word(kind, "component", COMPONENTS, reader, place, fail)
         for option in words[1 if kind is not None else 0 :]:
-            if option.name not in OPTIONS and (near := near_names(option.name, OPTIONS)):
-                _warn(fail, f"There is no option :{option.name.lower()}.", f":{option.name.lower()}", _meant(near), reader, place)
+            _check_word(option, "option", OPTIONS, reader, place, fail)
 
 
-def _meant(near):
-    return f"Did you mean {' or '.join(f':{each.lower()}' for each in near)}?"
+def _check_word(word, what, known, reader, place, fail):
+    """Tell of a keyword that is none of the ``known`` names, if it is almost one of them."""
+    near = near_names(word.name, known) if word.name not in known else ()
+    if near:
+        written = f":{word.name.lower()}"
+        _warn(fail, f"There is no {what} {written}.", written, meant_in_lisp(near, ":"), reader, place)
 
 
 def _lists(form, reader):
@@ -114,7 +119,7 @@ def _check_system(system, form, reader, fail):
         name = str(name).lower()
         if name not in known and not systems.is_provided(name) and systems.find_asd(name) is None and name not in systems.systems:
             near = near_names(name, known)
-            _warn(fail, f"There is no system {name}.", name, f"Did you mean {' or '.join(near)}?" if near else None, reader, start)
+            _warn(fail, f"There is no system {name}.", name, meant(near), reader, start)
     missing = {}
     for component in systems.files_of(system):
         module = component.parent
@@ -124,12 +129,12 @@ def _check_system(system, form, reader, fail):
         if not component.pathname.is_file():
             there = [path.stem for path in component.pathname.parent.glob("*") if path.suffix in (".lisp", ".hy")]
             near = near_names(component.name, there)
-            hint = f"Did you mean {' or '.join(near)}?" if near else f"There is no file {component.pathname}."
+            hint = meant(near) or f"There is no file {component.pathname}."
             _warn(fail, f"The file of the component {component.name} is missing.", component.name, hint, reader, start)
 
     for name, folder in missing.items():
         near = near_names(name, [path.name for path in folder.parent.glob("*") if path.is_dir()])
-        hint = f"Did you mean {' or '.join(near)}?" if near else f"There is no folder {folder}."
+        hint = meant(near) or f"There is no folder {folder}."
         _warn(fail, f"The folder of the module {name} is missing.", name, hint, reader, start)
 
 
@@ -140,7 +145,7 @@ def _warn(fail, message, name, hint, reader, start):
     for _ in range(start[0] - 1):
         offset = text.find("\n", offset) + 1
     lower = text.lower()
-    at = max(lower.find(f'"{name}"', offset), -1)
+    at = lower.find(f'"{name}"', offset)
     at = at if at >= 0 else lower.find(name, offset)
     condition.position = (reader.filename, *reader.place(at if at >= 0 else offset)[:2])
     condition.hint = hint
