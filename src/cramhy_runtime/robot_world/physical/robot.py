@@ -6,7 +6,7 @@ what was held may slip. A motion waits in the kernel's time. When its task is ev
 
 from __future__ import annotations
 
-from itertools import islice
+from itertools import chain, islice, tee
 from math import pi
 from typing import TYPE_CHECKING
 
@@ -218,9 +218,9 @@ class PhysicalRobot(SimulatedRobot):
             raise OutOfReach(next(out, next(iter(goals))), len(self._torso_heights()))
         if line is not None and lenient:
             return line
-        known = [first, *islice(postures, _MOST_POSTURES)]
-        for room.apart in APART:
-            for posture in islice(filter(room.free, known), _TRIED):
+        some = chain([first], islice(postures, _MOST_POSTURES))
+        for room.apart, candidates in zip(APART, tee(some, len(APART)), strict=True):  # each is found once, when it is wanted
+            for posture in islice(filter(room.free, candidates), _TRIED):
                 way = room.way(posture)
                 if way is not None:
                     return way
