@@ -16,7 +16,7 @@ from .. import presentations
 from ..inspector import text_of
 from ..packages import package_called
 from ..rpcs import Refused, inner, rpc, text
-from .debugging import frame_at
+from .debugging import frame_at, variable_at
 from .evaluating import show
 from .inspecting import inspector_of
 
@@ -24,14 +24,7 @@ GONE = object()
 """What stands for a presented object that is not kept any more."""
 
 
-def _variable(call, index, variable):
-    variables = frame_at(call, index).variables
-    if not isinstance(variable, int) or not 0 <= variable < len(variables):
-        raise Refused(f"This frame has no variable {variable}.")
-    return variables[variable][1]
-
-
-_VALUES = {"inspector-nth-part": lambda call, index: inspector_of(call).part(index), "frame-var-value": _variable}
+_VALUES = {"inspector-nth-part": lambda call, index: inspector_of(call).part(index), "frame-var-value": variable_at}
 """The functions that may say which object to copy."""
 
 

@@ -31,6 +31,14 @@ def frame_at(call, index):
     return _debugger(call).frame(index)
 
 
+def variable_at(call, index, variable):
+    """The value of a variable, by its number, in the frame of that number. `Refused` if there is none."""
+    variables = frame_at(call, index).variables
+    if not isinstance(variable, int) or not 0 <= variable < len(variables):
+        raise Refused(f"This frame has no variable {variable}.")
+    return variables[variable][1]
+
+
 @rpc("backtrace")
 def backtrace(call, start, end=None):
     return _debugger(call).backtrace(number(start), end if isinstance(end, int) else None)
@@ -128,10 +136,7 @@ def inspect_in_frame(call, source, index):
 
 @rpc("inspect-frame-var")
 def inspect_frame_var(call, index, variable):
-    variables = frame_at(call, index).variables
-    if not isinstance(variable, int) or not 0 <= variable < len(variables):
-        raise Refused(f"This frame has no variable {variable}.")
-    return inspect(call, variables[variable][1])
+    return inspect(call, variable_at(call, index, variable))
 
 
 @rpc("inspect-current-condition")
