@@ -34,7 +34,7 @@ class Watcher(Moved):
 
 def paper(simulator):
     """The mime bundle of a simulator's window: SVG, or PNG where that has very many lines."""
-    words = f"turtlesim: {', '.join(simulator.turtles) or 'no turtle'}"
+    words = stills.title(simulator)
     if len(drawn := stills.svg(simulator)) <= MOST_SVG:
         return {"image/svg+xml": drawn, "text/plain": words}
     return {"image/png": _png(stills.picture(simulator)), "text/plain": words}

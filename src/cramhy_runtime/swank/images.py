@@ -34,7 +34,7 @@ class Images(Moved):
         papers, world = self.simulators().values(), self.world()
         try:
             for simulator in papers:
-                self._send(stills.picture(simulator), f"turtlesim: {', '.join(simulator.turtles) or 'no turtle'}")
+                self._send(stills.picture(simulator), stills.title(simulator))
             if world is not None:
                 from cramhy_runtime.robot_world.pictures import stills as world_stills
 

@@ -60,9 +60,14 @@ def still_svg(simulator: Turtlesim, path: str) -> None:
     storage.write_whole(path, svg(simulator))
 
 
+def title(simulator: Turtlesim) -> str:
+    """What the window is called: by the turtles that are in it."""
+    return f"turtlesim: {', '.join(simulator.turtles) or 'no turtle'}"
+
+
 def svg(simulator: Turtlesim) -> str:
     """The window as an SVG document. Lines become straight if that moves them by at most a fifth of a pixel."""
-    parts = [svg_head(f"turtlesim: {', '.join(simulator.turtles) or 'no turtle'}"), svg_paper(simulator.canvas.background)]
+    parts = [svg_head(title(simulator)), svg_paper(simulator.canvas.background)]
     for colour, width, points in simulator.canvas.polylines():
         parts.append(svg_line(colour, width, points))
     for turtle in simulator.turtles.values():
