@@ -14,6 +14,8 @@ from .conditions import FloatingPointOverflow, error, type_error
 from .data import DoubleFloat, lisp_list, one
 from .packages import sym
 
+FIXNUM_LIMIT = 2**62
+"""The first integer that is too large for a fixnum; the smallest fixnum is its negative."""
 _REALS = frozenset((int, float, Fraction, DoubleFloat))
 _pack_single = struct.Struct("<f")
 

@@ -7,6 +7,7 @@ are not defined, types of several values, and single and double floats where a d
 
 from __future__ import annotations
 
+from cramhy_runtime.ground.numbers import FIXNUM_LIMIT
 from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.printing import prin1_to_string
@@ -25,7 +26,7 @@ UNCHECKED = {sym("T"), sym("*"), True}
 FIXNUM = sym("FIXNUM")
 CLASSES = {sym("INTEGER"): "int", FIXNUM: "int", sym("SINGLE-FLOAT"): "float"}
 """Types that one comparison of classes proves (for a fixnum also one of size), and the kind of a value that has passed it."""
-LEAST_FIXNUM, GREATEST_FIXNUM = -(2**62), 2**62 - 1
+LEAST_FIXNUM, GREATEST_FIXNUM = -FIXNUM_LIMIT, FIXNUM_LIMIT - 1
 DOUBLE = {sym("DOUBLE-FLOAT"), sym("LONG-FLOAT")}
 
 

@@ -8,10 +8,9 @@ from __future__ import annotations
 from fractions import Fraction
 
 from cramhy_runtime.ground.data import Cons, DoubleFloat, Symbol, lisp_list, list_from, python_list
+from cramhy_runtime.ground.numbers import FIXNUM_LIMIT
 from cramhy_runtime.ground.packages import sym
 from .types import expand_type
-
-FIXNUM = 2**62
 
 
 def simplified_type(specifier):
@@ -68,5 +67,5 @@ def _integer(low, high, specifier):
         bits = high.bit_length()
         return lisp_list(sym("UNSIGNED-BYTE"), bits) if high == 2**bits - 1 else lisp_list(sym("MOD"), high + 1)
     if low == -high - 1 and high > 0 and high == 2 ** high.bit_length() - 1:
-        return sym("FIXNUM") if high == FIXNUM - 1 else lisp_list(sym("SIGNED-BYTE"), high.bit_length() + 1)
+        return sym("FIXNUM") if high == FIXNUM_LIMIT - 1 else lisp_list(sym("SIGNED-BYTE"), high.bit_length() + 1)
     return lisp_list(sym("INTEGER"), low, high)

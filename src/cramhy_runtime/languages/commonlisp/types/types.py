@@ -27,14 +27,13 @@ from cramhy_runtime.ground.classes import when_classes_change
 from ..objects.classes import class_name, class_of, symbol_class
 from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
 from ..objects.structures import StructureObject
+from cramhy_runtime.ground.numbers import FIXNUM_LIMIT
 from cramhy_runtime.ground.packages import Package, is_symbol, sym
 from cramhy_runtime.ground.ports import PORTS
 from ..packages.package_errors import check_symbol
 from .specifier_shapes import bad_operator, bad_specifier, check_specifier, is_operator
 
 LISP_NAMES = "typep type-of upgraded-complex-part-type"
-
-_FIXNUM_LIMIT = 2**62
 
 
 # --------------------------------------------------------------------------------------------------------- atomic specifiers
@@ -94,8 +93,8 @@ _ATOMIC = {
     "RATIO": lambda obj: obj.__class__ is Fraction,
     "COMPLEX": lambda obj: isinstance(obj, complex),
     "FLOAT": lambda obj: isinstance(obj, float),
-    "FIXNUM": lambda obj: is_integer(obj) and -_FIXNUM_LIMIT <= obj < _FIXNUM_LIMIT,
-    "BIGNUM": lambda obj: is_integer(obj) and not -_FIXNUM_LIMIT <= obj < _FIXNUM_LIMIT,
+    "FIXNUM": lambda obj: is_integer(obj) and -FIXNUM_LIMIT <= obj < FIXNUM_LIMIT,
+    "BIGNUM": lambda obj: is_integer(obj) and not -FIXNUM_LIMIT <= obj < FIXNUM_LIMIT,
     "BIT": lambda obj: is_integer(obj) and (obj == 0 or obj == 1),
     "UNSIGNED-BYTE": lambda obj: is_integer(obj) and obj >= 0,
     "SIGNED-BYTE": is_integer,
@@ -418,11 +417,11 @@ def type_of(object):
     if cls is int:
         if object in (0, 1):
             return sym("BIT")
-        if 0 <= object < _FIXNUM_LIMIT:
-            return lisp_list(sym("INTEGER"), 0, _FIXNUM_LIMIT - 1)
-        if -_FIXNUM_LIMIT <= object < 0:
+        if 0 <= object < FIXNUM_LIMIT:
+            return lisp_list(sym("INTEGER"), 0, FIXNUM_LIMIT - 1)
+        if -FIXNUM_LIMIT <= object < 0:
             return sym("FIXNUM")
-        return lisp_list(sym("INTEGER"), _FIXNUM_LIMIT) if object > 0 else sym("BIGNUM")
+        return lisp_list(sym("INTEGER"), FIXNUM_LIMIT) if object > 0 else sym("BIGNUM")
     if object is None or object is False:
         return sym("NULL")
     if object is True:
