@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
+import signal
 import threading
 
 import pytest
 from lsprotocol import types as lsp
 
+from .editor import Editor
 from .mistakes import COURSE, HIGH, HY_MODULES, PLANS, ROOT
 
 TESTS = COURSE / "tests" / "simple-plans-tests.hy"
@@ -81,6 +84,39 @@ def test_a_plan_without_end_is_interrupted_and_the_server_answers_meanwhile(edit
     failed = execute(editor, "cramhy.run", file, "fails")
     assert failed["status"] == 1 and "no way" in failed["output"].lower()
     assert editor.shown[-1].type == lsp.MessageType.Error
+
+
+WRITES = """(defun endless ()
+  (cpl:top-level
+    (unwind-protect (progn (print "it runs") (loop (cpl:sleep 0.01)))
+      (with-open-file (file "{}" :direction :output) (print :cleaned file)))))
+"""
+
+
+@pytest.mark.parametrize("how", ["SIGTERM", "SIGHUP", "closed", "shutdown"])
+def test_a_plan_is_cleaned_up_when_the_server_ends(tmp_path, how):
+    """It may drive a robot."""
+    file, cleaned = tmp_path / "endless.lisp", tmp_path / "cleaned"
+    file.write_text(WRITES.format(cleaned), encoding="utf-8")
+    editor = Editor()
+    lenses(editor, file)
+    params = lsp.ExecuteCommandParams("cramhy.run", [file.as_uri(), "endless"])
+    running = asyncio.run_coroutine_threadsafe(editor.client.workspace_execute_command_async(params), editor.loop)
+    editor.wait_for(lambda: any("it runs" in each for each in editor.logged))
+    server = editor.client._server
+    if how == "closed":
+        editor.loop.call_soon_threadsafe(server.stdin.close)
+    elif how == "shutdown":
+        editor.run(editor.client.shutdown_async(None))
+    else:
+        server.send_signal(getattr(signal, how))
+    looks = iter(range(600))
+    while not (cleaned.exists() and "CLEANED" in cleaned.read_text()):
+        assert next(looks, None) is not None, "the plan was not cleaned up"
+        threading.Event().wait(0.1)
+    if how != "shutdown":
+        editor.run(server.wait())
+    running.cancel()
 
 
 @pytest.mark.parametrize("arguments", [[], [None], ["file:///nowhere.lisp", "x"], [1, 2, 3], ["", {}]])

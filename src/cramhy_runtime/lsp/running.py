@@ -1,4 +1,7 @@
-"""What lenses start: processes of their own, which end with the server, and which the user interrupts as by Ctrl-C."""
+"""What lenses start: processes of their own, which the user interrupts as by Ctrl-C, and which end with the server.
+
+A plan may drive a robot. So it is asked to end, by a signal, and its cleanup forms run, also when the server itself is ended.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +14,12 @@ from lsprotocol import types as lsp
 MOST_OUTPUT = 100_000
 """Characters of what a process prints; of a longer output the end is kept."""
 MOST_RUNNING = 4
-GRACE = 5.0
-"""Seconds that a process gets for its cleanup forms when it is interrupted."""
+GRACE = 10.0
+"""Seconds after which a process that was interrupted is killed. It is longer than what its cleanup forms get (``--cleanup-limit``)."""
+
+
+MOMENT, PAUSE = 1.5, 0.02
+"""Seconds that the end of the server waits for processes, and from one look to the next."""
 
 
 class Runs:
@@ -48,8 +55,7 @@ class Runs:
             status = await process.wait()
         finally:
             self.processes.pop(number, None)
-            if process.returncode is None:
-                process.kill()
+            _ask_to_end(process)  # the server ends
         self._tell(errand.what, status, output)
         return {"status": status, "output": output, "what": errand.what}
 
@@ -77,16 +83,26 @@ class Runs:
             loop.call_later(GRACE, _kill, process)
         return len(running)
 
-    def end(self):
-        """End all, because the server ends."""
+    async def end(self):
+        """Ask all to end, because the server ends, and wait a `MOMENT`, so that who started them is answered before pygls cancels it."""
         for process in self.processes.values():
-            _kill(process)
+            _ask_to_end(process)
+        looks = int(MOMENT / PAUSE)
+        while self.processes and looks:
+            await asyncio.sleep(PAUSE)
+            looks -= 1
+        await asyncio.sleep(PAUSE)
 
     def _show(self, kind, text):
         self.server.window_show_message(lsp.ShowMessageParams(kind, text))
 
     def _log(self, text):
         self.server.window_log_message(lsp.LogMessageParams(lsp.MessageType.Log, text))
+
+
+def _ask_to_end(process):
+    if process.returncode is None:
+        process.terminate()
 
 
 def _kill(process):

@@ -341,7 +341,9 @@ def made():
     def interrupt(*arguments):
         return server.runs.interrupt()
 
-    server.feature(lsp.SHUTDOWN)(lambda *arguments: server.runs.end())
+    @server.feature(lsp.SHUTDOWN)
+    async def shutdown(*arguments):
+        await server.runs.end()
 
     return server
 
