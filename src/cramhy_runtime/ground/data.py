@@ -326,15 +326,9 @@ class Character:
     """A character object, ``#\\a``. Interned: two characters with the same code are the same object."""
 
     __slots__ = ("char",)
-    _interned: dict = {}
 
     def __new__(cls, char):
-        found = cls._interned.get(char)
-        if found is None:
-            found = super().__new__(cls)
-            found.char = char
-            cls._interned[char] = found
-        return found
+        return CHARACTERS[char]
 
     @property
     def code(self):
@@ -345,6 +339,19 @@ class Character:
 
     def __reduce__(self):
         return Character, (self.char,)
+
+
+class _Characters(dict):
+    """One-character string → `Character`, made when it is asked for. So Python finds those of a whole text in one call of `map`."""
+
+    def __missing__(self, char):
+        found = self[char] = new_object(Character)
+        found.char = char
+        return found
+
+
+CHARACTERS: dict[str, Character] = _Characters()
+"""All characters that there are, by their one-character strings."""
 
 
 def is_ratio(thing: object) -> bool:

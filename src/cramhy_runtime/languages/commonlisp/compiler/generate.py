@@ -16,6 +16,7 @@ from .constants import Constants, float_model
 from .core import List, expression, word
 from .destinations import EFFECT, FIRST_OF_VALUES, NONE, TRUE, VALUE, VALUES, Destination
 from .facts import MINUS, NUMBERS, PLUS, study, walk
+from .generate_calls import CallGenerator
 from .generate_exits import ExitGenerator
 from .generate_functions import FunctionGenerator
 from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS, STEPS, OperatorGenerator
@@ -29,7 +30,7 @@ DISPATCHERS = {"UnaryGeneric": 1, "FirstOfTwo": 2}
 """Kinds of generic functions that look only at the class of the first of so many arguments; the caller's code may ask them for it."""
 
 
-class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerator):
+class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerator):
     """Generates one Python function at a time; `toplevel` is the entry."""
 
     def __init__(self, constants=None):
@@ -266,7 +267,7 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerat
             reader = symbol.reads is not None and model[0] == "if"
             return self.finish(model, nodes.Constant(None) if reader else node, destination)
         if self.standard(symbol):
-            model = expression(word(self.constants.name("function", symbol)), *models)
+            model = self.standard_function(symbol, models, arguments)
         elif is_symbol(symbol) and not isinstance(symbol, Symbol):
             model = self.call("undefined", self.constant(symbol), *models)
         else:  # named, because Python takes longer to call an attribute of an object with slots
