@@ -51,7 +51,7 @@ from cramhy_runtime.ground.data import (
     one,
     truth,
 )
-from cramhy_runtime.ground.hash_tables import value_in_table
+from cramhy_runtime.ground.hash_tables import value_and_presence, value_in_table
 from cramhy_runtime.ground.dynamic import Bindings, bind, unbind
 from cramhy_runtime.ground.functions import function_of
 from ..format.format_templates import decimal, prin1_atom, princ_atom
@@ -327,6 +327,8 @@ NAMESPACE = {
     "Lratio": Fraction,
     "Lcomplex": complex_,
     "Lgethash": value_in_table,
+    "Lgethash_values": value_and_presence,
+    "Ldivmod": divmod,
     "Llen": len,
     "Lcharacter": Character,
     "Larray": SimpleArray,
