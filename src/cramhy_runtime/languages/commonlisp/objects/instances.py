@@ -21,7 +21,8 @@ from .class_definition import default_initargs
 from .class_objects import StandardObject, effective_slots, find_slot
 from cramhy_runtime.ground.classes import when_classes_change
 from .classes import StructureClass, class_name, class_of, find_class_or_error, qualified
-from cramhy_runtime.ground.dispatch.generic_functions import ALLOW_OTHER_KEYS, no_method_for, other_keys_allowed, when_methods_change
+from cramhy_runtime.ground.dispatch.generic_functions import no_method_for, when_methods_change
+from cramhy_runtime.ground.dispatch.keyword_checks import ALLOW_OTHER_KEYS, other_keys_allowed
 
 
 class InitargError(ProgramError):
