@@ -95,7 +95,8 @@ class Symbol:
 
     ``value`` is the current dynamic value: see ``ground/dynamic.py`` for how tasks keep theirs apart.
     ``function`` is always callable; that of an undefined function signals ``undefined-function``.
-    ``reads`` and ``writes`` tell from which objects ``function`` and ``setf_function`` just read or write an attribute (`SlotClasses`).
+    ``reads`` and ``writes`` tell from which objects ``function`` and ``setf_function`` just read or write an attribute (`SlotClasses`),
+    ``keyed`` are the ways in which compiled code calls ``function`` with keywords (`ground.keyword_calls`).
     """
 
     __slots__ = (
@@ -111,6 +112,7 @@ class Symbol:
         "compiler_data",
         "_reads",
         "_writes",
+        "keyed",
         "__weakref__",
     )
 
@@ -125,7 +127,7 @@ class Symbol:
         self.special = False
         self.constant = False
         self.compiler_data = None
-        self._reads = self._writes = None
+        self._reads = self._writes = self.keyed = None
 
     def function_changed(self):
         """To be called after ``function`` or ``setf_function`` got another value."""
@@ -133,6 +135,9 @@ class Symbol:
             self._reads.refresh()
         if self._writes is not None:
             self._writes.refresh()
+        if self.keyed is not None:
+            for calls in self.keyed.values():
+                calls.refresh()
 
     @property
     def reads(self) -> SlotClasses:

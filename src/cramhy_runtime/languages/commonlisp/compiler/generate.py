@@ -266,6 +266,9 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         models = self.arguments(arguments)
         if standard and symbol is GETHASH and 1 < len(arguments) < 4 and (not destination.multiple or destination is FIRST_OF_VALUES):
             return self.finish(self.positioned(self.call("gethash", *models), node), nodes.Constant(None), destination)
+        model = self.keyword_call(node, symbol, models, arguments)
+        if model is not None:
+            return self.finish(model, node, destination)
         model = self.slot_read(node, symbol, models)
         if model is not None:
             return self.finish(model, nodes.Constant(None), destination)

@@ -8,6 +8,7 @@ are taken apart where they are made, if that can be seen.
 from __future__ import annotations
 
 from cramhy_runtime.ground.data import Character, Keyword, Symbol
+from cramhy_runtime.ground.keyword_calls import keyword_calls, name_of_key, takes_keywords
 from cramhy_runtime.ground.packages import sym
 from . import core, nodes
 from .core import NONE, List, Tuple, expression, word
@@ -31,6 +32,19 @@ class CallGenerator:
             if sorted_ is not None:
                 return expression(word(self.constants.name("function.python", symbol)), *sorted_)
         return expression(word(self.constants.name("function", symbol)), *models)
+
+    def keyword_call(self, node, symbol, models, arguments):
+        """The call of a user's function with keywords that the code names, if it takes them as Python's; else ``None``."""
+        if not isinstance(symbol, Symbol) or (count := _keys_begin(symbol.function, arguments)) is None:
+            return None
+        names = [name_of_key(key.value) for key in arguments[count::2]]
+        if not takes_keywords(symbol.function, count, names) or len({*names}) < len(names):
+            return None
+        calls = self.constant(keyword_calls(symbol, count, *[key.value for key in arguments[count::2]]))
+        done = models[:count]
+        for name, value in zip(names, models[count + 1 :: 2], strict=True):
+            done += [core.Keyword(name), value]
+        return self.positioned(expression(expression(DOT, calls, word("call")), *done), node)
 
     def known_function(self, symbol):
         return word(self.constants.name("function", symbol))
@@ -147,6 +161,18 @@ class CallGenerator:
                 slow = self.call("spread", self.positioned(expression(self.known_function(symbol), name, divisor), node), 2)
                 return expression(IF, expression(IS, class_of(number), INT), self.call("divmod", name, divisor), slow)
         return None
+
+
+def _keys_begin(function, arguments):
+    """The number of arguments of a call of ``function`` before those with keywords; ``None`` if there are none, or odd ones."""
+    code = getattr(function, "__code__", None)
+    if code is None or not code.co_kwonlyargcount or len(arguments) < 2:
+        return None
+    count = code.co_argcount
+    keys = arguments[count::2]
+    if not keys or len(arguments) - count & 1:
+        return None
+    return count if all(key.__class__ is nodes.Constant and key.value.__class__ is Keyword for key in keys) else None
 
 
 def _attribute(function):

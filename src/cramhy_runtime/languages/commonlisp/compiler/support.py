@@ -52,6 +52,7 @@ from cramhy_runtime.ground.data import (
     truth,
 )
 from cramhy_runtime.ground.hash_tables import value_and_presence, value_in_table
+from cramhy_runtime.ground.keyword_calls import keyword_calls
 from cramhy_runtime.ground.dynamic import Bindings, bind, unbind
 from cramhy_runtime.ground.functions import function_of
 from ..format.format_templates import decimal, prin1_atom, princ_atom
@@ -210,6 +211,7 @@ def key_parser(table, allow_others):
 
     table: pairs of (keyword, value when missing). It takes the arguments after the positional ones, keyword objects and values,
     and the keyword arguments of a Python caller, and gives the values in the order of ``table``; of equal keys the first counts.
+    ``known``: the values of those that are not among these arguments.
     """
     slots = {key: index for index, (key, _) in enumerate(table)}
     missing = tuple(value for _, value in table)
@@ -218,15 +220,15 @@ def key_parser(table, allow_others):
     getters: dict = {}
     getter_for = getters.get
 
-    def parse(rest, python):
+    def parse(rest, python, known=missing):
         if not python and not len(rest) & 1:
             try:
                 getter = getter_for(rest[KEYS_OF_ARGUMENTS])
             except TypeError:  # something that is no keyword and has no hash
                 getter = None
             if getter is not None:
-                return getter(rest + missing)
-        values = list(missing)
+                return getter(rest + known)
+        values = list(known)
         for name, value in python.items():
             rest = (*rest, keyword(name.upper().replace("_", "-")), value)
         unknown = None
@@ -319,6 +321,7 @@ NAMESPACE = {
     "Lint": int,
     "Lbudget": budget,
     "Lkey_parser": key_parser,
+    "Lkeyword_calls": keyword_calls,
     "Lintern": intern,
     "Lgensym": Symbol,
     "Llist": lisp_list,

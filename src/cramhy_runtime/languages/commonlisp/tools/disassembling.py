@@ -11,6 +11,7 @@ import ast
 import contextlib
 import io
 
+from cramhy_runtime.ground.keyword_calls import KeywordCalls
 from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, truth
 from cramhy_runtime.ground.dynamic import binding
@@ -115,6 +116,8 @@ class _Named(ast.NodeTransformer):
                 return ast.Name(f"«{prin1_to_string(value)}»", node.ctx)
             if value.__class__ is set:  # of classes whose slot the code takes itself
                 return ast.Name("{" + ", ".join(sorted(each.__name__ for each in value)) + "}", node.ctx)
+            if isinstance(value, KeywordCalls):
+                return ast.Name(f"«{prin1_to_string(value.symbol)}»", node.ctx)
             name = getattr(value, "__name__", None)
             if callable(value) and name:
                 return ast.Name(name, node.ctx)
