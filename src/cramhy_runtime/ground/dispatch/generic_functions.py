@@ -7,7 +7,8 @@ one dictionary look-up once it has been made with such arguments. ``(eql x)`` sp
 How methods are called (for the compiler): a method that uses neither ``call-next-method`` nor ``next-method-p`` is added with
 ``uses_next=False`` and called as ``function(*arguments)``. Otherwise it is called as ``function(next, *arguments)``:
 ``(call-next-method)`` is ``next()``, ``(call-next-method a b)`` is ``next(a, b)``, and ``(next-method-p)`` is
-``next.exists`` (``True`` or ``None``). A lambda list with ``&key`` is compiled as if it said ``&allow-other-keys``: which
+``next.exists`` (``True`` or ``None``). With ``uses_next=DIRECTLY`` it is called so, too, but ``next`` is the function of the next
+method itself, and the method gives it all arguments. A lambda list with ``&key`` is compiled as if it said ``&allow-other-keys``: which
 keywords a call may have is checked here, because all applicable methods together decide it (ANSI 7.6.5).
 
 Runtime rooms make generic functions with `generic` and ``@function.method(Class, ...)``. Source: ANSI 7.6; texts are SBCL's.
@@ -26,7 +27,7 @@ from ..functions import invalid_function_name
 from .generic_errors import incongruent, no_applicable_method_error
 from ..keyword_calls import lispify
 from .keyword_checks import checking_keys
-from .method_combination import STANDARD, Combination, find_combination
+from .method_combination import DIRECTLY, STANDARD, Combination, find_combination
 from .reached_slots import ReachedSlots, attribute_of
 from .methods import EqlSpecializer, Method, Shape, class_for_dispatch, is_sized
 from ..packages import is_symbol, keyword, our_own, redefined, sym, symbol_name
@@ -505,7 +506,14 @@ def add_method(
     specializers = [specializer_of(specializer) for specializer in python_list(specializers)]
     shape = Shape(lambda_list) if lambda_list is not None else generic_function.shape
     method = Method(
-        generic_function, tuple(python_list(qualifiers)), specializers, function, bool(uses_next), shape, per_class, documentation
+        generic_function,
+        tuple(python_list(qualifiers)),
+        specializers,
+        function,
+        uses_next if uses_next is DIRECTLY else bool(uses_next),
+        shape,
+        per_class,
+        documentation,
     )
     if not generic_function.shape.agrees_with(shape) or len(specializers) != generic_function.shape.required:
         if generic_function.methods or generic_function.lambda_list is not None:

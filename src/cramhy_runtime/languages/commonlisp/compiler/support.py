@@ -260,6 +260,11 @@ def dotted(*items):
     return list_from(items[:-1], items[-1])
 
 
+def next_method_exists(following):
+    """``next-method-p`` in the body of a method: whether ``following`` is another method."""
+    return getattr(following, "exists", True)
+
+
 def value_list(value):
     return list_from(all_values(value))
 
@@ -320,6 +325,7 @@ NAMESPACE = {
     "Lchecked": checked,
     "Lint": int,
     "Lbudget": budget,
+    "Lnext_method_exists": next_method_exists,
     "Lkey_parser": key_parser,
     "Lkeyword_calls": keyword_calls,
     "Lintern": intern,
