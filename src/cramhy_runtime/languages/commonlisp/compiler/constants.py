@@ -14,6 +14,7 @@ from cramhy_runtime.ground.arrays import SimpleArray, TypedVector
 from cramhy_runtime.ground.keyword_calls import KeywordCalls
 from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Symbol
 from ..numbers.complex_numbers import parts
+from ..objects.makers import Maker
 from ..syntax.backquote import Comma
 from .core import List, expression, word
 
@@ -126,6 +127,8 @@ class Constants:
             return expression(word("Ltyped_vector"), List([self.builder(item) for item in obj]), self.builder(obj.element_type))
         if kind is KeywordCalls:
             return expression(word("Lkeyword_calls"), self.builder(obj.symbol), obj.count, *map(self.builder, obj.keys))
+        if kind is Maker:
+            return expression(word("Lmaker"), self.builder(obj.name), *map(self.builder, obj.keys))
         raise NotStorable(obj)
 
 

@@ -10,13 +10,14 @@ from __future__ import annotations
 from cramhy_runtime.ground.data import Character, Keyword, Symbol
 from cramhy_runtime.ground.keyword_calls import keyword_calls, name_of_key, takes_keywords
 from cramhy_runtime.ground.packages import sym
+from ..objects.makers import maker
 from . import core, nodes
 from .core import NONE, List, Tuple, expression, word
 from .destinations import EFFECT, VALUES as ALL_VALUES
 from .generate_operators import AND, CLASS, DOT, IF, INT, IS, SETX, class_of
 
 APPLY, FIND, FLOOR, GETHASH, LIST, VALUES = map(sym, "APPLY FIND FLOOR GETHASH LIST VALUES".split())
-SAME_CHARACTER = sym("CHAR=")
+MAKE_INSTANCE, SAME_CHARACTER = sym("MAKE-INSTANCE"), sym("CHAR=")
 CHARACTER = word("Lcharacter")
 
 
@@ -62,6 +63,8 @@ class CallGenerator:
                 return expression(word("LMultipleValues"), Tuple(self.arguments(arguments)))
             (first, *_) = self.stable_names(self.arguments(arguments))
             return first
+        if symbol is MAKE_INSTANCE:
+            return self.instance_made(node, arguments)
         if symbol is FLOOR and count == 2 and _is_number(arguments[1]):
             divisor = arguments[1].value
             number, name = self.named(arguments[0])
@@ -81,6 +84,19 @@ class CallGenerator:
             slow = self.positioned(expression(self.known_function(symbol), name, arguments[1].value), node)
             return expression(IF, expression(IS, class_of(item), CHARACTER), among, slow)
         return None
+
+    def instance_made(self, node, arguments):
+        """``(make-instance 'class :key value ...)``"""
+        keys = arguments[1::2]
+        constant = all(each.__class__ is nodes.Constant for each in (arguments[:1] + keys))
+        if not arguments or not constant or len(arguments) % 2 == 0 or any(key.value.__class__ is not Keyword for key in keys):
+            return None
+        name = arguments[0].value
+        if name.__class__ is not Symbol or name.package is None:
+            return None
+        made_by = self.constant(maker(name, *[key.value for key in keys]))
+        model = expression(expression(DOT, made_by, word("make")), *self.arguments(arguments[2::2]))
+        return self.first_value(self.positioned(model, node))
 
     def same_character(self, node, arguments):
         """``(char= x y)``: characters are the same object if they are the same."""

@@ -58,6 +58,7 @@ from cramhy_runtime.ground.functions import function_of
 from ..format.format_templates import decimal, prin1_atom, princ_atom
 from ..numbers import arithmetic
 from ..numbers.irrational import complex_
+from ..objects.makers import maker
 from cramhy_runtime.ground.dispatch.generic_functions import FirstOfTwo, UnaryGeneric
 from cramhy_runtime.ground.packages import intern, keyword, printed
 from ..syntax.backquote import Comma
@@ -326,6 +327,7 @@ NAMESPACE = {
     "Lint": int,
     "Lbudget": budget,
     "Lnext_method_exists": next_method_exists,
+    "Lmaker": maker,
     "Lkey_parser": key_parser,
     "Lkeyword_calls": keyword_calls,
     "Lintern": intern,

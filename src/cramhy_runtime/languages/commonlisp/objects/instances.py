@@ -57,6 +57,17 @@ def _methods_changed(generic_function):
     name = generic_function.__lisp_name__
     if is_symbol(name) and symbol_name(name) in _PROTOCOL:
         _plans.clear()
+        for function in _watchers:
+            function()
+
+
+_watchers: list = []
+
+
+def when_plans_change(function):
+    """Call ``function()`` whenever methods of users change how instances are made."""
+    _watchers.append(function)
+    return function
 
 
 _PROTOCOL = ("INITIALIZE-INSTANCE", "SHARED-INITIALIZE", "ALLOCATE-INSTANCE", "REINITIALIZE-INSTANCE")

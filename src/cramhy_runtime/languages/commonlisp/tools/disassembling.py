@@ -20,6 +20,7 @@ from ..evaluation.evaluator import PACKAGE, Unit, compile_lambda, compiler
 from ..evaluation.function_facts import defining_forms, lambda_expression, plain, position_of, shown_name
 from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
 from cramhy_runtime.ground.packages import sym
+from ..objects.makers import Maker
 from ..printer.printer import prin1_to_string
 from ..streams.streams import output_stream
 
@@ -118,6 +119,8 @@ class _Named(ast.NodeTransformer):
                 return ast.Name("{" + ", ".join(sorted(each.__name__ for each in value)) + "}", node.ctx)
             if isinstance(value, KeywordCalls):
                 return ast.Name(f"«{prin1_to_string(value.symbol)}»", node.ctx)
+            if isinstance(value, Maker):
+                return ast.Name(f"«{prin1_to_string(value.name)}»", node.ctx)
             name = getattr(value, "__name__", None)
             if callable(value) and name:
                 return ast.Name(name, node.ctx)
