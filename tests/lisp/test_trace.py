@@ -167,7 +167,7 @@ def test_step_shows_the_calls(lisp):
 
 
 def test_disassemble_shows_the_python(lisp):
-    assert lisp("(disassemble 'several)") == "; Python of SEVERAL\ndef several():\n    return values(1, 2)\n"
+    assert lisp("(disassemble 'several)") == "; Python of SEVERAL\ndef several():\n    return LMultipleValues((1, 2))\n"
     assert lisp("(disassemble #'several)") == lisp("(disassemble 'several)")
     assert lisp("(defun hi (x) (list x (fib x))) (disassemble 'hi)") == (
         "; Python of HI\ndef hi(x):\n"

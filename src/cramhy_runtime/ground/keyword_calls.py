@@ -14,7 +14,8 @@ def lispify(function):
     """``function`` as Lisp calls it: keyword objects among the arguments become Python keywords.
 
     A function without keyword-only parameters is returned as it is. Unknown and odd keywords are program-errors, unless the
-    call says ``:allow-other-keys t`` or the function takes ``**others``.
+    call says ``:allow-other-keys t`` or the function takes ``**others``. The result's attribute ``python`` is ``function``, and
+    ``python_keywords`` are the names of its parameters by keyword object.
     """
     code = getattr(function, "__code__", None)
     if code is None or not code.co_kwonlyargcount:
@@ -48,7 +49,7 @@ def lispify(function):
             return unknown_key(unknown[0], known)
         return function(*(arguments if takes_rest else arguments[:positional]), **keywords)
 
-    lisp_function.python = function
+    lisp_function.python, lisp_function.python_keywords = function, known
     return lisp_function
 
 

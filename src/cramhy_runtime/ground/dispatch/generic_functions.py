@@ -16,6 +16,7 @@ Runtime rooms make generic functions with `generic` and ``@function.method(Class
 from __future__ import annotations
 
 import weakref
+from operator import attrgetter
 
 from ..classes import find_class_or_error, when_classes_change
 from ..conditions import SimpleError, SimpleProgramError, error, program_error, restart_case, wrong_argument_count
@@ -40,6 +41,7 @@ def _forget_dispatch():
     for function in all_generic_functions:
         if function.cache:  # on which arguments the methods specialize is no matter of the classes
             function.cache = {}
+            function.tell_callers()
 
 
 class FunctionObject:
@@ -110,6 +112,7 @@ class GenericFunction(FunctionObject):
     def forget(self):
         """Forget all effective functions, and find out anew on which arguments the methods specialize."""
         self.cache: dict = {}
+        self.tell_callers()
         positions = sorted(
             {index for method in self.methods for index, specializer in enumerate(method.specializers) if specializer is not object}
         )
@@ -153,6 +156,8 @@ class GenericFunction(FunctionObject):
             if found is None:
                 return lambda *arguments: no_applicable_method(self, arguments)
             self.cache[key] = found
+            if attribute_of(found) is not None:
+                self.tell_callers()
         return found
 
     def _eql_possible(self, index, argument):
@@ -248,6 +253,33 @@ class GenericFunction(FunctionObject):
 
         return check
 
+    # ------------------------------------------------------------------------------------------- slots that callers reach
+
+    def slot_accesses(self):
+        """The pairs (class, attribute) for which a call just reads or writes that attribute of an object of that class."""
+        if self.__class__ is not UnaryGeneric and self.__class__ is not _SecondOfTwo:
+            return []
+        found = [(cls, attribute_of(effective)) for cls, effective in self.cache.items()]
+        return [(cls, attribute) for cls, attribute in found if attribute is not None]
+
+    def slot_attribute(self):
+        """The attribute that all methods read or write; ``None`` if they do anything else."""
+        if self.__class__ is not UnaryGeneric and self.__class__ is not _SecondOfTwo:
+            return None
+        (position,) = self.positions
+        found = {
+            method.function.attribute_in(method.specializers[position]) if hasattr(method.function, "attribute_in") else None
+            for method in self.methods
+        }
+        return found.pop() if len(found) == 1 else None
+
+    def tell_callers(self):
+        """Let the calls in compiled code that reach into objects themselves know what this function does now."""
+        name = self.__lisp_name__
+        symbol = name.cdr.car if isinstance(name, Cons) else name
+        if isinstance(symbol, Symbol):
+            symbol.function_changed()
+
     # ------------------------------------------------------------------------------------------------- for Python rooms
 
     def method(self, *specializers, qualifier=None, uses_next=False):
@@ -263,6 +295,13 @@ class GenericFunction(FunctionObject):
             return function
 
         return define
+
+
+def attribute_of(effective):
+    """The attribute that an effective function just reads or writes, or ``None``."""
+    if effective.__class__ is attrgetter:
+        return effective.__reduce__()[1][0]
+    return getattr(effective, "writes_attribute", None)
 
 
 def other_keys_allowed(given):

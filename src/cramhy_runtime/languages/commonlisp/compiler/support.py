@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from ..collections.sequences import length
 from ..collections.arrays import aref
+from ..collections.sequence_types import characters
 from fractions import Fraction
 from itertools import zip_longest
 from operator import itemgetter
 from types import FunctionType
 
-from cramhy_runtime.ground.arrays import SimpleArray, TypedVector
+from cramhy_runtime.ground.arrays import SimpleArray, TypedVector, Vector
 from cramhy_runtime.ground.catching import ThrowExit, catch, throw  # noqa: F401  compiled code calls them
 from cramhy_runtime.ground.functions import fdefinition, setf_function  # noqa: F401  compiled code calls them
 from cramhy_runtime import kernel
@@ -35,6 +36,7 @@ from .frame_exits import FrameExit, ends_here
 from cramhy_runtime.ground.data import (
     FreshString,
     Character,
+    TEXTS,
     Cons,
     DoubleFloat,
     Keyword,
@@ -49,7 +51,7 @@ from cramhy_runtime.ground.data import (
     one,
     truth,
 )
-from cramhy_runtime.ground.hash_tables import value_in_table
+from cramhy_runtime.ground.hash_tables import value_and_presence, value_in_table
 from cramhy_runtime.ground.dynamic import Bindings, bind, unbind
 from cramhy_runtime.ground.functions import function_of
 from ..format.format_templates import decimal, prin1_atom, princ_atom
@@ -118,7 +120,13 @@ def _ticking(sequence, size):
 
 def items(vector):
     """What a loop over the elements of ``vector`` goes through, in parts. The loop does not change the vector."""
-    return _parts(vector, len(vector)) if vector.__class__ is list else (_items(vector),)
+    if vector.__class__ is list:
+        return _parts(vector, len(vector))
+    if vector.__class__ in TEXTS:
+        return _parts(characters(vector), len(vector))
+    if vector.__class__ is Vector:
+        return _parts(vector.active(), len(vector))
+    return (_items(vector),)
 
 
 def _items(vector):
@@ -319,6 +327,8 @@ NAMESPACE = {
     "Lratio": Fraction,
     "Lcomplex": complex_,
     "Lgethash": value_in_table,
+    "Lgethash_values": value_and_presence,
+    "Ldivmod": divmod,
     "Llen": len,
     "Lcharacter": Character,
     "Larray": SimpleArray,
