@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 M = TypeVar("M", bound="RosMessage")
 T = TypeVar("T")
 
-text_of = json.JSONEncoder(separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode
+text_of: Callable[[object], str] = json.JSONEncoder(separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode
 """The text of plain data, without spaces. A number that is not finite is a ValueError."""
 
 
@@ -71,12 +71,13 @@ class MessageJsonError(ValueError):
 
 def to_json(message: RosMessage) -> dict[str, Any]:
     """``message`` as plain data for ``json.dumps``: a dict by field name. A value without JSON raises `MessageJsonError`."""
-    encode = _as_data.encoders.get(message.__class__) or _encoder(message.__class__, _as_data)
+    encode: Callable[[RosMessage], dict[str, Any]] = _as_data.encoders.get(message.__class__) or _encoder(message.__class__, _as_data)
     try:
         return encode(message)
     except (TypeError, ValueError, AttributeError, OverflowError):  # infinities as symbols, and what nobody has checked yet
         try:
-            return _encode_with_care(message)
+            found: dict[str, Any] = _encode_with_care(message)
+            return found
         except MessageJsonError as problem:
             raise problem.of(message.ros_type)
 
@@ -84,7 +85,7 @@ def to_json(message: RosMessage) -> dict[str, Any]:
 def to_json_text(message: RosMessage) -> str:
     """The text of ``message``: what `text_of` makes of `to_json`, but faster. A value without JSON raises `MessageJsonError`."""
     try:
-        encode = _as_text.encoders.get(message.__class__) or _encoder(message.__class__, _as_text)
+        encode: Callable[[RosMessage], str] = _as_text.encoders.get(message.__class__) or _encoder(message.__class__, _as_text)
         return encode(message)
     except (TypeError, ValueError, AttributeError, OverflowError):
         return text_of(to_json(message))
