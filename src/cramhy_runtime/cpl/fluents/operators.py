@@ -83,26 +83,20 @@ def _quick_formula(function, quick, first, second):
 
 def _lifted(name, operator, quick=None):
     """The fluent-aware form of the Common Lisp function ``name``; ``quick``, of Python, does the commonest case, two ordinary numbers."""
-    symbol = sym(name)
-    if quick is None:
+    symbol, is_test = sym(name), quick in _TESTS
 
-        def compute(*arguments):
-            return symbol.function(*arguments)
-    else:
-        is_test = quick in _TESTS
-
-        def compute(*arguments):
-            if len(arguments) == 2:
-                first, second = arguments
-                if first.__class__ in _QUICK and second.__class__ in _QUICK:
-                    return quick(first, second) or None if is_test else quick(first, second)
-            return symbol.function(*arguments)
+    def compute(*arguments):
+        return symbol.function(*arguments)
 
     def lifted(*arguments):
+        if quick is not None and len(arguments) == 2:
+            first, second = arguments
+            if first.__class__ in _QUICK and second.__class__ in _QUICK:
+                return quick(first, second) or None if is_test else quick(first, second)
         for argument in arguments:
             if isinstance(argument, Fluent):
                 return net(operator, _formula(compute, arguments, quick), arguments)
-        return compute(*arguments)
+        return symbol.function(*arguments)
 
     lifted.__name__ = operator.lower()
     lifted.__doc__ = f"``cl:{name.lower()}`` that makes a net when an argument is a fluent."
