@@ -20,7 +20,8 @@ from cramhy_runtime.ground.data import Cons, lisp_list, list_from, one, truth
 from cramhy_runtime.ground.equality import eq, eql
 from cramhy_runtime.ground.functions import identity
 from cramhy_runtime.ground.packages import keyword
-from .fluents import CachedNet, Fluent, Net, announce, check_fluent, function_of, is_cacheable, make_fluent, value
+from .fluents import Fluent, announce, check_fluent, function_of, make_fluent, value
+from .nets import CachedNet, Net, is_cacheable
 from .pulse_fluents import ALWAYS, NEVER, ONCE, ChangeFluent, PulseFluent
 from ..symbols import sym
 
