@@ -78,6 +78,7 @@ class Fluent(Notation[T_co]):
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
+        cls._fluent_value = _slots_read_by.get(cls.read, Fluent._fluent_value)  # type: ignore[method-assign]  # a slot is a property, too
         for watcher in _class_watchers:
             watcher(cls)
 
@@ -104,6 +105,11 @@ class Fluent(Notation[T_co]):
     peek = read
     if not TYPE_CHECKING:
         value = property(lambda self: self.read(), doc="The current value; reading may consume a pulse.")
+
+    @property
+    def _fluent_value(self) -> T_co:
+        """What `read` returns. Where `read` only returns a slot, this is that slot: to read it takes no call."""
+        return self.read()
 
     def pulse(self) -> None:
         """Tell the observers, without changing the value. Tasks go on waiting if the value is nil."""
@@ -175,6 +181,15 @@ class Fluent(Notation[T_co]):
         return f"#<FLUENT {getattr(self.name, 'name', self.name)}>"
 
 
+_slots_read_by: dict[Callable[..., Any], Any] = {}
+"""A method `read` → the slot that it returns."""
+
+
+def reads_slot(cls: Any, slot: Any) -> None:
+    """Note that ``cls.read`` returns ``slot`` and does nothing else."""
+    _slots_read_by[cls.read] = cls._fluent_value = slot
+
+
 @circumstance(lambda here: f"in the callback {princ_to_string(here['name'])} of {_shown(here['fluent'])}")
 def _call_back(function, value, name, fluent):
     function(value)
@@ -228,7 +243,11 @@ class ValueFluent(Fluent[T]):
             old = self.stored
             if old is new:
                 return new
-            if (old.__class__ is new.__class__ or old is False or new is False) and eql(old, new):  # of two classes only False is nil
+            kind = type(new)
+            if kind is type(old):
+                if old == new if kind is int else eql(old, new):
+                    return new
+            elif (old is False or new is False) and eql(old, new):  # of two classes only False is nil
                 return new
         elif self._same(new):
             return new
@@ -261,6 +280,9 @@ class ValueFluent(Fluent[T]):
         return f"#<FLUENT {getattr(self.name, 'name', self.name)} [{self.stored!r}]>"
 
 
+reads_slot(ValueFluent, ValueFluent.stored)
+
+
 class FunctionNamed:
     """Calls the function that a symbol has at the time of the call."""
 
@@ -284,10 +306,12 @@ def value(fluent: Fluent[A]) -> A: ...
 def value(fluent: A) -> A: ...
 def value(fluent: Any) -> Any:
     """``(value x)``: the value of a fluent. Any other object is its own value. Reading may consume a pulse. Source: cpl.md 2.3."""
-    kind = fluent.__class__
-    if kind is ValueFluent:  # the commonest by far
-        return fluent.read()
-    return fluent.read() if isinstance(fluent, Fluent) else fluent
+    try:
+        return fluent._fluent_value
+    except AttributeError:
+        if isinstance(fluent, Fluent):
+            raise
+        return fluent
 
 
 @overload

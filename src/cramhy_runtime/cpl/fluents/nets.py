@@ -13,7 +13,7 @@ from cramhy_runtime import kernel
 from cramhy_runtime.ground.equality import eql
 from cramhy_runtime.ground.printing import princ_to_string
 from cramhy_runtime.ground.source_places import circumstance
-from .fluents import Fluent, ValueFluent
+from .fluents import Fluent, ValueFluent, reads_slot
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -99,7 +99,13 @@ class CachedNet(Net[T_co]):
         else:
             new = self.formula()
         old = self.cached
-        if old is new or eql(old, new):
+        if old is new:
+            return
+        kind = type(new)
+        if kind is type(old):
+            if old == new if kind is int else eql(old, new):
+                return
+        elif (old is False or new is False) and eql(old, new):  # of two classes only False is nil
             return
         self.cached = new
         self.pulses += 1
@@ -116,6 +122,8 @@ class CachedNet(Net[T_co]):
             if self.turn == turn:
                 return new
 
+
+reads_slot(CachedNet, CachedNet.cached)
 
 peekers: set[kernel.Task[object]] = set()
 """The tasks of the kernel that are reading without side effects."""

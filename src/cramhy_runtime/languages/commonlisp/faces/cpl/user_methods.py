@@ -126,6 +126,7 @@ def _prepare(cls):
             cls,
             read=_read_through,
             peek=_peek_through,
+            _fluent_value=property(_read_through),
             foreign=True,
             value=property(_read_through, lambda fluent, new: fluent.set(new)) if issubclass(cls, ValueFluent) else Fluent.value,
         )
