@@ -14,10 +14,9 @@ def main():
     from rows import rows
 
     from cramhy_runtime.languages.commonlisp.streams import streams
-    from cramhy_runtime.repl.session import Session, quiet_collector
+    from cramhy_runtime.repl.session import Session
 
     session = Session(time="virtual", backend=sys.argv[1], seed=1)
-    quiet_collector()  # as a session at the prompt does
     streams.STANDARD_OUTPUT.value = streams.ERROR_OUTPUT.value = streams.BroadcastStream()
     known, prepared = {row.name: row for row in rows()}, {}
     print("ready", flush=True)
