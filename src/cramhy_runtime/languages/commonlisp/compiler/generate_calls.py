@@ -7,6 +7,8 @@ are taken apart where they are made, if that can be seen.
 
 from __future__ import annotations
 
+from types import FunctionType
+
 from cramhy_runtime.ground.data import Character, Keyword, Symbol
 from cramhy_runtime.ground.keyword_calls import keyword_calls, name_of_key, takes_keywords
 from cramhy_runtime.ground.packages import sym
@@ -181,8 +183,10 @@ class CallGenerator:
 
 def _keys_begin(function, arguments):
     """The number of arguments of a call of ``function`` before those with keywords; ``None`` if there are none, or odd ones."""
-    code = getattr(function, "__code__", None)
-    if code is None or not code.co_kwonlyargcount or len(arguments) < 2:
+    if function.__class__ is not FunctionType or len(arguments) < 2:
+        return None
+    code = function.__code__
+    if not code.co_kwonlyargcount and "python_keys" not in function.__dict__:
         return None
     count = code.co_argcount
     keys = arguments[count::2]

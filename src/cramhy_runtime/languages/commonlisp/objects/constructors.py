@@ -6,6 +6,8 @@ is an assignment (`utilities.generated_functions`).
 
 from __future__ import annotations
 
+from functools import cache
+
 from cramhy_runtime.ground.condition_types import Condition
 from cramhy_runtime.ground.data import UNSUPPLIED, Character, DoubleFloat, Keyword, one
 from cramhy_runtime.ground.dispatch.keyword_checks import ALLOW_OTHER_KEYS
@@ -19,13 +21,19 @@ _CONSTANTS = frozenset({int, float, DoubleFloat, bool, type(None), str, Keyword,
 
 def keyword_constructor(structure):
     """The constructor of a `Structure` with a keyword for each slot, for Lisp and for Python."""
+
+    def construct(*initargs, **keywords):
+        return structure.construct(*initargs, **keywords)
+
     names = [name_of_key(slot.keyword) for slot in structure.slots]
-    if structure.cls is None or None in names or len({*names}) < len(names):
+    if structure.cls is not None and None not in names and len({*names}) == len(names):
+        construct.python_keys = frozenset(names)
+        construct.written = cache(lambda: _written_constructor(structure, names))
+    return construct
 
-        def construct(*initargs, **keywords):
-            return structure.construct(*initargs, **keywords)
 
-        return construct
+def _written_constructor(structure, names):
+    """The same as a function that has the slots' ``names`` as keywords; written only if somebody calls it with them."""
     scope = {"Lnew": object.__new__, "Lclass": structure.cls, "Lone": one, "Lunsupplied": UNSUPPLIED}
     scope |= {"Lconstruct": structure.construct, "Lwrong_type": structure.wrong_type}  # names that no slot has
     parameters, sorting, filling = [f"*{GIVEN}"], [], []
