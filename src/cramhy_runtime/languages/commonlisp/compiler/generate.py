@@ -259,7 +259,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
             model = self.open_call(node, symbol, arguments, destination)
             if model is not None:
                 return self.finish(model, nodes.Constant(None), destination)
-        if symbol is FORMAT and destination.kind != "effect":
+        if symbol is FORMAT:
             model = self.text(node, arguments)
             if model is not None:
                 return self.finish(model, node, destination)

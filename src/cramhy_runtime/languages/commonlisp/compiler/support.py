@@ -55,7 +55,8 @@ from cramhy_runtime.ground.hash_tables import value_and_presence, value_in_table
 from cramhy_runtime.ground.keyword_calls import keyword_calls
 from cramhy_runtime.ground.dynamic import Bindings, bind, unbind
 from cramhy_runtime.ground.functions import function_of
-from ..format.format_templates import decimal, prin1_atom, princ_atom
+from ..format.format import write_text
+from ..format.format_templates import decimal, piece_of, prin1_atom, princ_atom
 from ..numbers import arithmetic
 from ..numbers.irrational import complex_
 from ..objects.makers import maker
@@ -309,6 +310,8 @@ NAMESPACE = {
     "Lnew_object": object.__new__,
     "Lstr": str,
     "Lfresh": FreshString,
+    "Lwrite_text": write_text,
+    "Lpiece": piece_of,
     "LtextA": princ_atom,
     "LtextS": prin1_atom,
     "LtextD": decimal,
