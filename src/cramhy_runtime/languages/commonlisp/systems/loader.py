@@ -13,7 +13,6 @@ cramhy itself and Python; and only if this user or root has written it and its c
 
 from __future__ import annotations
 
-import errno
 import importlib.util
 import linecache
 import marshal
@@ -24,10 +23,10 @@ import runpy
 import sys
 from pathlib import Path
 from types import CodeType
-from typing import NamedTuple
 
-from cramhy_runtime import storage
-from cramhy_runtime.storage.checksummed_code import Unusable, distrust_of_folder, sealed, unsealed
+from cramhy_runtime.kernel.typing_names import NamedTuple
+from cramhy_runtime.storage.checksummed_code import Unusable, sealed, unsealed
+from cramhy_runtime.storage.kept_files import keep, kept_path
 from cramhy_runtime.ground.function_codes import note_code
 from cramhy_runtime.ground.conditions import CompileError, Condition, FileError, error
 from cramhy_runtime.ground.data import Cons, all_values
@@ -76,20 +75,6 @@ def stamp():
                 status = entry.stat()
                 digest.update(f"{entry.name}{status.st_mtime_ns}{status.st_size}".encode(errors="surrogatepass"))
     return digest.hexdigest()
-
-
-def kept_path(path):
-    """Where the compiled form of ``path`` is kept: beside it if that is possible and safe. `OSError` if there is no place at all."""
-    folder = path.parent / "__pycache__"
-    name = f"{path.name}.{sys.implementation.cache_tag}.cramhy"
-    there = os.path.lexists(folder)
-    if os.access(folder if there else path.parent, os.W_OK) and not (there and distrust_of_folder(folder)):
-        return folder / name
-    base = os.environ.get("XDG_CACHE_HOME", "")
-    base = base if os.path.isabs(base) else os.path.expanduser("~/.cache")
-    if not os.path.isabs(base):
-        raise FileNotFoundError(errno.ENOENT, "This user has no folder", base)
-    return Path(base, "cramhy") / f"{_sha256(str(path)).hexdigest()[:16]}-{name}"
 
 
 def decoded(path, encoding=None):
@@ -345,19 +330,7 @@ def why_not_kept(path):
 
 
 def _keep(path, fingerprint, forms):
-    if sys.dont_write_bytecode:
-        return
-    try:
-        target = kept_path(path)
-        if not target.parent.is_dir():
-            os.makedirs(target.parent.parent, mode=0o755, exist_ok=True)
-            os.mkdir(target.parent, 0o755)  # others must not be able to write there, whatever the umask is
-        if distrust_of_folder(target.parent):
-            return
-        # without waiting for the disk: the checksum shows what a breakdown left
-        storage.write_whole(target, sealed(FIRST_LINE, fingerprint, marshal.dumps(forms)), mode=0o644, durable=False, follow=False)
-    except OSError:
-        pass  # a folder that cannot be written only means compiling again next time
+    keep(path, lambda: sealed(FIRST_LINE, fingerprint, marshal.dumps(forms)))
 
 
 def folder_of_load():
