@@ -11,16 +11,16 @@ import sys
 from pathlib import Path
 
 from .atomic_write import write_whole
-from .checksummed_code import distrust_of_folder
+from .checksummed_code import Unusable, distrust_of_folder
 
 
 def kept_path(path):
     """Where the compiled form of ``path`` is kept: beside it if that is possible and safe. `OSError` if there is no place at all."""
-    folder = path.parent / "__pycache__"
-    name = f"{path.name}.{sys.implementation.cache_tag}.cramhy"
+    beside = _beside(path)
+    folder = beside.parent
     there = os.path.lexists(folder)
     if os.access(folder if there else path.parent, os.W_OK) and not (there and distrust_of_folder(folder)):
-        return folder / name
+        return beside
     base = os.environ.get("XDG_CACHE_HOME", "")
     base = base if os.path.isabs(base) else os.path.expanduser("~/.cache")
     if not os.path.isabs(base):
@@ -28,7 +28,30 @@ def kept_path(path):
     import hashlib  # a prompt that loads nothing does without it, and is there 2 ms sooner
 
     digest = hashlib.sha256(str(path).encode(errors="surrogatepass")).hexdigest()
-    return Path(base, "cramhy") / f"{digest[:16]}-{name}"
+    return Path(base, "cramhy") / f"{digest[:16]}-{beside.name}"
+
+
+def _beside(path):
+    return path.parent / "__pycache__" / f"{path.name}.{sys.implementation.cache_tag}.cramhy"
+
+
+def kept_bytes(path, read):
+    """What ``read(place)`` returns of the compiled form of ``path``. Errors: those of ``read``.
+
+    The user's cache comes first. Where that has nothing that can be used, there may be something beside a source that this user cannot
+    write beside: the wheel brings it along.
+    """
+    place, beside = kept_path(path), _beside(path)
+    try:
+        return read(place)
+    except (Unusable, OSError):
+        if place == beside:
+            raise
+        try:
+            return read(beside)
+        except (Unusable, OSError):
+            pass
+        raise
 
 
 def keep(path, make):
