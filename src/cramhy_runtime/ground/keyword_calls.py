@@ -64,7 +64,9 @@ GIVEN = "Lgiven"
 
 
 def name_of_key(key):
-    """The Python name of the keyword object ``key``; ``None`` if the way back does not lead to it."""
+    """The Python name of the keyword ``key``; ``None`` if the way back does not lead to it, as from other symbols."""
+    if key.__class__ is not Keyword:
+        return None
     name = python_name(key.name)
     return name if name.isidentifier() and not name.startswith("_") and keyword(name.upper().replace("_", "-")) is key else None
 
