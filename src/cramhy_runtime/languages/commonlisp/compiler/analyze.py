@@ -17,8 +17,9 @@ from cramhy_runtime.ground.dispatch.methods import Shape
 from cramhy_runtime.ground.packages import is_symbol, sym
 from ..reader.form_places import FormPlaces
 from . import nodes
-from .declared_types import declared_types, kind_of_type
+from .declared_types import declared_types
 from .environment import Env, FunctionScope, LocalFunction, SpecialVariable, SymbolMacro, Variable, function_key
+from .kinds import kind_of_type
 from .net_tests import WAITING, look_at_wait
 from .nodes import (
     Call,

@@ -254,6 +254,16 @@ def value_list(value):
     return list_from(all_values(value))
 
 
+def wrapped(value):
+    """What a raw value is for Lisp: a float is a double, anything else is itself (see ``kinds.py``)."""
+    return DoubleFloat(value) if value.__class__ is float else value
+
+
+def unwrapped(value):
+    """The raw value that stands for ``value``, which is no single-float."""
+    return float(value) if value.__class__ is DoubleFloat else value
+
+
 def not_(value):
     return None if truth(value) else True
 
@@ -316,6 +326,8 @@ NAMESPACE = {
     "Llist": lisp_list,
     "Ldotted": dotted,
     "Ldouble": DoubleFloat,
+    "Lwrapped": wrapped,
+    "Lunwrapped": unwrapped,
     "Lratio": Fraction,
     "Lcomplex": complex_,
     "Lgethash": value_in_table,
