@@ -17,8 +17,10 @@ from cramhy_runtime.repl.session import Session
 
 NUMBERS = "0 1 2 3 -1 7 0.5 -1.5 2.0 0.0 1/2 -2/3 0d0 1d0 -2.5d0 3.25d0 1d-3".split()
 RARE = ["#c(1 2)", "#c(0d0 1d0)", "1d200", "-1d160", "(expt 10 400)"]
-BINARY = "+ - * / max min atan".split()
-UNARY = "- + abs 1+ 1- sqrt sin cos exp floor truncate float".split()
+BINARY = "+ - * / max min atan mod rem floor".split()
+UNARY = "- + abs 1+ 1- sqrt sin cos tan exp log asin acos atan floor truncate ceiling round float length".split()
+VECTORS = "v w z nil".split()
+ELEMENTS = ["aref", "aref", "svref", "elt"]
 TESTS = "< > <= >= = zerop plusp minusp".split()
 VARIABLES = "abcd"
 
@@ -28,11 +30,18 @@ def expressions(draw, names, depth):
     def part(deeper=1):
         return draw(expressions(names, depth - deeper))
 
+    def index():
+        return draw(st.sampled_from([*"0112nab", part(2)]))
+
     if depth <= 0:
         if draw(st.integers(0, 2)):
             return draw(st.sampled_from(names))
         return draw(st.sampled_from(NUMBERS * 6 + RARE))
-    kind = draw(st.sampled_from("binary binary binary more unary number if let setq noted block values catch closure checked".split()))
+    kind = draw(
+        st.sampled_from(
+            "binary binary binary more unary number if let setq noted block values catch closure checked element element matrix coerced".split()
+        )
+    )
     match kind:
         case "binary":
             return (draw(st.sampled_from(BINARY)), part(), part())
@@ -66,6 +75,12 @@ def expressions(draw, names, depth):
             )
         case "closure":
             return ("funcall", ("lambda", (), part()))
+        case "element":
+            return (draw(st.sampled_from(ELEMENTS)), draw(st.sampled_from(VECTORS)), index())
+        case "matrix":
+            return ("aref", "m", index(), index())
+        case "coerced":
+            return ("coerce", part(), draw(st.sampled_from(["'double-float", "'single-float", "'float"])))
         case "checked":
             return ("the", draw(st.sampled_from("number real float double-float integer".split())), part())
 
@@ -79,13 +94,17 @@ def comparisons(draw, names, depth):
 
 @st.composite
 def statements(draw, names, depth):
-    kind = draw(st.sampled_from("setq setq setq incf loop when noted".split()))
+    kind = draw(st.sampled_from("setq setq setq incf loop when noted store store".split()))
     name = draw(st.sampled_from(VARIABLES))
     match kind:
         case "setq":
             return ("setq", name, draw(expressions(names, 2)))
         case "incf":
             return ("incf", name, draw(expressions(names, 1)))
+        case "store":
+            index, column = (draw(st.sampled_from([*"012n", draw(expressions(names, 0))])) for _ in range(2))
+            array = draw(st.sampled_from([("m", index, column), *((each, index) for each in VECTORS)]))
+            return ("setf", ("aref", *array), draw(expressions(names, 2)))
         case "loop" if depth:
             counter = draw(st.sampled_from("ij"))
             inner = (*names, counter)
@@ -101,9 +120,9 @@ def programs(draw):
     """A function of ``n`` and ``u`` with four variables; what one begins with is declared, as often as not."""
     first = [draw(st.sampled_from(NUMBERS)) for _ in VARIABLES]
     names = (*VARIABLES, "n", "u")
-    body = [draw(statements(names, 2)) for _ in range(draw(st.integers(1, 4)))]
+    body = [("guarded", draw(statements(names, 2))) for _ in range(draw(st.integers(1, 5)))]
     bindings = tuple(zip(VARIABLES, first))
-    return ("let", bindings, *body, ("list", *VARIABLES, draw(expressions(names, 2))))
+    return ("let", bindings, *body, ("list", *VARIABLES, "v", "w", "z", "m", ("guarded", draw(expressions(names, 2)))))
 
 
 def text(form, unknown):
@@ -126,15 +145,21 @@ def text(form, unknown):
     if unknown and head == "incf":
         name, amount = rest
         return f"(let ((amount {text(amount, unknown)})) (setq {name} (call '+ {name} amount)))"
+    if unknown and head == "setf":
+        (_, *place), new = rest
+        parts = [text(each, unknown) for each in (*place, new)]
+        bindings = " ".join(f"(s{index} {part})" for index, part in enumerate(parts))
+        return f"(let* ({bindings}) (funcall #'(setf aref) s{len(parts) - 1} {' '.join(f's{index}' for index in range(len(parts) - 1))}))"
     if unknown and head == "the":
         return f"(checked '{rest[0]} {text(rest[1], unknown)})"
-    if unknown and head in (*BINARY, *UNARY, *TESTS):
+    if unknown and head in (*BINARY, *UNARY, *TESTS, *ELEMENTS, "coerce"):
         return f"(call '{head} {arguments})"
     return f"({head} {arguments})"
 
 
 SETUP = """
 (defvar *noted* nil)
+(defmacro guarded (form) `(handler-case ,form (error (c) (noted (type-of c)))))
 (defun noted (x) (push x *noted*) x)
 (defun call (f &rest arguments) (apply f (mapcar #'identity arguments)))
 (defun checked (type x) (if (or (typep x type) (and (eq type 'double-float) (floatp x))) x (error 'type-error :datum x :expected-type type)))
@@ -152,7 +177,9 @@ def session():
 def answer(program, arguments, unknown):
     *_, found = session().evaluate_text(
         f"""(setq *noted* nil)
-        (let ((f (lambda (n u) n u {text(program, unknown)})))
+        (let ((f (let ((v (vector 1 2.5 3d0 1/2)) (w (make-array 3 :element-type 'double-float :initial-element 2d0))
+                       (z (make-array 4 :fill-pointer 2 :initial-element 1.5)) (m (make-array '(2 3) :initial-element 2)))
+                   (lambda (n u) n u {text(program, unknown)}))))
           (list (handler-case (funcall f {arguments}) (error (c) (list :error (type-of c)))) (reverse *noted*)))"""
     )
     return prin1_to_string(found)

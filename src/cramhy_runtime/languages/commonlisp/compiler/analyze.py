@@ -395,7 +395,8 @@ note_traits(
     "mapcan member assoc find position count remove delete sort concatenate format princ prin1 print terpri write-string "
     "gensym error make-hash-table vector copy-list cadr cddr caar cdar caddr string-upcase string-downcase coerce reduce "
     "cramhy::car-of-cons cramhy::cdr-of-cons cramhy::collect cramhy::loop-vector "
-    "rplaca rplacd list-length subseq type-of class-of identity random sqrt sin cos atan expt",
+    "rplaca rplacd list-length subseq type-of class-of identity random sqrt sin cos atan expt exp log tan asin acos "
+    "float gcd lcm isqrt logand logior logxor ash array-dimension",
     "single",
 )
 

@@ -18,9 +18,10 @@ from .destinations import EFFECT, FIRST_OF_VALUES, NONE, RAW, TRUE, VALUE, VALUE
 from .facts import study, walk
 from .generate_exits import ExitGenerator
 from .generate_functions import FunctionGenerator
+from .generate_numbers import NUMBER_FUNCTIONS
 from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS, OperatorGenerator
 from .generate_texts import TextGenerator
-from .kinds import BOOLEAN, MINUS, OPERATORS, PI, PLUS, STEPS, THING, kind_of
+from .kinds import BOOLEAN, MINUS, OPERATORS, PI, PLUS, STEPS, THING, WHOLE, kind_of
 
 
 COLLECT, CONS, FORMAT, GETHASH = map(sym, "CRAMHY::COLLECT CONS FORMAT GETHASH".split())
@@ -28,6 +29,10 @@ KNOWN_SETTERS = {sym(name) for name in "GETHASH AREF SVREF ELT NTH GET CHAR".spl
 """Functions of Common Lisp whose ``setf`` is a function, which nobody may redefine or give methods."""
 DISPATCHERS = {"UnaryGeneric": 1, "FirstOfTwo": 2}
 """Kinds of generic functions that look only at the class of the first of so many arguments; the caller's code may ask them for it."""
+
+
+SINGLE_VALUE = nodes.Constant(None)
+"""Stands for a node that gives one value."""
 
 
 class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerator):
@@ -258,6 +263,10 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerat
                 model, raw = self.arithmetic(node, symbol, arguments)
                 return self.finish(model, node, destination, raw=raw)
             return self.finish(self.truth_value(self.comparison(node, symbol, arguments)), node, destination)
+        if standard and symbol in NUMBER_FUNCTIONS:
+            found = self.number_function(node, symbol, arguments, destination.multiple and destination is not FIRST_OF_VALUES)
+            if found is not None:
+                return self.finish(found[0], SINGLE_VALUE if symbol in WHOLE else node, destination, raw=found[1])
         if symbol in NEGATIONS and len(arguments) == 1:
             return self.finish(self.truth_value(expression(word("not"), self.test(arguments[0]))), node, destination)
         if standard or symbol in KNOWN_PARTS:
@@ -346,6 +355,9 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerat
         return self.finish(self.positioned(expression(function, *arguments), node), node, destination)
 
     def CallSetf(self, node, destination):
+        stored = self.store(node)
+        if stored is not None:
+            return self.finish(stored, SINGLE_VALUE, destination, pure=True)
         arguments = self.arguments(node.arguments)
         attribute = getattr(getattr(node.symbol, "setf_function", None), "attribute", None)
         if attribute is not None and destination.kind == "effect" and len(arguments) == 2 and node.symbol.writes is not None:

@@ -10,23 +10,10 @@ from cramhy_runtime.ground.packages import sym
 from . import nodes
 from .core import NONE, Expression, Symbol, expression, word
 from .declared_types import FIXNUM, GREATEST_FIXNUM, LEAST_FIXNUM, is_fixnum
-from .generate_arithmetic import (
-    AND,
-    ARITHMETIC,
-    COMPARISONS,
-    DOT,
-    DOUBLE_CLASS,
-    FLOAT_CLASS,
-    IF,
-    INT_CLASS,
-    IS,
-    IS_NOT,
-    OR,
-    SETX,
-    ArithmeticGenerator,
-    class_of,
-)
-from .kinds import DOUBLE_TYPES, INT, MACHINE, MOD, exactly, kind_of, kind_of_type
+from .generate_arithmetic import AND, ARITHMETIC, COMPARISONS, DOT, DOUBLE_CLASS, FLOAT_CLASS, IF, INT_CLASS, IS, IS_NOT, OR, SETX, class_of
+from .generate_arrays import ELEMENTS, LENGTH, ArrayGenerator
+from .generate_numbers import NumberGenerator
+from .kinds import DOUBLE_TYPES, INT, MACHINE, exactly, kind_of, kind_of_type
 
 SIGNS = {sym("ZEROP"): COMPARISONS[sym("=")], sym("PLUSP"): COMPARISONS[sym(">")], sym("MINUSP"): COMPARISONS[sym("<")]}
 PARITY = {sym("EVENP"): 0, sym("ODDP"): 1}
@@ -49,7 +36,7 @@ PROVING_CLASSES = {
 """Types that a comparison of classes proves, for a fixnum also one of size. A variable of doubles may be given a single."""
 
 
-class OperatorGenerator(ArithmeticGenerator):
+class OperatorGenerator(ArrayGenerator, NumberGenerator):
     """The part of the `Generator` that makes expressions of calls of standard functions."""
 
     def Checked(self, node, destination):
@@ -162,16 +149,8 @@ class OperatorGenerator(ArithmeticGenerator):
             for item in reversed(self.arguments(arguments)):
                 model = expression(word("LCons"), item, model)
             return model
-        if symbol is MOD and count == 2 and arguments[1].__class__ is nodes.Constant:
-            divisor = arguments[1].value
-            if divisor.__class__ is int and divisor and kind_of(arguments[0]) & INT:
-                (operand,) = self.operands(arguments[:1])
-                if operand.kind == INT:
-                    return expression(word("%"), operand.first, divisor)
-                function = word(self.constants.name("function", symbol))
-                slow = expression(function, self.call("one", self.generic(operand)), divisor)
-                quick = expression(word("%"), operand.later, divisor)
-                return expression(IF, expression(IS, self.class_of(operand.first), INT_CLASS), quick, self.positioned(slow, node))
+        if symbol in ELEMENTS or symbol is LENGTH:
+            return self.element(node, symbol, arguments)
         return None
 
 

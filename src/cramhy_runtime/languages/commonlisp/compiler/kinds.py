@@ -31,7 +31,7 @@ PLUS, MINUS, TIMES, DIVIDE, ADD_ONE, SUBTRACT_ONE = map(sym, "+ - * / 1+ 1-".spl
 SUMS = {PLUS, MINUS, ADD_ONE, SUBTRACT_ONE}
 STEPS = {ADD_ONE: PLUS, SUBTRACT_ONE: MINUS}
 OPERATORS = {PLUS, MINUS, TIMES, DIVIDE}
-MOD, REM, MAX, MIN, ABS, SQRT, EXPT, FLOAT, COERCE = map(sym, "MOD REM MAX MIN ABS SQRT EXPT FLOAT COERCE".split())
+MOD, REM, MAX, MIN, ABS, SQRT, LOG, ASIN, ACOS, FLOAT, COERCE = map(sym, "MOD REM MAX MIN ABS SQRT LOG ASIN ACOS FLOAT COERCE".split())
 WHOLE = {sym(name) for name in "FLOOR CEILING TRUNCATE ROUND".split()}
 SMOOTH = {sym(name) for name in "SIN COS TAN ATAN EXP SINH COSH TANH ASINH".split()}
 """Functions that give a real float for every real number."""
@@ -213,10 +213,10 @@ def _smooth(symbol, arguments):
     kind = kind_of(arguments[0])
     for argument in arguments[1:]:
         kind |= kind_of(argument)
-    return _floated(kind, len(arguments) == 2)
+    return _floated(kind)
 
 
-def _floated(kind, doubles_win):
+def _floated(kind):
     if not kind:
         return kind
     found = 0
@@ -231,12 +231,12 @@ def _floated(kind, doubles_win):
     return found
 
 
-def _sqrt(symbol, arguments):
+def _root(symbol, arguments):
     if len(arguments) != 1:
         return ANY
     kind = kind_of(arguments[0])
-    found = _floated(kind, False)
-    if not kind or never_negative(arguments[0]):
+    found = _floated(kind)
+    if not kind or symbol is SQRT and never_negative(arguments[0]):
         return found
     if found & SINGLE:
         found |= OTHER
@@ -281,7 +281,7 @@ CALLS = {
     **dict.fromkeys(INTEGERS, _integer),
     **dict.fromkeys(WHOLE, _whole),
     **dict.fromkeys(SMOOTH, _smooth),
-    SQRT: _sqrt,
+    **dict.fromkeys((SQRT, LOG, ASIN, ACOS), _root),
     ABS: _abs,
     FLOAT: _float,
     COERCE: _coerce,

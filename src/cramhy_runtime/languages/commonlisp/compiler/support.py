@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from ..collections.sequences import length
 from ..collections.arrays import aref
+import math
 from fractions import Fraction
 from itertools import zip_longest
 from operator import itemgetter
@@ -326,6 +327,12 @@ NAMESPACE = {
     "Llist": lisp_list,
     "Ldotted": dotted,
     "Ldouble": DoubleFloat,
+    "Labs": abs,
+    "Latan2": math.atan2,
+    "Lceil": math.ceil,
+    "Lfloor": math.floor,
+    "Lvector": list,
+    **{f"L{name}": getattr(math, name) for name in "sin cos tan atan exp sqrt log asin acos".split()},
     "Lwrapped": wrapped,
     "Lunwrapped": unwrapped,
     "Lratio": Fraction,
