@@ -16,7 +16,7 @@ from ..objects.makers import maker
 from . import core, nodes
 from .core import NONE, List, Tuple, expression, word
 from .destinations import EFFECT, VALUES as ALL_VALUES
-from .generate_operators import AND, CLASS, DOT, IF, INT, IS, SETX, class_of
+from .generate_arithmetic import AND, DOT, IF, INT_CLASS, IS, SETX, class_of
 
 APPLY, FIND, FLOOR, GETHASH, LIST, VALUES = map(sym, "APPLY FIND FLOOR GETHASH LIST VALUES".split())
 MAKE_INSTANCE, SAME_CHARACTER = sym("MAKE-INSTANCE"), sym("CHAR=")
@@ -67,15 +67,12 @@ class CallGenerator:
             return first
         if symbol is MAKE_INSTANCE:
             return self.instance_made(node, arguments)
-        if symbol is FLOOR and count == 2 and _is_number(arguments[1]):
+        if symbol is FLOOR and count == 2 and destination.multiple and _is_number(arguments[1]):
             divisor = arguments[1].value
             number, name = self.named(arguments[0])
             slow = self.positioned(expression(self.known_function(symbol), name, divisor), node)
-            if destination.multiple:
-                quick = expression(word("LMultipleValues"), self.call("divmod", name, divisor))
-            else:
-                quick, slow = expression(word("//"), name, divisor), self.first_value(slow)
-            return expression(IF, expression(IS, class_of(number), INT), quick, slow)
+            quick = expression(word("LMultipleValues"), self.call("divmod", name, divisor))
+            return expression(IF, expression(IS, class_of(number), INT_CLASS), quick, slow)
         if symbol is LIST and count > 4:
             return self.call("list", *self.arguments(arguments))
         if symbol is SAME_CHARACTER and count == 2:
@@ -177,7 +174,7 @@ class CallGenerator:
                 divisor = arguments[1].value
                 number, name = self.named(arguments[0])
                 slow = self.call("spread", self.positioned(expression(self.known_function(symbol), name, divisor), node), 2)
-                return expression(IF, expression(IS, class_of(number), INT), self.call("divmod", name, divisor), slow)
+                return expression(IF, expression(IS, class_of(number), INT_CLASS), self.call("divmod", name, divisor), slow)
         return None
 
 
@@ -236,4 +233,4 @@ def sorted_arguments(function, models, arguments):
     return done
 
 
-__all__ = ["CLASS", "EFFECT", "VALUES", "CallGenerator"]
+__all__ = ["EFFECT", "VALUES", "CallGenerator"]

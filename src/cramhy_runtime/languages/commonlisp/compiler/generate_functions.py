@@ -13,7 +13,7 @@ from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.packages import symbol_name
 from . import nodes
 from .core import List, Tuple, expression, word
-from .generate_operators import class_of
+from .generate_arithmetic import class_of
 from .destinations import NONE, RETURN, TRUE, Destination
 
 DEBUGGED = special(Symbol("*DEBUGGED*"), False)
@@ -38,7 +38,7 @@ class FunctionGenerator:
         parameters = self.parameters(node)
         outer_classes, self.class_names = self.class_names, {}
         for variable in node.parameters.required:
-            if variable.operand_uses > 1 and not (variable.writes or variable.captured or variable.kind or variable.proven):
+            if variable.operand_uses > 1 and not (variable.writes or variable.captured or variable.proven):
                 noted = self.temporary("Lk")
                 self.assign(noted, class_of(word(variable.name)))
                 self.class_names[variable.name] = word(noted)

@@ -9,7 +9,7 @@ from ..printer.print_controls import PRINT_BASE, PRINT_CASE, UPCASE
 from ..printer.print_names import symbol_text
 from ..reader.readtables import READTABLE
 from .core import NONE, TRUE, expression, word
-from .facts import kind_of
+from .kinds import INT, kind_of
 
 
 class TextGenerator:
@@ -63,7 +63,7 @@ class TextGenerator:
     def small_integer(self, name, argument):
         """The test that the value of ``argument``, which ``name`` has, is an integer that Python prints at once."""
         small = expression(word("<"), -SMALL, name, SMALL)
-        if kind_of(argument) == "int":
+        if kind_of(argument) == INT:
             return small
         is_integer = expression(word("is"), expression(word("."), name, word("__class__")), word("Lint"))
         return expression(word("and"), is_integer, small)

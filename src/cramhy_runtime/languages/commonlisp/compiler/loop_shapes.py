@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from cramhy_runtime.ground.packages import sym
 from . import nodes
 from .facts import walk
+from .kinds import INT
 
 LENGTH, AREF = sym("LENGTH"), sym("AREF")
 LIMITS = {sym(">="): (1, False), sym(">"): (1, True), sym("<="): (-1, False), sym("<"): (-1, True)}
@@ -119,7 +120,7 @@ def counting(statements, tagbody, first, end, scope):
         return _across(variable, limit, step, inclusive, body, scope)
     if not _settled(limit):
         return None
-    if _reads(body, variable) and variable.kind != "int":
+    if _reads(body, variable) and variable.kind != INT:
         return None
     return Counting(variable, limit, step, inclusive, body)
 
@@ -187,3 +188,11 @@ def _quick(statements):
             if item.symbol not in QUICK_OF_TWO or len(item.arguments) != 2:
                 return False
     return True
+
+
+def quiet(node):
+    """Whether evaluating ``node`` surely changes no variable: a simple expression of quick functions."""
+    kind = node.__class__
+    if kind is nodes.Call:
+        return node.symbol in QUICK and all(map(quiet, node.arguments))
+    return kind is nodes.Constant or kind is nodes.LocalVariable or kind is nodes.GlobalVariable

@@ -9,6 +9,7 @@ from __future__ import annotations
 from ..collections.sequences import length
 from ..collections.arrays import aref
 from ..collections.sequence_types import characters
+import math
 from fractions import Fraction
 from itertools import zip_longest
 from operator import itemgetter
@@ -259,6 +260,16 @@ def value_list(value):
     return list_from(all_values(value))
 
 
+def wrapped(value):
+    """What a raw value is for Lisp: a float is a double, anything else is itself (see ``kinds.py``)."""
+    return DoubleFloat(value) if value.__class__ is float else value
+
+
+def unwrapped(value):
+    """The raw value that stands for ``value``, which is no single-float."""
+    return float(value) if value.__class__ is DoubleFloat else value
+
+
 def not_(value):
     return None if truth(value) else True
 
@@ -325,6 +336,14 @@ NAMESPACE = {
     "Llist": lisp_list,
     "Ldotted": dotted,
     "Ldouble": DoubleFloat,
+    "Labs": abs,
+    "Latan2": math.atan2,
+    "Lceil": math.ceil,
+    "Lfloor": math.floor,
+    "Lvector": list,
+    **{f"L{name}": getattr(math, name) for name in "sin cos tan atan exp sqrt log asin acos".split()},
+    "Lwrapped": wrapped,
+    "Lunwrapped": unwrapped,
     "Lratio": Fraction,
     "Lcomplex": complex_,
     "Lgethash": value_in_table,
