@@ -419,7 +419,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         if isinstance(node, nodes.Call) and self.standard(node.symbol):
             if node.symbol in COMPARISONS and len(node.arguments) == 2:
                 return self.comparison(node, node.symbol, node.arguments)
-            test = self.small_test(node, node.symbol, node.arguments)
+            test = self.small_test(node, node.symbol, node.arguments) or self.open_test(node, node.symbol, node.arguments)
             if test is not None:
                 return test
         if node.boolean:
