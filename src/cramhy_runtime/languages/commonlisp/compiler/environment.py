@@ -113,7 +113,7 @@ class SymbolMacro:
 class LocalFunction:
     """A function of ``flet`` or ``labels``: the value of a variable. ``shape``: the calls that it takes.
 
-    next: if it is ``call-next-method`` or ``next-method-p``, what it means (`next_methods`).
+    next: if it is ``call-next-method`` or ``next-method-p``, what it means (`open_coding.next_method`).
     """
 
     def __init__(self, variable, shape=None, next=None):
