@@ -177,9 +177,11 @@ class Kernel(Endings, Outside):
         me = self.current
         if me.attention and me.deliver():
             return True
-        if self._timers.entries or self._inbox or self._unclaimed:
+        entries, clock = self._timers.entries, self.clock
+        next_waits = len(self._queue) > self._streak and clock.virtual and not (entries and entries[0][0] <= clock.time)
+        if self._inbox or self._unclaimed or entries and not next_waits:
             need_headroom()
-        else:
+        else:  # no timer fires before the next task runs
             need_steps()
         if me.carrier.ident != get_ident():
             self._refuse("wait")
@@ -415,7 +417,7 @@ class Kernel(Endings, Outside):
         while True:
             if self._inbox:
                 self._read_inbox()
-            if entries and entries[0][0] <= clock.now():
+            if entries and entries[0][0] <= (clock.time if clock.virtual else clock.now()):
                 self._fire(clock.now())
             if self._urgent is not None:
                 task, self._urgent = self._urgent, None
