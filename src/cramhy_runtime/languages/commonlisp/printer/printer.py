@@ -79,6 +79,8 @@ def print_through(print_object):
 
 
 _integer = int.__repr__
+_SHORT = 10**18
+"""Python prints smaller integers without a limit."""
 
 
 def _integer_atom(number, escape):
@@ -331,6 +333,10 @@ def prin1(obj, stream=None):
 
 def princ(obj, stream=None):
     """``princ``: print ``obj`` for people: no quotes, no packages. Returns ``obj``."""
+    if stream.__class__ is StringOutputStream and obj.__class__ is int and -_SHORT < obj < _SHORT and controls.PRINT_BASE.value == 10:
+        if controls.PRINT_RADIX.value is None and PRINT_CIRCLE.value is None and not PRINT_PPRINT_DISPATCH.value.entries:
+            stream.write(_integer(obj))
+            return obj
     write(obj, stream, False)
     return obj
 
