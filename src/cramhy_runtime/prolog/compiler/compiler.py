@@ -26,6 +26,7 @@ from ..engine.list_shapes import index_key
 from ..engine.relations import relation_of, relation_of_rows
 from ..engine.services import SERVICES
 from .generated_code import Rest, is_ground
+from .variants import Variant
 
 LOOP = range(100)
 _HEAVY = 90
@@ -150,14 +151,19 @@ class PredicateCode(Holes, Bodies):
     def _loop(self, body):
         if self.hole is not None:
             self.emit("hole = None")
+            self.emit("while True:")
+            self.depth += 1
         self.emit("for _ in LOOP:")
         self.depth += 1
         body()
         self.depth -= 1
-        if self.hole is not None:
-            self.emit(FILL.format(self.hole))
         self.emit(f"budget.left -= {len(LOOP)}")  # the machine's next checkpoint knows what was done here
         self.emit("if not m.choices: trail.clear()")
+        if self.hole is not None:
+            self.emit("if hole is None or P.call is not predicate: break")  # a list that is being built stays in one piece
+            self.emit("m.rest()")
+            self.depth -= 1
+            self.emit(FILL.format(self.hole))
         self.emit(f"return P.call, k{self.arguments}")
 
     def _repeats(self, goals):
@@ -194,6 +200,13 @@ class PredicateCode(Holes, Bodies):
                 return position
         return None
 
+    def _unbound(self, numbers, known):
+        """Emit code for calls in which the argument that tells most is not known. A variant is not made for them."""
+        if isinstance(self.predicate, Variant):
+            self.emit(f"return P.call_general(m, (None, k{self.arguments}))")
+        else:
+            self._dispatch(numbers, known)
+
     def _discriminates(self, position):
         """Whether some clauses can match values of an argument that others cannot."""
         return any(self._kind(n, position) is not self._kind(0, position) for n in range(len(self.fitting)))
@@ -217,7 +230,7 @@ class PredicateCode(Holes, Bodies):
         outermost = not known
         telling = position if outermost else None
         self._case(f"if {c} is Cons:", lambda: self._candidates(fit(_LIST), {**known, position: A_LIST}, telling))
-        self._case(f"elif {c} is Var:", lambda: (self._fill(outermost), self._dispatch(numbers, {**known, position: UNBOUND})))
+        self._case(f"elif {c} is Var:", lambda: (self._fill(outermost), self._unbound(numbers, {**known, position: UNBOUND})))
         keys = {kinds[n]: self.fitting[n][0][position] for n in numbers if kinds[n] not in (_ANY, _LIST, _OTHER)}
         if len(keys) <= 4:
             for key, value in list(keys.items()):
@@ -308,7 +321,7 @@ class PredicateCode(Holes, Bodies):
         """Write code of clause ``n``."""
         clause = self.fitting[n][1]
         outer = self.owner, self.keep_variables, self.failing
-        self.owner, self.failing = clause, "return fail(m)"
+        self.owner, self.failing = getattr(clause, "original", clause), "return fail(m)"
         self.keep_variables = _mentions(clause.goals, FILTER)
         write()
         self.owner, self.keep_variables, self.failing = outer

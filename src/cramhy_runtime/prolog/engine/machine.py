@@ -149,6 +149,13 @@ class Machine:
         if budget.left < 0:
             kernel.checkpoint()
 
+    def rest(self):
+        """From time to time in a loop that builds a list: let other tasks run, tidy the trail."""
+        if len(self.trail) > self.until_tidy and self.choices:
+            self._tidy()
+        if budget.left < 0:
+            kernel.checkpoint()
+
     def _depth(self, step):
         """The number of goals that wait for ``step``, or of choice points if these are more. Beyond the limit it is an error.
 
