@@ -87,6 +87,11 @@ def is_test(goal):
     return arguments is not None and goal.car in (AND, NOT, ONCE) and all(map(is_test, arguments))
 
 
+def is_plain_test(goal):
+    """Whether a goal is a test that calls no Lisp and signals no error of its own."""
+    return is_test(goal) and goal.car in (TRUE, FALSE, UNIFIES, BOUND, GROUND)
+
+
 def flat(goals):
     """The goals of a body, with conjunctions in it flattened."""
     for goal in goals or ():
@@ -120,6 +125,7 @@ class Bodies(Matching):
     """
 
     keep_variables = False
+    enumerating = False  # whether a generator is written, which yields at a solution
     predicate = None
 
     def body(self, goals, names, context):
@@ -142,7 +148,12 @@ class Bodies(Matching):
             else:
                 self._call(goal, goals, names, context)
                 return
-        self.emit(f"return {context.k}")
+        if self.enumerating:
+            self.emit("m.choices.pop()")
+            self.emit("yield")
+            self.emit("return")
+        else:
+            self.emit(f"return {context.k}")
 
     # ------------------------------------------------------------------------------------------------------------------ tests
 

@@ -242,6 +242,35 @@ def call_again(m, step):
     return step[3](m, (step[3], step[1], *step[4:]))
 
 
+def again(m, step):
+    """The function of a choice point ``[again, k, height, solutions, predicate]``. The generator ``solutions`` sets variables.
+
+    It yields ``None`` for a solution. If it yields arguments, the predicate goes on with these.
+    """
+    k, solutions, collect = step[1], step[3], m.collect
+    if k is SOLVED and collect is not None:
+        for given in solutions:
+            if given is not None:
+                break
+            collect()
+            budget.left -= 1
+            if budget.left < 0:
+                kernel.checkpoint()
+        else:
+            given = None
+    else:
+        for given in solutions:
+            if given is None:
+                return k
+            break
+        else:
+            given = None
+    choices = m.choices
+    if choices and choices[-1] is step:
+        choices.pop()
+    return fail(m) if given is None else (step[4].call, k, *given)
+
+
 def settle(m, height):
     """Take the alternatives from the choice point at ``height``. Later choice points stay."""
     choices = m.choices

@@ -119,11 +119,12 @@ def import_term(term, table):
     for _ in _CELLS:  # as far as nothing changes
         car = cell.car
         kind = car.__class__
-        if kind is Symbol or kind is Keyword:
-            if car.name[:1] == "?":
+        if kind is not int:
+            if kind is Symbol or kind is Keyword:
+                if car.name[:1] == "?":
+                    break
+            elif kind is Cons:
                 break
-        elif kind is Cons:
-            break
         cell = cell.cdr
         if cell.__class__ is not Cons:
             if cell is None:
@@ -207,7 +208,7 @@ def _resolve_list(term, names):
     while count < CYCLE_SUSPECTED:  # as far as nothing changes
         car = cell.car
         kind = car.__class__
-        if kind is Var or kind is LazyTail or kind is TermTail or kind is Cons:
+        if kind is not int and (kind is Var or kind is LazyTail or kind is TermTail or kind is Cons):
             break
         cell = cell.cdr
         if cell.__class__ is not Cons:
@@ -289,6 +290,16 @@ def copy_term(term, mapping):
         return copy
     if kind is not Cons:
         return term
+    cell = term
+    for _ in _CELLS:  # as far as nothing changes
+        kind = cell.car.__class__
+        if kind is not int and (kind is Cons or kind is Var):
+            break
+        cell = cell.cdr
+        if cell.__class__ is not Cons:
+            if cell.__class__ is not Var:
+                return term
+            break
     try:
         cars, changed, cell = [], False, term
         while True:
