@@ -137,15 +137,20 @@ class Package:
         """Inherit the external symbols of ``other``; a clash of names is an error unless shadowed here."""
         if other is self or other in self.use:
             return
+        visible = (self.external, self.internal, *(used.external for used in self.use))
+        if shared := set().union(*(other.external.keys() & names.keys() for names in visible)):  # few, of thousands
+            self._check_clashes(other, shared)
+        self.use.append(other)
+
+    def _check_clashes(self, other, shared):
         for name, symbol in other.external.items():
-            found, status = self.lookup(name)
-            if status and found is not symbol and name not in self.shadowing:
+            found = self.lookup(name)[0] if name in shared else symbol
+            if found is not symbol and name not in self.shadowing:
                 PORTS.signals.package_error(
                     self,
                     f"{self.name} cannot use {other.name}: both {printed(symbol)} and {printed(found)} would be "
                     f"called {name} in it. Shadow one of them with (:shadowing-import-from PACKAGE #:{name}).",
                 )
-        self.use.append(other)
 
     def unuse_package(self, other):
         if other in self.use:
@@ -357,7 +362,7 @@ CRAMHY = ours("CRAMHY", lambda: Package("CRAMHY"))  # what macros expand into: f
 
 USERS = ("COMMON-LISP-USER", "CRAM-USER", "TESTING-USER", "PYTHON-USER")
 """The packages of our own code whose contents are the user's: each image has its own."""
-_DEFINITIONS = ("value", "function", "macro", "setf_function", "plist", "special", "constant", "compiler_data", "reads", "writes")
+_DEFINITIONS = ("value", "function", "macro", "setf_function", "plist", "special", "constant", "compiler_data")
 _definitions = attrgetter(*_DEFINITIONS)
 _redefined: dict[Symbol, tuple] = {}  # symbols of ours that users redefined -> what they mean by themselves
 
@@ -395,8 +400,8 @@ def was_redefined(symbol):
 
 
 def _state_of(symbol):
-    *others, data, reads, writes = _definitions(symbol)
-    return (*others, dict(data) if data else data, reads, writes)
+    *others, data = _definitions(symbol)
+    return (*others, dict(data) if data else data)
 
 
 @part
@@ -412,6 +417,7 @@ class _Redefinitions:
         for symbol, own in _redefined.items():
             for name, value in zip(_DEFINITIONS, state.get(symbol, own)):
                 setattr(symbol, name, value)
+            symbol.function_changed()
 
     @staticmethod
     def copy(state):
