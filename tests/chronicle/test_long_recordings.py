@@ -7,6 +7,7 @@ import io
 import pytest
 
 from cramhy_runtime.chronicle.chunk_index import PackedIndexes, pack_indexes
+from cramhy_runtime.chronicle.chunks import Chunk, first_chunk
 from cramhy_runtime.chronicle.history import Packed
 from cramhy_runtime.chronicle.merge import FluentLists, State, TaskTrees
 from cramhy_runtime.ros.message_json import to_json
@@ -41,11 +42,53 @@ def test_a_recording_is_the_same_to_the_last_byte_with_its_index_packed():
     assert len(indexes._packed) < 120 * len(indexes)
 
 
-def test_a_writer_of_another_make_keeps_its_index_as_it_likes():
-    class Writer:
-        pass
+def filled(ours, size=3000):
+    """The bytes of a recording whose topics appear one after the other, and what filled its chunks."""
+    writer_module = pytest.importorskip("mcap.writer", reason="pip install mcap")
+    file = io.BytesIO()
+    writer = writer_module.Writer(file, chunk_size=size)
+    chunk = first_chunk(writer) if ours else None
+    writer.start()
+    writer.add_metadata("a", {"b": "c"})
+    writer.flush()
+    channels = {}
+    for moment in range(400):
+        name, time, data = f"/topic{moment * moment % (1 + moment // 50)}", 10**18 + moment // 3, b"x" * (moment % 70)
+        if name not in channels:
+            channels[name] = writer.register_channel(name, "json", writer.register_schema(name, "jsonschema", b"{}"))
+        if ours:
+            chunk.add(channels[name], moment, time, data)
+            if chunk.count > size:
+                writer.flush()
+        else:
+            writer.add_message(channels[name], time, data, time, moment)
+    writer.finish()
+    return file.getvalue(), chunk
 
-    pack_indexes(Writer())
+
+def test_a_recording_is_the_same_to_the_last_byte_when_we_fill_its_chunks():
+    plain, _ = filled(False)
+    ours, chunk = filled(True)
+    assert isinstance(chunk, Chunk) and ours == plain
+    reader = pytest.importorskip("mcap.reader").make_reader(io.BytesIO(ours), validate_crcs=True)
+    assert sum(1 for _ in reader.iter_messages()) == reader.get_summary().statistics.message_count == 400
+    assert len(reader.get_summary().chunk_indexes) > 5
+
+
+def test_a_writer_of_another_make_keeps_its_index_and_fills_its_chunks_as_it_likes():
+    class Writer:
+        def __init__(self):
+            self.added = []
+
+        def add_message(self, *message):
+            self.added.append(message)
+
+    pytest.importorskip("mcap.writer", reason="pip install mcap")
+    writer = Writer()
+    pack_indexes(writer)
+    chunk = first_chunk(writer)
+    chunk.add(3, 7, 10**18, b"x")
+    assert writer.added == [(3, 10**18, b"x", 10**18, 7)] and chunk.count == 0
 
 
 def test_the_state_of_a_session_keeps_nothing_of_what_is_gone():

@@ -10,7 +10,16 @@ from hypothesis import strategies as some
 from cramhy_runtime.ground.data import DoubleFloat
 from cramhy_runtime.ros import definition_files, messages, wire
 from cramhy_runtime.ros.definition_text import INTEGERS
-from cramhy_runtime.ros.message_json import MessageJsonError, from_json, request_from_json, service_named, to_json, type_named
+from cramhy_runtime.ros.message_json import (
+    MessageJsonError,
+    from_json,
+    request_from_json,
+    service_named,
+    text_of,
+    to_json,
+    to_json_text,
+    type_named,
+)
 from cramhy_runtime.ros.messages import RosMessage, message_class
 
 quick = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
@@ -79,6 +88,42 @@ class TestOut:
         with pytest.raises(MessageJsonError) as error:
             to_json(3)
         assert str(error.value) == "Only a message can be sent, not an object of class int."
+
+
+class TestText:
+    """`to_json_text` writes what `json` writes of `to_json`."""
+
+    @pytest.mark.parametrize(
+        "type_name, fields",
+        [
+            ("std_msgs/Float64", {"data": math.nan}),
+            ("std_msgs/Float64", {"data": wire.POSITIVE_INFINITY}),
+            ("std_msgs/Float64", {"data": 3}),
+            ("std_msgs/Float32", {"data": 0.1}),
+            ("std_msgs/Float32MultiArray", {"data": [1, math.inf, 1e300]}),
+            ("std_msgs/String", {"data": 'a "quoted" \\ text\n\x01 %s'}),
+            ("std_msgs/String", {"data": "â\x82¬"}),
+            ("std_msgs/String", {"data": None}),
+            ("std_msgs/Int64", {"data": -(2**63)}),
+            ("std_msgs/UInt8", {"data": True}),
+            ("std_msgs/UInt8", {"data": None}),
+            ("std_msgs/Bool", {"data": 0}),
+            ("std_msgs/Duration", {"data": -0.5}),
+            ("std_msgs/UInt8MultiArray", {"data": [104, 105, 255]}),
+            ("std_msgs/Empty", {}),
+        ],
+    )
+    def test_of_values_of_all_kinds(self, type_name, fields):
+        message = message_class(type_name)(**fields)
+        assert to_json_text(message) == text_of(to_json(message))
+
+    def test_what_no_message_may_hold_is_the_same_error(self):
+        twist = message_class("geometry_msgs/Twist")()
+        twist.angular.z = "abc"
+        with pytest.raises(MessageJsonError, match="requires a float64 for field angular.z, but got a text, 'abc'"):
+            to_json_text(twist)
+        with pytest.raises(MessageJsonError, match="not an object of class int"):
+            to_json_text(3)
 
 
 class TestIn:
@@ -230,6 +275,7 @@ def test_there_and_back_is_the_same_message(data):
     cls = class_named(data.draw(names_of_classes))
     message = wire.transmit(data.draw(message_of(cls)))
     text = json.dumps(to_json(message), allow_nan=False)
+    assert to_json_text(message) == text_of(to_json(message))
     again = from_json(cls, json.loads(text))
     assert same(again, message)
     assert same(wire.transmit(again), message)  # and it can be sent on

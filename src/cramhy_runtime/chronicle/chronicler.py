@@ -93,10 +93,8 @@ class Chronicler:
             self.sources["tasks"].every = bool(self.listeners)
         try:
             with looking_on():
-                news = [(kind, self._taken(kind)) for kind in list(self.sources)]
+                news = [(kind, message) for kind in list(self.sources) if (message := self._taken(kind)) is not None]
             for kind, message in news:
-                if message is None:
-                    continue
                 self.state.add(kind, message)
                 for listener in self.listeners:
                     listener(kind, message)

@@ -11,7 +11,8 @@ import math
 import re
 from weakref import ref
 
-from cramhy_runtime.cpl.fluents.fluents import Fluent, Net, peek_value
+from cramhy_runtime.cpl.fluents.fluents import Fluent, peek_value
+from cramhy_runtime.cpl.fluents.nets import Net
 from ..cpl.hooks import on_make_fluent_hook
 from ..cpl.statuses import ALL
 from ..process_modules.modules import own_fluents
@@ -84,7 +85,8 @@ class Fluents:
                     continue
                 watched.pulses = fluent.pulses
                 text, amount = _value(fluent)
-                name, internal = ros_text(cut(princ_to_string(fluent.name))), True if fluent in own_fluents else None
+                name, internal = fluent.name, True if fluent in own_fluents else None
+                name = ros_text(cut(name if name.__class__ is str else princ_to_string(name)))
                 changed.append(self.fluent_type(watched.id, name, ros_text(text), amount, internal))
         gone, self.gone = self.gone, []
         return self.type(stamp=self.now(), fluents=changed, removed=gone) if changed or gone else None

@@ -12,7 +12,7 @@ from __future__ import annotations
 import json
 import zlib
 
-from ..ros.message_json import MessageJsonError, from_json, to_json
+from ..ros.message_json import MessageJsonError, from_json, to_json_text
 from ..ros.messages import message_class_exact
 from .merge import KINDS, TYPES
 
@@ -20,8 +20,6 @@ MOST = 60_000
 """Things that are kept: eight minutes of one turtle that drives and draws."""
 CHAPTER = 2_000
 """Things in the messages of a chapter after which a new one begins, if they are not fewer than what its state costs."""
-
-_encode = json.JSONEncoder(separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode
 
 
 class Packed:
@@ -33,7 +31,7 @@ class Packed:
     def append(self, kind, message):
         """Add a message; one that JSON cannot hold, which no client could be sent, is left out."""
         try:
-            text = _encode([kind, to_json(message)])
+            text = f'["{kind}",{to_json_text(message)}]'
         except (MessageJsonError, ValueError):
             return
         self._bytes += self._packer.compress(text.encode("utf-8", "surrogatepass") + b"\n")

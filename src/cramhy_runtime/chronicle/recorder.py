@@ -13,7 +13,6 @@ replaced then; if the new one is cut off, both stay, the new one under a name li
 
 from __future__ import annotations
 
-import json
 import errno
 import os
 from decimal import Decimal
@@ -22,9 +21,10 @@ from cramhy_runtime import __version__, kernel, storage
 from cramhy_runtime.ground.condition_types import SimpleWarning
 from cramhy_runtime.ground.conditions import warn
 from ..ros import graph
-from ..ros.message_json import MessageJsonError, to_json
+from ..ros.message_json import MessageJsonError, text_of, to_json_text
 from . import chronicler, robot_scene, scene
 from .chunk_index import pack_indexes
+from .chunks import first_chunk
 from .recordings import RecordingError, needs_mcap
 from .schemas import schema_text
 from .merge import TOPICS
@@ -34,8 +34,6 @@ CHUNK = 256 * 1024
 """Bytes of a chunk before it is packed."""
 FLUSH = 2_000_000_000
 """Nanoseconds of plan time after which a chunk is written though it is not full."""
-
-_encode = json.JSONEncoder(separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode
 
 
 class Recorder:
@@ -52,6 +50,7 @@ class Recorder:
         self.kernel, self.graph = kernel.active(), graph.active()
         self.messages, self.problem, self.closed = 0, None, False
         self._epoch = int(Decimal(repr(float(self.kernel.epoch))) * 1_000_000_000)
+        self._time = None
         self._flushed = self._now()
         self._channels = {}  # (topic, type) -> [id, messages so far]
         self._subscriptions = {}
@@ -64,6 +63,7 @@ class Recorder:
             self._part = storage.growing(self.path)
             self._writer = writer.Writer(self._part.file, chunk_size=CHUNK)
             pack_indexes(self._writer)
+            self._chunk = first_chunk(self._writer)
             self._writer.start(profile="", library=f"cramhy {__version__}")
             self._writer.add_metadata("cramhy", self._about(program))
             self._writer.flush()  # whenever the process is killed, the file is a recording
@@ -151,40 +151,46 @@ class Recorder:
             self._robots = robot_scene.RobotScene()
         update, frames, joints = self._robots.update(message, self._now())
         if update is not None:
-            self._put(robot_scene.TOPIC, scene.TYPE, update, scene.schema_text)
+            self._put(robot_scene.TOPIC, scene.TYPE, text_of(update), scene.schema_text)
         if frames is not None:
-            self._put(robot_scene.FRAMES_TOPIC, robot_scene.FRAMES_TYPE, frames, robot_scene.frames_schema_text)
+            self._put(robot_scene.FRAMES_TOPIC, robot_scene.FRAMES_TYPE, text_of(frames), robot_scene.frames_schema_text)
         for one in joints:
             self._write(robot_scene.JOINTS_TOPIC, one)
 
     # -------------------------------------------------------------------------------------------------------------- the file
 
     def _now(self):
-        return self._epoch + round(self.kernel.now() * 1e9)
+        time = self.kernel.now()
+        if time != self._time:  # several messages belong to each instant
+            self._time, self._nanoseconds = time, self._epoch + round(time * 1e9)
+        return self._nanoseconds
 
     def _write(self, topic, message):
         try:
-            data = to_json(message)
+            text = to_json_text(message)
         except MessageJsonError as problem:
             warn(SimpleWarning("A message on ~a is not in the recording ~a: ~a", topic, self.path, str(problem)))
             return
-        self._put(topic, message.ros_type, data, lambda: schema_text(message.__class__))
+        self._put(topic, message.ros_type, text, lambda: schema_text(message.__class__))
 
-    def _put(self, topic, kind, data, schema):
-        """Write the plain ``data`` of a message; ``schema()`` is asked for when it is the first one of its type on ``topic``."""
+    def _put(self, topic, kind, text, schema):
+        """Write the JSON of a message; ``schema()`` is asked for when it is the first one of its type on ``topic``."""
         if self.closed:
             return
-        data = _encode(data).encode()
+        data, chunk = text.encode(), self._chunk
         try:
             channel = self._channels.get((topic, kind)) or self._channel(topic, kind, schema())
             now = self._now()
+            chunk.add(channel[0], channel[1], now, data)
             channel[1] += 1
-            self._writer.add_message(channel[0], now, data, now, channel[1] - 1)
             self.messages += 1
+            if chunk.count > CHUNK:
+                self._writer.flush()
         except OSError as problem:
             self._give_up(problem)
         else:
-            self._flush(now)
+            if now - self._flushed >= FLUSH:
+                self._flush(now)
 
     def _flush(self, now):
         """Write the chunk, if its messages have waited for long enough."""

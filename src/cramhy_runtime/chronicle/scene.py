@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import math
 
+from cramhy_runtime.ros.message_json import text_of
 from cramhy_runtime.turtlesim.dimensions import EXTENT, METRE
 
 TOPIC, TYPE = "/cramhy/scene", "foxglove.SceneUpdate"
@@ -21,7 +22,7 @@ _SHAPES = ("arrows", "cubes", "spheres", "cylinders", "lines", "triangles", "tex
 
 
 class Scene:
-    """What Foxglove has been told. `update` gives what is to be told because of a ``cramhy_msgs/World``, plain data, or ``None``."""
+    """What Foxglove has been told. `update` gives what is to be told because of a ``cramhy_msgs/World``, its JSON, or ``None``."""
 
     def __init__(self):
         self.clears = None
@@ -36,7 +37,7 @@ class Scene:
             self.clears, self.waiting, self.turtles = world.clears, [], {}
             self.turtle_time = -math.inf
             deletions.append({"timestamp": stamp, "type": 1, "id": ""})
-            entities.append(entity(stamp, "paper", cubes=[_paper(world)]))
+            entities.append(text_of(entity(stamp, "paper", cubes=[_paper(world)])))
         self.waiting += world.strokes
         if self.waiting and world.stamp - self.ink_time >= INK_PERIOD:
             entities.append(self._ink(stamp, world.stamp))
@@ -45,19 +46,22 @@ class Scene:
             here = {turtle.name: _turtle(turtle) for turtle in world.turtles if math.isfinite(turtle.x + turtle.y + turtle.theta)}
             deletions += [{"timestamp": stamp, "type": 0, "id": f"turtle {name}"} for name in self.turtles if name not in here]
             moved = {name: arrow for name, arrow in here.items() if arrow != self.turtles.get(name)}
-            entities += [entity(stamp, f"turtle {name}", arrows=[arrow]) for name, arrow in moved.items()]
+            entities += [text_of(entity(stamp, f"turtle {name}", arrows=[arrow])) for name, arrow in moved.items()]
             self.turtles = here
-        return {"deletions": deletions, "entities": entities} if deletions or entities else None
+        return _update_text(entities, deletions) if deletions or entities else None
 
     def rest(self, nanoseconds):
         """The lines that have not been told yet."""
-        return {"deletions": [], "entities": [self._ink(time_of(nanoseconds), math.inf)]} if self.waiting else None
+        return _update_text([self._ink(time_of(nanoseconds), math.inf)]) if self.waiting else None
 
     def _ink(self, stamp, now):
-        pens = {}
+        """The text of an entity with the lines that wait. They are many, so their points are written without plain data in between."""
+        pens, number = {}, float.__repr__
         for stroke in self.waiting:
-            points = pens.setdefault((stroke.r, stroke.g, stroke.b, stroke.width), [])
-            points += [{"x": stroke.x1, "y": stroke.y1, "z": 0.0}, {"x": stroke.x2, "y": stroke.y2, "z": 0.0}]
+            x1, y1, x2, y2 = stroke.x1, stroke.y1, stroke.x2, stroke.y2
+            pens.setdefault((stroke.r, stroke.g, stroke.b, stroke.width), []).append(
+                _TWO_POINTS % (number(x1), number(y1), number(x2), number(y2))
+            )
         self.waiting, self.ink_time = [], now
         self.pieces += 1
         lines = [
@@ -66,14 +70,22 @@ class Scene:
                 "pose": _pose(0.0, 0.0, 0.0),
                 "thickness": (width or 1) / METRE,
                 "scale_invariant": False,
-                "points": points,
+                "points": [],
                 "color": _colour(*colour),
                 "colors": [],
                 "indices": [],
             }
-            for (*colour, width), points in pens.items()
+            for *colour, width in pens
         ]
-        return entity(stamp, f"ink {self.pieces}", lines=lines)
+        before, *rest = text_of(entity(stamp, f"ink {self.pieces}", lines=lines)).split('"points":[]')
+        return before + "".join([f'"points":[{",".join(points)}]{after}' for points, after in zip(pens.values(), rest)])
+
+
+_TWO_POINTS = '{"x":%s,"y":%s,"z":0.0},{"x":%s,"y":%s,"z":0.0}'
+
+
+def _update_text(entities, deletions=()):
+    return f'{{"deletions":{text_of(deletions)},"entities":[{",".join(entities)}]}}'
 
 
 def time_of(nanoseconds):

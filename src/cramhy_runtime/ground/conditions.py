@@ -33,7 +33,8 @@ from .restarts import compute_restarts, innermost_restarts, restart_case, with_c
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-_handlers = special(Symbol("*HANDLER-CLUSTERS*"), None)
+HANDLERS = special(Symbol("*HANDLER-CLUSTERS*"), None)
+"""The handlers in force: ``None``, or a pair of the innermost, a list of (type specifier, function) or a `Cluster`, and those around."""
 
 DEBUGGER_HOOK = special("*DEBUGGER-HOOK*")
 SBCL_HOOK = special(ensure_package("SB-EXT").intern("*INVOKE-DEBUGGER-HOOK*"))
@@ -81,18 +82,22 @@ def matches(condition, specifier):
         return False
 
     # what names no type fits nothing: an error about it here would come to the same handler again, without end
-    return PORTS.types.known(specifier) and PORTS.types.predicate(specifier)(condition)
+    test = PORTS.types.test(specifier)
+    return test is not None and test(condition)
 
 
 def signal_condition(condition):
     """Offer ``condition`` to the handlers, innermost first. Returns when all have declined."""
-    if truth(BREAK_ON_SIGNALS.value):
+    if BREAK_ON_SIGNALS.value is not None and truth(BREAK_ON_SIGNALS.value):
         _break_on_signal(condition)
     condition.signalled = True
-    clusters = _handlers.value
+    clusters = HANDLERS.value
     while clusters is not None:
         cluster, outer = clusters
-        _offer(condition, cluster, outer)
+        if isinstance(cluster, Cluster):
+            cluster.offer(condition, outer)
+        else:
+            _offer(condition, cluster, outer)
         clusters = outer
 
 
@@ -128,26 +133,26 @@ def _break_on_signal(condition):
 
 def _offer(condition, cluster, outer):
     # A handler runs with only the handlers outside its own cluster in force (ANSI 9.1.4).
-    if cluster.__class__ is Case:
-        cluster.offer(condition)
+    if isinstance(cluster, Cluster):
+        cluster.offer(condition, outer)
         return
     for specifier, handler in cluster:
         if matches(condition, specifier):
-            with binding(_handlers, outer):
+            with binding(HANDLERS, outer):
                 try:
                     handler(condition)
                 except (types.Condition, Exception) as raised:
-                    _raised_by_handler(raised)
+                    raised_by_handler(raised)
                     raise
 
 
-def _raised_by_handler(exception):
+def raised_by_handler(exception):
     """Ask the handlers outside now; those inside, which it passes on its way out, are not to be asked (ANSI 9.1.4)."""
     if isinstance(exception, types.Condition):
         if not exception.signalled:
             signal_condition(exception)
     elif getattr(exception, "__lisp_asked__", None) is not EVERYBODY:
-        if not _were_asked(exception, _handlers.value):
+        if not _were_asked(exception, HANDLERS.value):
             signal_condition(from_python(exception))
         try:
             exception.__lisp_asked__ = EVERYBODY
@@ -157,21 +162,46 @@ def _raised_by_handler(exception):
 
 def handler_bind(clauses, thunk):
     """Call ``thunk`` with ``clauses`` in force, a list of (type specifier, function); returns its values."""
-    outer = _handlers.value
-    cluster = (clauses, outer)
-    bind(_handlers, cluster)
+    bind(HANDLERS, (clauses, HANDLERS.value))
     try:
         return thunk()
-    except types.Condition as condition:
-        if not condition.signalled:  # Python code raised it without signalling
-            _offer(condition, clauses, outer)
-        raise
-    except Exception as exception:  # foreign: its frames are gone, now this cluster gets its turn
-        if not _were_asked(exception, cluster):
-            _offer(from_python(exception), clauses, outer)
+    except (types.Condition, Exception) as exception:
+        offer_late(exception)
         raise
     finally:
         unbind()
+
+
+def offer_late(exception):
+    """Offer ``exception``, which is about to leave the extent of the innermost handlers, to these, unless they were asked before.
+
+    Python code raised it without signalling, or it is foreign: its frames are gone, and now the handlers get their turn.
+    """
+    clusters = HANDLERS.value
+    if isinstance(exception, types.Condition):
+        if not exception.signalled:
+            _offer(exception, *clusters)
+    elif not _were_asked(exception, clusters):
+        _offer(from_python(exception), *clusters)
+
+
+class Cluster:
+    """Handlers of one form that are more than a list of (type specifier, function). `enter` puts them in force; `dynamic.unbind` ends that.
+
+    A form that is written for Python's ``try`` need not make a function of its body. It calls `offer_late` for what passes it.
+    """
+
+    __slots__ = ()
+
+    def enter(self):
+        """Put the handlers in force, inside of those that are."""
+        bind(HANDLERS, (self, HANDLERS.value))
+
+    def offer(self, condition, outer):
+        """Handle ``condition`` and leave by an exit, or return: that declines.
+
+        Code of users runs while `HANDLERS` is bound to ``outer`` (ANSI 9.1.4), and `raised_by_handler` is told what it raises.
+        """
 
 
 class HandlerExit(BaseException):
@@ -181,7 +211,7 @@ class HandlerExit(BaseException):
         self.token, self.index, self.condition = token, index, condition
 
 
-class Case:
+class Case(Cluster):
     """The handlers of a ``handler-case`` that was compiled in place, for one run of it; the token of its exit.
 
     ``specifiers``: the list of its clauses' types. ``index``: which clause was chosen.
@@ -192,7 +222,7 @@ class Case:
     def __init__(self, specifiers):
         self.specifiers = specifiers
 
-    def offer(self, condition):
+    def offer(self, condition, outer):
         """Leave the form if ``condition`` is of the type of a clause."""
         index, cell = 0, self.specifiers
         while cell is not None:
@@ -205,7 +235,7 @@ class Case:
 def enter_case(specifiers):
     """Put the handlers of a ``handler-case`` in force; they are undone by `dynamic.unbind`."""
     case = Case(specifiers)
-    bind(_handlers, (case, _handlers.value))
+    case.enter()
     return case
 
 
@@ -213,7 +243,7 @@ def foreign_case(exception, case):
     """Offer an exception of foreign code to the ``case`` that it passes, and let it go on."""
     asked = exception.signalled if isinstance(exception, types.Condition) else getattr(exception, "__lisp_asked__", None) is EVERYBODY
     if not asked:
-        _offer(from_python(exception), case, _handlers.value[1])
+        _offer(from_python(exception), case, HANDLERS.value[1])
     raise exception
 
 
@@ -489,7 +519,7 @@ def signal_exception(exception):
     Returns when nobody wanted it: then the exception is to be raised again, so that Python code above sees its own. On its way up
     it may come into Lisp again; handlers that were asked are not asked once more.
     """
-    if _were_asked(exception, _handlers.value):
+    if _were_asked(exception, HANDLERS.value):
         return
     condition = from_python(exception)
     signal_condition(condition)
@@ -503,7 +533,7 @@ def signal_exception(exception):
 def note_asked(exception):
     """The handlers in force have heard of ``exception``: it may be raised, and they are not asked as it passes them."""
     try:
-        exception.__lisp_asked__ = (_handlers.value,)
+        exception.__lisp_asked__ = (HANDLERS.value,)
     except AttributeError:
         pass
 

@@ -4,5 +4,5 @@ Lazy lists (``lazy_lists``) and pattern matching (``patterns``), on which Prolog
 ``locks``, ``semaphores``, ``queues``, ``barriers``, on the waiting lines of ``wait_queue``), made of the kernel's tasks; ``quad_trees``
 and the ``small_functions``; ``symbols``, the Lisp package. Source: prolog.md section 13, cpl.md section 13.
 
-One tool is for this library only: ``generated_functions`` makes Python functions of text, for messages and for Prolog.
+One tool is for this library only: ``generated_functions`` makes Python functions of text, for messages, Prolog and nets of fluents.
 """

@@ -20,6 +20,7 @@ from . import nodes
 from .declared_types import declared_types
 from .environment import Env, FunctionScope, LocalFunction, SpecialVariable, SymbolMacro, Variable, function_key
 from .kinds import kind_of_type
+from .next_methods import call_of_next
 from .net_tests import WAITING, look_at_wait
 from .nodes import (
     Call,
@@ -129,6 +130,8 @@ class Analyzer(Scrutiny):
                 )
             if isinstance(local, LocalFunction):
                 self.local_call(head, local.shape, tuple_of(form), env)
+                if local.next is not None:
+                    return call_of_next(self, local.next, form, env)
                 return CallLocal(local.variable.used_from(env.scope), self.arguments(form, env))
             expansion, expanded = self.expand(form, env)
             if expanded:

@@ -111,11 +111,15 @@ class SymbolMacro:
 
 
 class LocalFunction:
-    """A function of ``flet`` or ``labels``: the value of a variable. ``shape``: the calls that it takes."""
+    """A function of ``flet`` or ``labels``: the value of a variable. ``shape``: the calls that it takes.
 
-    def __init__(self, variable, shape=None):
+    next: if it is ``call-next-method`` or ``next-method-p``, what it means (`next_methods`).
+    """
+
+    def __init__(self, variable, shape=None, next=None):
         self.variable = variable
         self.shape = shape
+        self.next = next
 
 
 class LocalMacro:

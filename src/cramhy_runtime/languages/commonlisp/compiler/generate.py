@@ -13,9 +13,10 @@ from cramhy_runtime.ground.data import DoubleFloat, Symbol, UndefinedFunction
 from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym
 from . import core, nodes
 from .constants import Constants, float_model
-from .core import List, expression, word
+from .core import expression, word
 from .destinations import EFFECT, FIRST_OF_VALUES, NONE, RAW, TRUE, VALUE, VALUES, Destination
 from .facts import study, walk
+from .generate_calls import CallGenerator, written_attribute
 from .generate_exits import ExitGenerator
 from .generate_functions import FunctionGenerator
 from .generate_numbers import NUMBER_FUNCTIONS
@@ -35,7 +36,7 @@ SINGLE_VALUE = nodes.Constant(None)
 """Stands for a node that gives one value."""
 
 
-class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerator):
+class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerator):
     """Generates one Python function at a time; `toplevel` is the entry."""
 
     def __init__(self, constants=None):
@@ -276,6 +277,10 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerat
             model = self.small_function(node, symbol, arguments)
             if model is not None:
                 return self.finish(model, node, destination)
+        if standard:
+            model = self.open_call(node, symbol, arguments, destination)
+            if model is not None:
+                return self.finish(model, nodes.Constant(None), destination)
         if symbol is FORMAT and destination.kind != "effect":
             model = self.text(node, arguments)
             if model is not None:
@@ -283,12 +288,17 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerat
         models = self.arguments(arguments)
         if standard and symbol is GETHASH and 1 < len(arguments) < 4 and (not destination.multiple or destination is FIRST_OF_VALUES):
             return self.finish(self.positioned(self.call("gethash", *models), node), nodes.Constant(None), destination)
+        model = self.keyword_call(node, symbol, models, arguments)
+        if model is not None:
+            return self.finish(model, node, destination)
+        model = self.slot_read(node, symbol, models)
+        if model is not None:
+            return self.finish(model, nodes.Constant(None), destination)
         model = self.through_object(node, symbol, models)
         if model is not None:
-            reader = symbol.reads is not None and model[0] == "if"
-            return self.finish(model, nodes.Constant(None) if reader else node, destination)
+            return self.finish(model, node, destination)
         if self.standard(symbol):
-            model = expression(word(self.constants.name("function", symbol)), *models)
+            model = self.standard_function(symbol, models, arguments)
         elif is_symbol(symbol) and not isinstance(symbol, Symbol):
             model = self.call("undefined", self.constant(symbol), *models)
         else:  # named, because Python takes longer to call an attribute of an object with slots
@@ -310,19 +320,12 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerat
     def through_object(self, node, symbol, models):
         """A call that goes through its first argument, if that is of the expected class, or ``None``.
 
-        A reader of a structure becomes an attribute. A generic function is asked for the effective function of its first
-        argument's class right here. Both look first whether the function is still that one.
+        A generic function is asked for the effective function of its first argument's class right here, if the function is still
+        that one.
         """
         if not isinstance(symbol, Symbol) or not models:
             return None
-        function = symbol.function
-        if symbol.reads is not None and len(models) == 1:
-            (target,) = self.stable_names(models)
-            constant = self.constant(symbol)
-            quick = expression(word("is"), expression(word("."), target, word("__class__")), expression(word("."), constant, word("reads")))
-            slow = self.positioned(expression(expression(word("."), constant, word("function")), target), node)
-            return expression(word("if"), quick, expression(word("."), target, word(function.attribute)), self.first_value(slow))
-        kind = function.__class__.__name__
+        kind = symbol.function.__class__.__name__
         if DISPATCHERS.get(kind) != len(models):
             return None
         models = self.stable_names(models)
@@ -359,14 +362,8 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerat
         if stored is not None:
             return self.finish(stored, SINGLE_VALUE, destination, pure=True)
         arguments = self.arguments(node.arguments)
-        attribute = getattr(getattr(node.symbol, "setf_function", None), "attribute", None)
-        if attribute is not None and destination.kind == "effect" and len(arguments) == 2 and node.symbol.writes is not None:
-            new, target = self.stable_names(arguments)
-            symbol = self.constant(node.symbol)
-            quick = expression(word("is"), expression(word("."), target, word("__class__")), expression(word("."), symbol, word("writes")))
-            slow = self.positioned(expression(self.call("setf_function", symbol), new, target), node)
-            self.emit(word("if"), quick, expression(word("setv"), expression(word("."), target, word(attribute)), new), slow)
-            return None
+        if (attribute := written_attribute(node.symbol)) is not None and len(arguments) == 2:
+            return self.by_statements(node, destination, lambda inner: self.slot_written(node, attribute, arguments, inner))
         if node.symbol in KNOWN_SETTERS:
             setter = word(self.constants.name("setf_function", node.symbol))
         else:
@@ -545,8 +542,6 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerat
         return self.by_statements(body, destination, produce)
 
     def MultipleValueBind(self, node, destination):
-        value = self.gen(node.values, VALUES)
-        count = len(node.variables)
         names, dynamic, boxed = [], [], []
         for variable in node.variables:
             name = self.temporary() if isinstance(variable, Symbol) or variable.boxed else variable.name
@@ -556,9 +551,9 @@ class Generator(ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerat
             elif variable.boxed:
                 boxed.append((variable, word(name)))
         if names:
-            self.emit(word("setv"), List(names), self.call("spread", value, count))
+            self.assign_values(names, node.values)
         else:
-            self.out.append(value)
+            self.out.append(self.gen(node.values, VALUES))
             self.effects += 1
         for variable, name in boxed:
             self.bind_variable(variable, name)

@@ -24,11 +24,14 @@ QUICK = {
     sym(name)
     for name in """+ - * / < > <= >= = /= 1+ 1- MOD REM MAX MIN ABS SQRT SIN COS EXP ZEROP PLUSP MINUSP EVENP ODDP CAR CDR
 FIRST SECOND THIRD REST CADR CDDR CAAR CDAR CONS LIST NULL NOT EQ EQL CONSP ATOM LISTP ENDP SYMBOLP NUMBERP INTEGERP STRINGP LENGTH
-AREF SVREF CHAR SCHAR GETHASH CHAR= CHAR-CODE CODE-CHAR FLOAT FLOOR TRUNCATE ROUND CEILING LOGAND LOGIOR LOGXOR ASH
+AREF SVREF CHAR SCHAR GETHASH CHAR= CHAR/= CHAR-CODE CODE-CHAR CHAR-UPCASE CHAR-DOWNCASE ALPHA-CHAR-P DIGIT-CHAR-P UPPER-CASE-P
+LOWER-CASE-P ALPHANUMERICP CHARACTERP VALUES FLOAT FLOOR TRUNCATE ROUND CEILING LOGAND LOGIOR LOGXOR ASH
 CRAMHY::COLLECT CRAMHY::CAR-OF-CONS CRAMHY::CDR-OF-CONS CRAMHY::LOOP-VECTOR""".split()
 }
 """Functions that neither call functions of users nor take long: a loop of nothing else need not look at every turn whether its
 slice is over."""
+QUICK_OF_TWO = {sym(name) for name in "FIND POSITION MEMBER ASSOC COUNT STRING= STRING/= STRING< STRING> EQUAL".split()}
+"""The same, if they are called with two arguments. Where an argument is long, they look by themselves whether the slice is over."""
 
 
 @dataclass
@@ -173,7 +176,9 @@ _CALLS = (nodes.CallLocal, nodes.CallValue, nodes.CallSetf, nodes.CallSpread, no
 def _quick(statements):
     for item in walk(statements):
         kind = item.__class__
-        if kind is nodes.Call and item.symbol not in QUICK or kind in _CALLS:
+        if kind in _CALLS:
+            return False
+        if kind is nodes.Call and item.symbol not in QUICK and not (item.symbol in QUICK_OF_TWO and len(item.arguments) == 2):
             return False
     return True
 

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from ..collections.sequences import length
 from ..collections.arrays import aref
+from ..collections.sequence_types import characters
 import math
 from fractions import Fraction
 from itertools import zip_longest
 from operator import itemgetter
 from types import FunctionType
 
-from cramhy_runtime.ground.arrays import SimpleArray, TypedVector
+from cramhy_runtime.ground.arrays import SimpleArray, TypedVector, Vector
 from cramhy_runtime.ground.catching import ThrowExit, catch, throw  # noqa: F401  compiled code calls them
 from cramhy_runtime.ground.functions import fdefinition, setf_function  # noqa: F401  compiled code calls them
 from cramhy_runtime import kernel
@@ -36,6 +37,7 @@ from .frame_exits import FrameExit, ends_here
 from cramhy_runtime.ground.data import (
     FreshString,
     Character,
+    TEXTS,
     Cons,
     DoubleFloat,
     Keyword,
@@ -50,12 +52,14 @@ from cramhy_runtime.ground.data import (
     one,
     truth,
 )
-from cramhy_runtime.ground.hash_tables import value_in_table
+from cramhy_runtime.ground.hash_tables import value_and_presence, value_in_table
+from cramhy_runtime.ground.keyword_calls import keyword_calls
 from cramhy_runtime.ground.dynamic import Bindings, bind, unbind
 from cramhy_runtime.ground.functions import function_of
 from ..format.format_templates import decimal, prin1_atom, princ_atom
 from ..numbers import arithmetic
 from ..numbers.irrational import complex_
+from ..objects.makers import maker
 from cramhy_runtime.ground.dispatch.generic_functions import FirstOfTwo, UnaryGeneric
 from cramhy_runtime.ground.packages import intern, keyword, printed
 from ..syntax.backquote import Comma
@@ -119,7 +123,13 @@ def _ticking(sequence, size):
 
 def items(vector):
     """What a loop over the elements of ``vector`` goes through, in parts. The loop does not change the vector."""
-    return _parts(vector, len(vector)) if vector.__class__ is list else (_items(vector),)
+    if vector.__class__ is list:
+        return _parts(vector, len(vector))
+    if vector.__class__ in TEXTS:
+        return _parts(characters(vector), len(vector))
+    if vector.__class__ is Vector:
+        return _parts(vector.active(), len(vector))
+    return (_items(vector),)
 
 
 def _items(vector):
@@ -203,6 +213,7 @@ def key_parser(table, allow_others):
 
     table: pairs of (keyword, value when missing). It takes the arguments after the positional ones, keyword objects and values,
     and the keyword arguments of a Python caller, and gives the values in the order of ``table``; of equal keys the first counts.
+    ``known``: the values of those that are not among these arguments.
     """
     slots = {key: index for index, (key, _) in enumerate(table)}
     missing = tuple(value for _, value in table)
@@ -211,15 +222,15 @@ def key_parser(table, allow_others):
     getters: dict = {}
     getter_for = getters.get
 
-    def parse(rest, python):
+    def parse(rest, python, known=missing):
         if not python and not len(rest) & 1:
             try:
                 getter = getter_for(rest[KEYS_OF_ARGUMENTS])
             except TypeError:  # something that is no keyword and has no hash
                 getter = None
             if getter is not None:
-                return getter(rest + missing)
-        values = list(missing)
+                return getter(rest + known)
+        values = list(known)
         for name, value in python.items():
             rest = (*rest, keyword(name.upper().replace("_", "-")), value)
         unknown = None
@@ -249,6 +260,11 @@ def key_parser(table, allow_others):
 def dotted(*items):
     """The list of all but the last of ``items``, ending in the last."""
     return list_from(items[:-1], items[-1])
+
+
+def next_method_exists(following):
+    """``next-method-p`` in the body of a method: whether ``following`` is another method."""
+    return getattr(following, "exists", True)
 
 
 def value_list(value):
@@ -321,7 +337,10 @@ NAMESPACE = {
     "Lchecked": checked,
     "Lint": int,
     "Lbudget": budget,
+    "Lnext_method_exists": next_method_exists,
+    "Lmaker": maker,
     "Lkey_parser": key_parser,
+    "Lkeyword_calls": keyword_calls,
     "Lintern": intern,
     "Lgensym": Symbol,
     "Llist": lisp_list,
@@ -338,6 +357,8 @@ NAMESPACE = {
     "Lratio": Fraction,
     "Lcomplex": complex_,
     "Lgethash": value_in_table,
+    "Lgethash_values": value_and_presence,
+    "Ldivmod": divmod,
     "Llen": len,
     "Lcharacter": Character,
     "Larray": SimpleArray,

@@ -21,7 +21,8 @@ from .class_definition import default_initargs
 from .class_objects import StandardObject, effective_slots, find_slot
 from cramhy_runtime.ground.classes import when_classes_change
 from .classes import StructureClass, class_name, class_of, find_class_or_error, qualified
-from cramhy_runtime.ground.dispatch.generic_functions import ALLOW_OTHER_KEYS, no_method_for, other_keys_allowed, when_methods_change
+from cramhy_runtime.ground.dispatch.generic_functions import no_method_for, when_methods_change
+from cramhy_runtime.ground.dispatch.keyword_checks import ALLOW_OTHER_KEYS, other_keys_allowed
 
 
 class InitargError(ProgramError):
@@ -56,6 +57,17 @@ def _methods_changed(generic_function):
     name = generic_function.__lisp_name__
     if is_symbol(name) and symbol_name(name) in _PROTOCOL:
         _plans.clear()
+        for function in _watchers:
+            function()
+
+
+_watchers: list = []
+
+
+def when_plans_change(function):
+    """Call ``function()`` whenever methods of users change how instances are made."""
+    _watchers.append(function)
+    return function
 
 
 _PROTOCOL = ("INITIALIZE-INSTANCE", "SHARED-INITIALIZE", "ALLOCATE-INSTANCE", "REINITIALIZE-INSTANCE")
