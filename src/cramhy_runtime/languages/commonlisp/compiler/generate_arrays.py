@@ -44,7 +44,11 @@ class ArrayGenerator(ArithmeticGenerator):
     def place(self, operands):
         """(tests, Python's place) of the element of a vector or matrix that ``operands`` mean; (``None``, ``None``) if they cannot."""
         array, *subscripts = operands
-        if array.later.__class__ is not Symbol or any(not each.kind & INT or each.raw for each in subscripts):
+        if (
+            array.later.__class__ is not Symbol
+            or array.later in ("None", "True")
+            or any(not each.kind & INT or each.raw for each in subscripts)
+        ):
             return None, None
         matrix = len(subscripts) == 2
         tests = [expression(IS, self.class_of(array.later), MATRIX if matrix else VECTOR)]

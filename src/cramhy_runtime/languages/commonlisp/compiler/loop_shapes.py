@@ -30,6 +30,7 @@ CRAMHY::COLLECT CRAMHY::CAR-OF-CONS CRAMHY::CDR-OF-CONS CRAMHY::LOOP-VECTOR""".s
 }
 """Functions that neither call functions of users nor take long: a loop of nothing else need not look at every turn whether its
 slice is over."""
+QUICK_SETTERS = {sym(name) for name in "AREF SVREF GETHASH".split()}
 QUICK_OF_TWO = {sym(name) for name in "FIND POSITION MEMBER ASSOC COUNT STRING= STRING/= STRING< STRING> EQUAL".split()}
 """The same, if they are called with two arguments. Where an argument is long, they look by themselves whether the slice is over."""
 
@@ -176,7 +177,7 @@ _CALLS = (nodes.CallLocal, nodes.CallValue, nodes.CallSetf, nodes.CallSpread, no
 def _quick(statements):
     for item in walk(statements):
         kind = item.__class__
-        if kind in _CALLS:
+        if kind in _CALLS and not (kind is nodes.CallSetf and item.symbol in QUICK_SETTERS):
             return False
         if kind is nodes.Call and item.symbol not in QUICK and not (item.symbol in QUICK_OF_TWO and len(item.arguments) == 2):
             return False
