@@ -13,9 +13,9 @@ from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.packages import symbol_name
 from . import nodes
 from .core import List, Tuple, expression, word
-from .generate_arithmetic import AND, DOUBLE_CLASS, FLOAT_CLASS, INT_CLASS, IS, class_of, fixnum_test
+from .arithmetic.operations import AND, DOUBLE_CLASS, FLOAT_CLASS, INT_CLASS, IS, class_of, fixnum_test
 from .kinds import DOUBLE, INT, SINGLE
-from .versions import assumed, guesses
+from .arithmetic.versions import assumed, guesses
 from .destinations import NONE, RETURN, TRUE, Destination
 
 DEBUGGED = special(Symbol("*DEBUGGED*"), False)
@@ -68,7 +68,7 @@ class FunctionGenerator:
         return word(name)
 
     def version(self, node):
-        """Emit the body for arguments of the usual classes, behind a test of them, if that pays (``versions.py``)."""
+        """Emit the body for arguments of the usual classes, behind a test of them, if that pays (``arithmetic/versions.py``)."""
         found = guesses(node)
         if not found:
             return

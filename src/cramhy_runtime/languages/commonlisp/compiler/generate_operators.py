@@ -1,6 +1,6 @@
 """Operators: the small functions on numbers and lists, and the tests, that become Python expressions.
 
-Sums, products, quotients and comparisons are in ``generate_arithmetic.py``.
+Sums, products, quotients and comparisons are in ``arithmetic/``.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from cramhy_runtime.ground.packages import sym
 from . import nodes
 from .core import NONE, Expression, Symbol, expression, word
 from .declared_types import FIXNUM, is_fixnum
-from .generate_arithmetic import (
+from .arithmetic.operations import (
     AND,
     ARITHMETIC,
     COMPARISONS,
@@ -26,8 +26,8 @@ from .generate_arithmetic import (
     class_of,
     fixnum_test,
 )
-from .generate_arrays import ELEMENTS, LENGTH, ArrayGenerator
-from .generate_numbers import NumberGenerator
+from .arithmetic.elements import ELEMENTS, LENGTH, ArrayGenerator
+from .arithmetic.functions import NumberGenerator
 from .kinds import DOUBLE_TYPES, INT, MACHINE, exactly, kind_of, kind_of_type
 
 SIGNS = {sym("ZEROP"): COMPARISONS[sym("=")], sym("PLUSP"): COMPARISONS[sym(">")], sym("MINUSP"): COMPARISONS[sym("<")]}

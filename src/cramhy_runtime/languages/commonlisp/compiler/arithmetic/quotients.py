@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from .core import expression, word
-from .generate_arithmetic import AND, ARITHMETIC, FIXNUM, IF, INT_CLASS, IS, ArithmeticGenerator, Operand
-from .kinds import DIVIDE, DOUBLE, FLOATS, INT, NUMBER, ODD, OTHER, SINGLE, THING, exactly, raw
+from ..core import expression, word
+from .operations import AND, ARITHMETIC, FIXNUM, IF, INT_CLASS, IS, ArithmeticGenerator, Operand
+from ..kinds import DIVIDE, DOUBLE, FLOATS, INT, NUMBER, ODD, OTHER, SINGLE, THING, exactly, raw
 
 OVER, WHOLE_OVER, REST, NOT = map(word, "/ // % not".split())
 

@@ -12,9 +12,9 @@ from contextlib import contextmanager
 
 from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.packages import sym
-from . import nodes
-from .facts import OPERANDS_OF, find_kinds, walk
-from .kinds import DIVIDE, DOUBLE, FLOATS, INFINITE, INT, MACHINE, NONE_YET, OTHER, SINGLE, SMOOTH, SQRT, exactly, kind_of
+from .. import nodes
+from ..facts import OPERANDS_OF, find_kinds, walk
+from ..kinds import DIVIDE, DOUBLE, FLOATS, INFINITE, INT, MACHINE, NONE_YET, OTHER, SINGLE, SMOOTH, SQRT, exactly, kind_of
 
 WHOLE_ARGUMENTS = {sym(name) for name in "MOD REM EVENP ODDP LOGAND LOGIOR LOGXOR ASH GCD LCM ISQRT".split()}
 INDEXED = {sym(name) for name in "AREF SVREF ELT".split()}

@@ -7,10 +7,10 @@ simple array with two axes the element is found by its row and its column. Other
 from __future__ import annotations
 
 from cramhy_runtime.ground.packages import sym
-from . import nodes
-from .core import TRUE, Symbol, expression, word
-from .generate_arithmetic import AND, DOT, IF, INT_CLASS, IS, ArithmeticGenerator
-from .kinds import INT, exactly, never_negative
+from .. import nodes
+from ..core import TRUE, Symbol, expression, word
+from .operations import AND, DOT, IF, INT_CLASS, IS, ArithmeticGenerator
+from ..kinds import INT, exactly, never_negative
 
 AREF, SVREF, ELT, LENGTH = map(sym, "AREF SVREF ELT LENGTH".split())
 ELEMENTS = {AREF, SVREF, ELT}

@@ -15,13 +15,13 @@ import sys
 
 from cramhy_runtime.ground.data import DoubleFloat
 from cramhy_runtime.ground.packages import sym
-from . import nodes
-from .core import NONE, TRUE, Symbol, expression, word
-from .declared_types import GREATEST_FIXNUM, LEAST_FIXNUM
-from .destinations import FIRST_OF_VALUES, RAW, VALUE
-from .environment import Variable
-from .loop_shapes import quiet
-from .kinds import (
+from .. import nodes
+from ..core import NONE, TRUE, Symbol, expression, word
+from ..declared_types import GREATEST_FIXNUM, LEAST_FIXNUM
+from ..destinations import FIRST_OF_VALUES, RAW, VALUE
+from ..environment import Variable
+from ..loop_shapes import quiet
+from ..kinds import (
     DIVIDE,
     DOUBLE,
     FEW_BITS,

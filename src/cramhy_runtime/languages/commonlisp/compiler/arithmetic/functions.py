@@ -7,11 +7,11 @@ the same; what the test refuses is called as it stands.
 from __future__ import annotations
 
 from cramhy_runtime.ground.packages import sym
-from . import nodes
-from .core import expression, word
-from .generate_arithmetic import AND, DOUBLE_CLASS, FLOAT_CLASS, IF, INT_CLASS, IS, LARGEST, OR
-from .generate_quotients import QuotientGenerator
-from .kinds import (
+from .. import nodes
+from ..core import expression, word
+from .operations import AND, DOUBLE_CLASS, FLOAT_CLASS, IF, INT_CLASS, IS, LARGEST, OR
+from .quotients import QuotientGenerator
+from ..kinds import (
     ABS,
     COERCE,
     DOUBLE,
