@@ -1,15 +1,18 @@
 # make tutorial: both lectures, typed into the REPL. make view: the turtle draws a house on a page. make kitchen: a robot sets a table.
 # make test: the tests. make soak: each case of them, for hours.
 # make docs: the pages with what happens now. make site: the pages as a site, in site/index.html.
+# make bench: what things cost, beside their goals and beside others. make bench-compare COMMIT=HEAD~1: this checkout beside that one.
 # make notebooks OUT=folder: the tutorial as notebooks.
 # The first call of tutorial, view or kitchen makes a small environment in .venv; the first call of any other target adds the rest to it.
 PYTHON ?= python3
+COMMIT ?= release
 BIN := .venv/bin
 LIGHT := .venv/.light
 ROBOT := .venv/.robot
 READY := .venv/.ready
+PEERS := .venv/.peers
 
-.PHONY: tutorial view kitchen test interpreters docs notebooks site bench golden lint soak clean
+.PHONY: tutorial view kitchen test interpreters docs notebooks site bench bench-compare golden lint soak clean
 
 tutorial: $(LIGHT)
 	@$(BIN)/python tutorials/lectures.py --png turtle.png
@@ -42,8 +45,12 @@ notebooks: $(READY)
 site: $(READY)
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
-bench: $(READY)
+bench: $(PEERS)
+	@$(BIN)/python benchmarks/table.py
 	@for file in benchmarks/*_bench.py; do echo "== $$file"; $(BIN)/python $$file; done
+
+bench-compare: $(READY)
+	@$(BIN)/python benchmarks/compare.py $(COMMIT) $(ARGUMENTS)
 
 soak: $(READY)
 	@CRAMHY_SOAK=1 $(BIN)/python -m pytest
@@ -73,6 +80,11 @@ $(READY): $(LIGHT)
 	@echo "Adding what tests and pages need to .venv (once) ..."
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	@touch $(ROBOT) $(READY)
+
+# What the benchmarks look at beside ours. Without network they run without it.
+$(PEERS): $(READY)
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check trio simpy py_trees || echo "Not all peers are to be had here."
+	@touch $(PEERS)
 
 clean:
 	rm -rf .venv .pytest_cache .hypothesis site

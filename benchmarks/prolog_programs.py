@@ -62,6 +62,7 @@ CYCLE = "(and (edge ?x ?y) (edge ?y ?z) (edge ?z ?x))"
 GOALS = {  # name → the goal, and what stands for its solutions when all are wanted
     "nrev 30": (f"(nrev {numbers(30)} ?r)", None),
     "nrev 300": (f"(nrev {numbers(300)} ?r)", None),
+    "append 10000": (f"(app {numbers(10_000)} (1) ?c)", None),
     "append": (f"(app {numbers(20)} (1) ?c)", None),
     "member 1000": (f"(member ?x {numbers(1000)})", "?x"),
     "own member 100": (f"(mem ?x {numbers(100)})", "?x"),

@@ -128,16 +128,27 @@
   (setv block (if (listp name) name.cdr.car name) #(plain _) (plain-parameters lambda-list))
   (setv #(_ declarations forms) (body-parts body))
   (.append declarations `(declare (ignorable ~@(required-names plain))))  ; their classes choose the method, which is a use
-  (if (mentions (list-from body) #{(sym "CALL-NEXT-METHOD") (sym "NEXT-METHOD-P")})
+  (setv required (required-names plain) all-required (= (list (elements plain)) required))
+  (when (not (mentions (list-from body) #{(sym "CALL-NEXT-METHOD") (sym "NEXT-METHOD-P")}))
+    (return #(`(lambda ~plain ~@declarations (block ~block ~@forms)) None)))
+  (setv next (gensym "NEXT") rest (gensym "ARGUMENTS"))
+  (if (and all-required (= (len (set required)) (len required)))  ; the next method gets what this one got, which nobody changes
       (do
-        (setv next (gensym "NEXT") rest (gensym "ARGUMENTS"))
+        (setv given (lfor variable required (gensym (symbol-name variable))))
+        #(`(lambda [~next ~@given]
+             (flet [[call-next-method [&rest ~rest] (%next-values ~next ~rest ~@given)]
+                    [next-method-p [] (%next-method-exists ~next)]]
+               (let [~@(lfor #(variable value) (zip required given) (list-from [variable value]))]
+                 ~@declarations
+                 (block ~block ~@forms))))
+          :directly))
+      (do
         #(`(lambda [~next ~@(elements plain)]
              ~@declarations
              (flet [[call-next-method [&rest ~rest] (apply ~next ~rest)]
                     [next-method-p [] (%next-method-exists ~next)]]
                (block ~block ~@forms)))
-          True))
-      #(`(lambda ~plain ~@declarations (block ~block ~@forms)) None)))
+          True))))
 
 (defoperator defmethod [name #* forms]
   (setv #(qualifiers lambda-list body) (method-parts forms))

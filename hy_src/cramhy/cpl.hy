@@ -102,12 +102,12 @@ What the operators mean stands there, and in the sections of cpl.md that the com
   types)
 
 (defn handlers [clauses again]
-  "(list (list type function) ...) for the clauses: one for each type of an (or ...), and one for types named twice, the last."
+  "type function ... for the clauses: one pair for each type of an (or ...), and one for types named twice, the last."
   (setv found {})
   (for [clause (elements clauses)]
     (setv types (failure-types clause) #(_ variables #* body) clause)
     (setv #(declarations forms) (split-declarations body))
-    (setv body `(~@declarations (flet [[retry [] (funcall ~again)]] ~@forms)))
+    (setv body `(~@declarations (flet [[retry [] (%retry ~again)]] ~@forms)))
     (setv condition (gensym "CONDITION"))
     (for [each types]
       (when (in each found)
@@ -117,7 +117,7 @@ What the operators mean stands there, and in the sections of cpl.md that the com
             (if (and (is variables.cdr None) (not (.startswith (symbol-name variables.car) "&")))
                 `(lambda [~variables.car ~again] ~@body)
                 `(lambda [~condition ~again] (funcall (lambda ~variables ~@body) ~condition))))))
-  (lfor #(each function) (.items found) `(list ~(if (is-code each) each `(quote ~each)) ~function)))
+  (lfor #(each function) (.items found) part [(if (is-code each) each `(quote ~each)) function] part))
 
 (defoperator with-failure-handling [clauses #* body]
   (setv again (gensym "RETRY"))
@@ -126,8 +126,8 @@ What the operators mean stands there, and in the sections of cpl.md that the com
            "the first part is a list of clauses."))
   `(block nil
      (%with-failure-handling
-       (list ~@(handlers clauses again))
-       (lambda [~again] (flet [[retry [] (funcall ~again)]] ~@body)))))
+       (lambda [~again] (flet [[retry [] (%retry ~again)]] ~@body))
+       ~@(handlers clauses again))))
 
 (defoperator with-retry-counters [counters #* body]
   (setv names [])

@@ -167,7 +167,7 @@ def test_step_shows_the_calls(lisp):
 
 
 def test_disassemble_shows_the_python(lisp):
-    assert lisp("(disassemble 'several)") == "; Python of SEVERAL\ndef several():\n    return values(1, 2)\n"
+    assert lisp("(disassemble 'several)") == "; Python of SEVERAL\ndef several():\n    return LMultipleValues((1, 2))\n"
     assert lisp("(disassemble #'several)") == lisp("(disassemble 'several)")
     assert lisp("(defun hi (x) (list x (fib x))) (disassemble 'hi)") == (
         "; Python of HI\ndef hi(x):\n"
@@ -196,5 +196,5 @@ def test_a_file_keeps_its_lambda_expressions(lisp, tmp_path):
     lisp("(function-lambda-expression #'lambda-file::from-file)")
     assert lisp.values[0].replace("LAMBDA-FILE::", "").split() == "(LAMBDA (A &KEY B) (BLOCK FROM-FILE (LIST A B)))".split()
     assert f"Source file: {path}:4\n" in lisp("(describe 'lambda-file::from-file)")
-    assert "def from_file(a, *Lkeys, **Lpython):" in lisp("(disassemble 'lambda-file::from-file)")
+    assert "def from_file(a, *Lgiven, b=None, **Lpython):" in lisp("(disassemble 'lambda-file::from-file)")
     lisp("(delete-package :lambda-file)")

@@ -5,6 +5,7 @@ from prolog_text import ask, error_text, first, function, group, read, show
 
 from cramhy_runtime.ground.data import list_from
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for
+from cramhy_runtime.prolog.engine import database
 from cramhy_runtime.prolog.engine import fact_groups as facts
 from cramhy_runtime.prolog.builtins import native_predicates as natives
 from cramhy_runtime.prolog import query
@@ -30,6 +31,16 @@ def test_a_redefined_group_moves_to_the_end_and_warns(warnings_given):
     group("g1", "((p 3))", extendable="(p)")
     assert ask("(p ?x)") == "(((?X . 2)) ((?X . 3)))"
     assert warnings_given == ["Redefining prolog fact-group G1."]
+
+
+def test_a_redefinition_asks_once_for_the_groups_of_a_predicate(warnings_given, monkeypatch):
+    """Each time all its clauses are looked at, so a large group took minutes."""
+    group("g", *(f"((p {i}))" for i in range(20)), "((q 1))", "((q 2))")
+    asked, groups = [], database.Functor.groups
+    monkeypatch.setattr(database.Functor, "groups", lambda entry: asked.append(entry) or groups(entry))
+    group("g", *(f"((p {i}))" for i in range(30)), "((q 1))")
+    assert len(asked) == 2
+    assert len(ask("(p ?x)").split("?X")) == 31
 
 
 def test_extending_without_permission_is_an_error():

@@ -51,14 +51,58 @@ LONG = 20_000
 """A list of more elements is made in parts, with a checkpoint before each."""
 
 
+class SlotClasses(dict):
+    """For the function of a symbol: attribute → the set of the classes from whose objects compiled code may take the slot itself.
+
+    They are the classes of whose objects the function reads, or writes, just that attribute. A set is made when compiled code asks for
+    it, as ``symbol.reads.of_speed``. `Symbol.function_changed` keeps the sets right, and so do generic functions.
+    """
+
+    __slots__ = ("symbol", "cell")
+
+    def __init__(self, symbol, cell):
+        self.symbol, self.cell = symbol, cell
+
+    def __getattr__(self, name):
+        if not name.startswith("of_"):
+            raise AttributeError(name)
+        return self[name.removeprefix("of_")]
+
+    def __missing__(self, attribute):
+        classes = self[attribute] = {cls for cls, other in _accesses(getattr(self.symbol, self.cell)) if other == attribute}
+        return classes
+
+    def refresh(self):
+        """Find out anew what the function does."""
+        for classes in self.values():
+            classes.clear()
+        for cls, attribute in _accesses(getattr(self.symbol, self.cell)):
+            if attribute in self:
+                self[attribute].add(cls)
+
+
+def _effective_functions(function, count):
+    """What a call of ``function`` with ``count`` arguments calls, by the class of the first, as far as that is known and decides."""
+    return dict(function.cache) if getattr(function, "by_first_of", None) == count else {}
+
+
+def _accesses(function):
+    """The pairs (class, attribute) for which ``function`` just reads or writes that attribute of an object of that class."""
+    known = getattr(function, "__dict__", None)
+    if known and "slot_of" in known and "traced" not in known:
+        return ((function.slot_of, function.attribute),)
+    accesses = getattr(function, "slot_accesses", None)
+    return () if accesses is None else accesses()
+
+
 class Symbol:
     """A name with a value, a function, a property list and a home package.
 
     ``value`` is the current dynamic value: see ``ground/dynamic.py`` for how tasks keep theirs apart.
     ``function`` is always callable; that of an undefined function signals ``undefined-function``.
-    ``reads`` and ``writes`` are the structure class whose slot ``function`` reads and ``setf_function`` writes: where the compiler
-    saw that they do, it takes the slot of an object of that class itself. `function_changed` keeps them right. ``attribute`` is that
-    slot's Python name in compiled code, once and for all: a later accessor of this name for a slot of another name is just called.
+    ``reads`` and ``writes`` tell from which objects ``function`` and ``setf_function`` just read or write an attribute (`SlotClasses`),
+    ``keyed`` are the ways in which compiled code calls ``function`` with keywords (`ground.keyword_calls`). ``unary`` and ``binary`` are
+    tables for calls with one and two arguments, if ``function`` is generic: the function to call, by the class of the first argument.
     """
 
     __slots__ = (
@@ -72,9 +116,11 @@ class Symbol:
         "special",
         "constant",
         "compiler_data",
-        "reads",
-        "writes",
-        "attribute",
+        "_reads",
+        "_writes",
+        "keyed",
+        "_unary",
+        "_binary",
         "__weakref__",
     )
 
@@ -89,19 +135,45 @@ class Symbol:
         self.special = False
         self.constant = False
         self.compiler_data = None
-        self.reads = self.writes = self.attribute = None
+        self._reads = self._writes = self.keyed = self._unary = self._binary = None
 
     def function_changed(self):
         """To be called after ``function`` or ``setf_function`` got another value."""
-        self.reads, self.writes = self._slot_class(self.function), self._slot_class(self.setf_function)
+        if self._reads is not None:
+            self._reads.refresh()
+        if self._writes is not None:
+            self._writes.refresh()
+        for count, table in ((1, self._unary), (2, self._binary)):
+            if table is not None:
+                table.clear()
+                table.update(_effective_functions(self.function, count))
+        if self.keyed is not None:
+            for calls in self.keyed.values():
+                calls.refresh()
 
-    def _slot_class(self, function):
-        known = getattr(function, "__dict__", None)
-        if not known or "traced" in known or "slot_of" not in known:
-            return None
-        if self.attribute is None:
-            self.attribute = function.attribute
-        return known["slot_of"] if function.attribute == self.attribute else None
+    @property
+    def reads(self) -> SlotClasses:
+        if self._reads is None:
+            self._reads = SlotClasses(self, "function")
+        return self._reads
+
+    @property
+    def writes(self) -> SlotClasses:
+        if self._writes is None:
+            self._writes = SlotClasses(self, "setf_function")
+        return self._writes
+
+    @property
+    def unary(self) -> dict[type, Callable[..., Any]]:
+        if self._unary is None:
+            self._unary = _effective_functions(self.function, 1)
+        return self._unary
+
+    @property
+    def binary(self) -> dict[type, Callable[..., Any]]:
+        if self._binary is None:
+            self._binary = _effective_functions(self.function, 2)
+        return self._binary
 
     def __repr__(self) -> str:
         return f"{self.package.name}::{self.name}" if self.package else f"#:{self.name}"
@@ -326,15 +398,9 @@ class Character:
     """A character object, ``#\\a``. Interned: two characters with the same code are the same object."""
 
     __slots__ = ("char",)
-    _interned: dict = {}
 
     def __new__(cls, char):
-        found = cls._interned.get(char)
-        if found is None:
-            found = super().__new__(cls)
-            found.char = char
-            cls._interned[char] = found
-        return found
+        return CHARACTERS[char]
 
     @property
     def code(self):
@@ -345,6 +411,19 @@ class Character:
 
     def __reduce__(self):
         return Character, (self.char,)
+
+
+class _Characters(dict):
+    """One-character string → `Character`, made when it is asked for. So Python finds those of a whole text in one call of `map`."""
+
+    def __missing__(self, char):
+        found = self[char] = new_object(Character)
+        found.char = char
+        return found
+
+
+CHARACTERS: dict[str, Character] = _Characters()
+"""All characters that there are, by their one-character strings."""
 
 
 def is_ratio(thing: object) -> bool:

@@ -27,7 +27,7 @@ def eq(x, y):
     return eql(x, y)
 
 
-_EQUAL_TO_THEMSELVES = frozenset((Symbol, Keyword, Character, Cons, str, *WRITABLE_STRINGS))
+EQUAL_TO_THEMSELVES = frozenset((Symbol, Keyword, Character, Cons, str, *WRITABLE_STRINGS))
 """Classes whose objects are ``eql`` to themselves only, for a quick answer."""
 
 
@@ -40,7 +40,7 @@ def eql(x, y):
         return True if (x is False and y is None) or (x is None and y is False) else None
     if cls is int:
         return True if x == y else None
-    if cls in _EQUAL_TO_THEMSELVES:
+    if cls in EQUAL_TO_THEMSELVES:
         return None
     if cls is float or cls is DoubleFloat:
         if x == y:
@@ -148,7 +148,7 @@ def eql_key(x):
     cls = x.__class__
     if cls in _OWN_KEY:
         return x
-    if cls in _EQUAL_TO_THEMSELVES:
+    if cls in EQUAL_TO_THEMSELVES:
         return (id(x), None)
     if cls is float or cls is DoubleFloat:
         if x != x:
@@ -216,5 +216,7 @@ def equalp_key(x):
     return equal_key(x)
 
 
+OWN_KEYS = {"EQ": frozenset(_OWN_KEY), "EQL": frozenset(_OWN_KEY), "EQUAL": frozenset((*_OWN_KEY, str)), "EQUALP": frozenset()}
+"""The classes whose objects are their own hash keys, by the name of the equality."""
 KEYS = {"EQ": eq_key, "EQL": eql_key, "EQUAL": equal_key, "EQUALP": equalp_key}
 """The hash key of each equality, by the name of the equality."""

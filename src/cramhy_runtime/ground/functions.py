@@ -11,10 +11,12 @@ texts are SBCL's.
 from __future__ import annotations
 
 
+from types import FunctionType
+
 from .condition_types import SimpleTypeError
 from .condition_types import UndefinedFunction as UndefinedFunctionError
 from .conditions import error, type_error
-from .data import Cons, MultipleValues, Symbol, UndefinedFunction, is_ratio, lisp_list, list_parts, values
+from .data import Cons, MultipleValues, Symbol, UndefinedFunction, is_ratio, lisp_list, list_parts, one, values
 from .equality import eql
 from .packages import is_symbol, sym
 
@@ -58,6 +60,12 @@ def key_of(key):
 
 def primary(function):
     """``function``, made to return its first value only."""
+    if (
+        function.__class__ is FunctionType
+        and function.__dict__
+        and ("single_valued" in function.__dict__ or "slot_of" in function.__dict__)
+    ):
+        return function
 
     def first_value(*arguments):
         value = function(*arguments)
@@ -66,6 +74,23 @@ def primary(function):
         return value
 
     return first_value
+
+
+def directly(function):
+    """``function``, or the Python function behind it if it is a standard one with keywords: for calls that give it none."""
+    return function.__dict__.get("python", function) if function.__class__ is FunctionType else function
+
+
+def values_of(function, items):
+    """The first values that ``function``, for one argument, gives for each of ``items``: a Python list."""
+    return [value if (value := function(item)).__class__ is not MultipleValues else one(value) for item in items]
+
+
+def accepted(predicate, items, wanted=True):
+    """Those of ``items`` that the Lisp function ``predicate`` accepts, or with ``wanted=False`` rejects: a Python list."""
+    if wanted:
+        return [item for item in items if (answer := predicate(item)) is not None and (answer is True or holds(answer))]
+    return [item for item in items if (answer := predicate(item)) is None or answer is not True and not holds(answer)]
 
 
 def equal_to(item):
@@ -91,7 +116,8 @@ def test_of(test, test_not, both="can't specify both :TEST and :TEST-NOT"):
     function = function_of(test, "\nwhen binding SB-IMPL::TEST")
     if function is eql:
         return None
-    return lambda first, second: holds(function(first, second))
+    function = directly(function)
+    return lambda first, second: (answer := function(first, second)) is not None and (answer is True or holds(answer))
 
 
 def match_of(item, key, test, test_not, both="can't specify both :TEST and :TEST-NOT"):
@@ -112,10 +138,10 @@ def predicate_of(predicate, key=None, wanted=True):
     key = key_of(key)
     if wanted:
         if key is None:
-            return lambda element: holds(function(element))
+            return lambda element: (answer := function(element)) is not None and (answer is True or holds(answer))
         return lambda element: holds(function(key(element)))
     if key is None:
-        return lambda element: not holds(function(element))
+        return lambda element: (answer := function(element)) is None or answer is not True and not holds(answer)
     return lambda element: not holds(function(key(element)))
 
 
@@ -143,8 +169,10 @@ def funcall(function, *arguments):
 def apply(function, argument, *arguments):
     """``apply``: as `funcall`, but the last argument is the list of the remaining arguments."""
     function = function_of(function, "\nwhen binding FUNCTION")
-    *first, last = (argument, *arguments)
-    return function(*first, *_spread(last))
+    if not arguments:
+        return function(*_spread(argument))
+    *more, last = arguments
+    return function(argument, *more, *_spread(last))
 
 
 def _spread(lst):

@@ -20,7 +20,7 @@ from cramhy_runtime.kernel.images import per_image
 from .arrays import is_bit_vector
 from .conditions import error, type_error
 from .data import UNSUPPLIED, Character, Cons, Keyword, LispString, MultipleValues, Symbol, one, truth
-from .equality import KEYS, eq, eql, equal, equalp, equalp_key, is_number
+from .equality import KEYS, OWN_KEYS, eq, eql, equal, equalp, equalp_key, is_number
 from .functions import function_of
 from .packages import sym
 
@@ -40,17 +40,29 @@ class HashTable:
     """A hash table; for Python it is a mapping: ``table[key]``, ``key in table``, ``len(table)``, ``for key in table``.
 
     test: "EQ", "EQL", "EQUAL" or "EQUALP", or a `UserTest`. weakness: ``None`` or a keyword name such as "KEY". size: what the program
-    asked for; the table grows as it likes.
+    asked for; the table grows as it likes. ``plain``: the classes of keys that are their own `hash_key`, which then need not be called.
     """
 
     lisp_name = "HASH-TABLE"
-    __slots__ = ("test", "weakness", "entries", "hash_key", "size", "rehash_size", "rehash_threshold", "synchronized", "__weakref__")
+    __slots__ = (
+        "test",
+        "weakness",
+        "entries",
+        "hash_key",
+        "plain",
+        "size",
+        "rehash_size",
+        "rehash_threshold",
+        "synchronized",
+        "__weakref__",
+    )
 
     def __init__(self, test="EQL", weakness=None, size=7, rehash_size=1.5, rehash_threshold=1.0, synchronized=False):
         self.test = test
         self.weakness = weakness
         hash_key = KEYS[test] if test.__class__ is str else test.key
         self.hash_key = hash_key if weakness is None else _weak_key(hash_key)
+        self.plain = OWN_KEYS[test] if test.__class__ is str and weakness is None else OWN_KEYS["EQUALP"]
         self.entries = {}
         self.size, self.rehash_size, self.rehash_threshold = size, rehash_size, rehash_threshold
         self.synchronized = synchronized
@@ -263,10 +275,20 @@ def value_in_table(key, table, default=None):
     """The first value of `gethash`, which is what compiled code mostly wants; it saves making two."""
     if table.__class__ is not HashTable:
         need_table(table)
-    entry = table.entries.get(table.hash_key(key))
+    entry = table.entries.get(key if key.__class__ in table.plain else table.hash_key(key))
     if entry is None:
         return default
     return entry[1] if table.weakness is None else _strong(entry[1])
+
+
+def value_and_presence(key, table, default=None):
+    """The two values of `gethash` as a plain tuple, for compiled code that takes both apart at once."""
+    if table.__class__ is not HashTable:
+        need_table(table)
+    entry = table.entries.get(key if key.__class__ in table.plain else table.hash_key(key))
+    if entry is None:
+        return default, None
+    return entry[1] if table.weakness is None else _strong(entry[1]), True
 
 
 def set_gethash(value, key, table, default=None):
@@ -274,7 +296,7 @@ def set_gethash(value, key, table, default=None):
     if table.__class__ is not HashTable or table.weakness is not None:
         need_table(table).put(key, value)
         return value
-    hash_key, entries = table.hash_key(key), table.entries
+    hash_key, entries = key if key.__class__ in table.plain else table.hash_key(key), table.entries
     entry = entries.get(hash_key)
     if entry is None:
         entries[hash_key] = [key, value]
@@ -297,8 +319,14 @@ def clrhash(table):
 def maphash(function, table):
     """``maphash``: call ``function`` with each key and value; it may change or remove entries. Returns nil."""
     function = function_of(function, "\nwhen binding SB-KERNEL:FUNCTION-DESIGNATOR")
-    for key, value in need_table(table).items():
-        function(key, value)
+    if need_table(table).weakness is not None:
+        for key, value in table.items():
+            function(key, value)
+        return
+    entries = table.entries
+    for hash_key, entry in list(entries.items()):
+        if entries.get(hash_key) is entry:
+            function(entry[0], entry[1])
 
 
 def hash_table_p(thing):

@@ -362,7 +362,7 @@ CRAMHY = ours("CRAMHY", lambda: Package("CRAMHY"))  # what macros expand into: f
 
 USERS = ("COMMON-LISP-USER", "CRAM-USER", "TESTING-USER", "PYTHON-USER")
 """The packages of our own code whose contents are the user's: each image has its own."""
-_DEFINITIONS = ("value", "function", "macro", "setf_function", "plist", "special", "constant", "compiler_data", "reads", "writes")
+_DEFINITIONS = ("value", "function", "macro", "setf_function", "plist", "special", "constant", "compiler_data")
 _definitions = attrgetter(*_DEFINITIONS)
 _redefined: dict[Symbol, tuple] = {}  # symbols of ours that users redefined -> what they mean by themselves
 
@@ -400,8 +400,8 @@ def was_redefined(symbol):
 
 
 def _state_of(symbol):
-    *others, data, reads, writes = _definitions(symbol)
-    return (*others, dict(data) if data else data, reads, writes)
+    *others, data = _definitions(symbol)
+    return (*others, dict(data) if data else data)
 
 
 @part
@@ -417,6 +417,7 @@ class _Redefinitions:
         for symbol, own in _redefined.items():
             for name, value in zip(_DEFINITIONS, state.get(symbol, own)):
                 setattr(symbol, name, value)
+            symbol.function_changed()
 
     @staticmethod
     def copy(state):

@@ -11,7 +11,8 @@ from cramhy_runtime import kernel
 
 from cramhy_runtime.ground.data import one, truth
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
-from .fluents import Fluent, Net, peekers, value
+from .fluents import Fluent, value
+from .nets import Net, peekers
 
 if TYPE_CHECKING:
     from collections.abc import Callable

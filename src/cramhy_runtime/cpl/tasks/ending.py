@@ -74,7 +74,8 @@ def end_tasks(tasks: list[Any], reason: str | None = None) -> None:
         task.ask_to_end(reason)
     with awaiting_death(tasks):
         for task in tasks:
-            task.park_until(DEAD, lambda task=task: f"the cleanup of {task.name}")
+            if task.status not in DEAD:
+                task.park_until(DEAD, lambda task=task: f"the cleanup of {task.name}")
 
 
 def end_waits(task: AbstractTask[object], because: str | None = None) -> bool:

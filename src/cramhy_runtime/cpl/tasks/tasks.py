@@ -17,10 +17,12 @@ from __future__ import annotations
 import itertools
 import time
 from collections import deque
+from functools import partial
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Generic, Self, TypeVar, subscripted
 
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.active import ACTIVE
 
 from cramhy_runtime.ground import condition_types as types
 from cramhy_runtime.ground.conditions import error, from_python, type_error
@@ -247,7 +249,7 @@ class AbstractTask(Generic[T]):
                 self.path, self.node = parent.path, parent.node
         if self._name is None:
             self.name  # names are numbered in the order in which tasks start
-        me = kernel.current()
+        me = ACTIVE.value.current
         self.kernel_task = task = me.kernel.spawn(self._live, inherited_bindings(me, self, parent), name=self._name_as_text)
         task.when_refused = self._refused
         if self.held:
@@ -283,6 +285,10 @@ class AbstractTask(Generic[T]):
             if self.held:
                 obey(self)
             status = SUCCEEDED
+        except kernel.WaitEnded as exception:
+            status, result = self.outcome(exception)
+        except kernel.Cancelled:
+            status, result = EVAPORATED, NO_VALUES
         except BaseException as exception:
             status, result = self.outcome(exception)
         if self.children:
@@ -292,7 +298,7 @@ class AbstractTask(Generic[T]):
                 status, result = self.outcome(exception)
         if self.threads:
             self.end_threads(self.threads)
-        if me.cancelled and not me.cancelled_delivered and status is SUCCEEDED:
+        if me.cancel_request is not None and not me.cancelled_delivered and status is SUCCEEDED:
             status, result = EVAPORATED, NO_VALUES  # asked to end at the last moment
         if self.unclaimed:
             self.tell_unclaimed(self.unclaimed)
@@ -354,7 +360,7 @@ class AbstractTask(Generic[T]):
 
     def _die(self, status: Keyword, result: Any) -> None:
         self.result = result  # before the status, so that who sees a dead status can read it
-        self.ended_at = kernel.active().clock.now()
+        self.ended_at = ACTIVE.value.clock.now()
         self.body = self.constraints = self.suspension_handlers = None
         if self.parent is not None:
             self.parent.children.pop(self, None)
@@ -395,17 +401,20 @@ class AbstractTask(Generic[T]):
                 kernel_task.cancel(reason)
             self._die(EVAPORATED, NO_VALUES)  # it never ran, so nothing is to be cleaned up
             return
-        kernel_task.cancel(lambda: self._begin_to_end(reason))
+        kernel_task.cancel(partial(self._begin_to_end, reason))
 
     def _begin_to_end(self, reason: str | None) -> kernel.Cancelled:
         """The exception for a request to end that arrives in the task itself. Cleanup begins after it is raised."""
-        if kernel.current() is self.kernel_task:
+        if ACTIVE.value.current is self.kernel_task:
             if active_tags:
                 log("RECEIVE-EVENT", EVENT, "EVAPORATE", reason)
-            strays = [child for child in self.children if child.ended is None]  # no form waits for these and ends them
-            if strays:
-                end_tasks(strays, reason)
-            self.cleanup_limit = limit_cleanup(self)
+            if self.children:
+                strays = [child for child in self.children if child.ended is None]  # no form waits for these and ends them
+                if strays:
+                    end_tasks(strays, reason)
+            limit = limit_cleanup(self)
+            if limit is not None:
+                self.cleanup_limit = limit
         return kernel.Cancelled(reason)
 
     def suspend(self, reason: str | None = None, sync: bool | None = True) -> None:

@@ -169,6 +169,7 @@ def publish(symbol, function_):
     if callable(function_):
         symbol = own_symbol(symbol)
         symbol.function = _as_lisp_calls(function_)
+        symbol.function_changed()
     return symbol
 
 

@@ -22,7 +22,8 @@ from .clause_bodies import CALL, CONSTRUCTS, CUT, FILTER, IF, OR, SOFT_IF, Bodie
 from .list_building import FILL, Holes, can_wait, hole_positions
 from ..engine.machine import fail
 from .head_matching import A_LIST, SAME, UNBOUND
-from ..engine.relations import compile_relation, index_key
+from ..engine.list_shapes import index_key
+from ..engine.relations import relation_of, relation_of_rows
 from ..engine.services import SERVICES
 from .generated_code import Rest, is_ground
 
@@ -37,6 +38,9 @@ _ANY, _LIST, _OTHER = object(), object(), object()
 def compile_clauses(predicate, clauses):
     """The call function of ``predicate`` for ``clauses``, a list of `Clause`, and its `Relation` if the clauses are rows of one."""
     arity, fitting = predicate.arity, []
+    relation = relation_of(clauses, arity)
+    if relation is not None:
+        return relation.call_function(), relation
     for clause in clauses:
         arguments = _head_arguments(clause.head, arity)
         if arguments is not None:
@@ -44,7 +48,7 @@ def compile_clauses(predicate, clauses):
     if not fitting:
         return lambda m, step: fail(m), None
     if all(clause.goals is None and is_ground(arguments) for arguments, clause in fitting):
-        relation = compile_relation([arguments for arguments, _ in fitting])
+        relation = relation_of_rows([arguments for arguments, _ in fitting])
         return relation.call_function(), relation
     return PredicateCode(predicate, fitting).function(), None
 

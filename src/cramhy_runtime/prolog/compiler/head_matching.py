@@ -13,6 +13,7 @@ from cramhy_runtime.ground.data import Cons, Symbol
 from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
 
 from ..engine.database import traced
+from ..terms.terms import NEW_VARIABLE
 from .generated_code import Rest, Source, is_ground, variables
 
 _DEEP = 4
@@ -167,7 +168,9 @@ class Matching(Source):
         """An expression for the term ``pattern``; new variables and conses are made on lines before it."""
         if variable(pattern):
             if pattern is ANONYMOUS:
-                return "Var()"
+                name = self.fresh("v")
+                self.emit(NEW_VARIABLE.format(name))
+                return name
             if pattern not in names:
                 names[pattern] = self.fresh("v")
                 self.new_variable(names[pattern], pattern)
@@ -194,7 +197,7 @@ class Matching(Source):
 
     def new_variable(self, python_name, symbol):
         """Emit code that makes a variable. While goals are traced, the variable knows its name in the clause."""
-        self.emit(f"{python_name} = Var()")
+        self.emit(NEW_VARIABLE.format(python_name))
         self.name_variable(python_name, symbol)
 
     def name_variable(self, python_name, symbol):

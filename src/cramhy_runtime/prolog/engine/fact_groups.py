@@ -64,7 +64,10 @@ def define_fact_group(name, extendable, facts, origins=()):
         functor = head.car
         if not valid_functor(functor):
             return error(SimpleError("Functor ~a of fact head ~a is not valid.", functor, head))
-        others = [group for group in functors[functor].groups() if group is not name] if functor in functors else None
+        if functor in clauses:  # which was looked at with its first fact
+            others = None
+        else:
+            others = [group for group in functors[functor].groups() if group is not name] if functor in functors else None
         if others and functor not in extendable:
             return error(
                 SimpleError(

@@ -28,15 +28,22 @@ UNSET = type("Unset", (), {"__repr__": lambda self: "#<unset>", "__slots__": ()}
 class Var:
     """A logic variable. ``ref`` is its value, which may be another variable, or `UNSET`; ``name`` is the symbol that shows it.
 
-    ``written`` is its symbol in the text of a clause, while goals are watched.
+    ``written`` is its symbol in the text of a clause, while goals are watched. Slots are read ten times as fast as attributes that an
+    object has from its class. Compiled code makes variables by `NEW_VARIABLE`, without a call of the constructor.
     """
 
-    ref = UNSET
-    name = None
-    written = None
+    __slots__ = ("ref", "name", "written", "__weakref__")
+
+    def __init__(self):
+        self.ref = UNSET
+        self.name = self.written = None
 
     def __repr__(self):
         return f"<{self.name.name if self.name else '?' + format(id(self), 'x')}{'' if self.ref is UNSET else ' = ' + repr(self.ref)}>"
+
+
+NEW_VARIABLE = "{0} = new(Var); {0}.ref = UNSET; {0}.name = {0}.written = None"
+"""Statements of compiled code that make the variable with the Python name ``{0}``; ``new`` is Python's ``object.__new__``."""
 
 
 class TermTail(LazyTail):

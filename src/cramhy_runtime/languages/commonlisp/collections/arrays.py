@@ -352,6 +352,12 @@ def vector_push(element, vector):
 
 def vector_push_extend(element, vector, min_extension=None):
     """``vector-push-extend``: as `vector_push`, but a full vector grows, by ``min_extension`` elements at least."""
+    if vector.__class__ is Vector and vector.element_type is True:
+        index = vector.fill_pointer
+        if index is not None and index < vector.dimensions[0]:
+            vector.storage[vector.offset + index] = element
+            vector.fill_pointer = index + 1
+            return index
     _filled(vector)
     index, size = vector.fill_pointer, _size(vector)
     if index < size:

@@ -14,7 +14,7 @@ from cramhy_runtime.ground.condition_types import SimpleTypeError
 from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import STRETCH, UNSUPPLIED, Cons, MultipleValues, Symbol, list_from
 from cramhy_runtime.kernel.active import checkpoint
-from cramhy_runtime.ground.equality import eql
+from cramhy_runtime.ground.equality import EQUAL_TO_THEMSELVES, eql
 from cramhy_runtime.ground.functions import equal_to, key_of, match_of, predicate_of, test_of
 from cramhy_runtime.ground.packages import is_symbol, redefined
 from .lists import items_of, not_a_list
@@ -36,13 +36,14 @@ _BINDING_LIST = "\nwhen binding LIST"
 
 def member(item, lst, *, key=None, test=None, test_not=None):
     """``member``: the tail of ``lst`` that starts with ``item``, or nil."""
-    if key is None and test is None and test_not is None and isinstance(item, Symbol):
-        cell = lst
+    if key is None and test is None and test_not is None and (item.__class__ is int or item.__class__ in EQUAL_TO_THEMSELVES):
+        cell, number = lst, item.__class__ is int
         while True:
             for _ in STRETCH:
                 if cell.__class__ is not Cons:
                     return _at_end(cell, lst)
-                if cell.car is item:
+                each = cell.car
+                if each is item or number and each.__class__ is int and each == item:
                     return cell
                 cell = cell.cdr
             checkpoint()
@@ -81,6 +82,21 @@ def _at_end(end, lst):
 
 def assoc(item, alist, *, key=None, test=None, test_not=None):
     """``assoc``: the first pair of ``alist`` whose car is ``item``."""
+    if key is None and test is None and test_not is None and (item.__class__ is int or item.__class__ in EQUAL_TO_THEMSELVES):
+        cell, number = alist, item.__class__ is int
+        while True:
+            for _ in STRETCH:
+                if cell.__class__ is not Cons:
+                    return _at_end(cell, alist)
+                pair = cell.car
+                if pair.__class__ is Cons:
+                    each = pair.car
+                    if each is item or number and each.__class__ is int and each == item:
+                        return pair
+                elif pair is not None and pair is not False:
+                    not_a_list(pair)
+                cell = cell.cdr
+            checkpoint()
     return _pair(match_of(item, key, test, test_not, _BOTH), alist)
 
 

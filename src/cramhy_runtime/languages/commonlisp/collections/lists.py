@@ -12,7 +12,7 @@ from __future__ import annotations
 import itertools
 
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import STRETCH, Cons, MultipleValues, conses, list_end, list_from, list_parts
+from cramhy_runtime.ground.data import STRETCH, Cons, MultipleValues, conses, list_end, list_from, list_parts, new_object
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.heap import CONS, check_room
 from cramhy_runtime.kernel.active import checkpoint
@@ -134,6 +134,7 @@ def _define_path(name, path):
         setattr(pair, last_step, value)
         return value
 
+    accessor.single_valued = True  # `primary` need not look
     accessor.__name__ = accessor.__qualname__ = name
     accessor.__doc__ = f"``{name}``: " + ", then ".join(steps) + "."
     if name not in globals():
@@ -148,6 +149,7 @@ for _index, _name in enumerate("first second third fourth fifth sixth seventh ei
     _define_path(_name, "a" + "d" * _index)
 _define_path("rest", "d")
 first, rest = car, cdr
+car.single_valued = cdr.single_valued = True
 
 
 def cadr(lst):
@@ -197,10 +199,7 @@ def endp(lst):
 
 def list_(*items):
     """``list``: a new list of the arguments."""
-    head = None
-    for item in reversed(items):
-        head = Cons(item, head)
-    return head
+    return list_from(items)
 
 
 def list_star(item, *items):
@@ -458,8 +457,9 @@ def mapcar(function, lst, *lists):
             value = function(cell.car)
             if value.__class__ is MultipleValues:
                 value = value[0] if len(value) else None
-            tail.cdr = tail = Cons(value)
-            cell = cell.cdr
+            cell, new = cell.cdr, new_object(Cons)
+            new.car, new.cdr, tail.cdr = value, None, new
+            tail = new
             if cell.__class__ is not Cons:
                 break
         else:
@@ -494,8 +494,17 @@ def mapc(function, lst, *lists):
         for items in _lockstep((lst, *lists)):
             function(*items)
     else:
-        for cell in cells(lst):
-            function(cell.car)
+        cell = lst
+        while cell.__class__ is Cons:
+            for _ in STRETCH:
+                function(cell.car)
+                cell = cell.cdr
+                if cell.__class__ is not Cons:
+                    break
+            else:
+                checkpoint()
+        if cell is not None and cell is not False:
+            not_a_list(cell)
     return lst
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.data import Cons, LispString
 from cramhy_runtime.ground.equality import eql_key
-from cramhy_runtime.ground.functions import key_of, match_of, predicate_of, test_of
+from cramhy_runtime.ground.functions import accepted, function_of, key_of, match_of, predicate_of, test_of
 from cramhy_runtime.kernel.active import checkpoint
 from .sequence_types import elements, in_turns, limit, same_kind, span, store_all
 from cramhy_runtime.ground.arrays import Vector
@@ -36,6 +36,12 @@ def _chosen(match, sequence, from_end, start, end, count):
         if match(items[index]):
             chosen.add(index)
     return items, chosen
+
+
+def _whole(predicate, sequence, wanted):
+    """``sequence`` without the elements that ``predicate`` accepts, or only them if they are ``wanted``."""
+    function = function_of(predicate, "\nwhen binding SB-IMPL::PREDICATE")
+    return same_kind(sequence, accepted(function, in_turns(elements(sequence)), wanted))
 
 
 def _removed(match, sequence, from_end, start, end, count):
@@ -77,11 +83,15 @@ def remove(item, sequence, *, from_end=None, test=None, test_not=None, start=0, 
 
 def remove_if(predicate, sequence, *, from_end=None, start=0, end=None, count=None, key=None):
     """``remove-if``: a sequence without the elements that ``predicate`` accepts."""
+    if key is None is count and end is None is from_end and start == 0:
+        return _whole(predicate, sequence, False)
     return _removed(predicate_of(predicate, key), sequence, from_end, start, end, count)
 
 
 def remove_if_not(predicate, sequence, *, from_end=None, start=0, end=None, count=None, key=None):
     """``remove-if-not``: a sequence of only the elements that ``predicate`` accepts."""
+    if key is None is count and end is None is from_end and start == 0:
+        return _whole(predicate, sequence, True)
     return _removed(predicate_of(predicate, key, wanted=False), sequence, from_end, start, end, count)
 
 

@@ -5,12 +5,14 @@ With several sequences the shortest decides where to stop. Source: ANSI 17.3; te
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import UNSUPPLIED, Cons, LispString, MultipleValues
+from cramhy_runtime.ground.data import UNSUPPLIED, Cons, LispString, MultipleValues, one
 from cramhy_runtime.ground.functions import function_of, holds, key_of, primary
+from cramhy_runtime.ground.packages import sym
 from .lists import cells
 from .sequence_types import elements, in_turns, part, sequence_type, store_all
 from cramhy_runtime.ground.arrays import Vector
 
+PLUS = sym("+")
 LISP_NAMES = "map map-into reduce every some notany notevery"
 
 
@@ -61,6 +63,8 @@ def reduce(function, sequence, *, key=None, from_end=None, start=0, end=None, in
     """``reduce``: combine the elements with a function of two arguments; without elements call it with none."""
     function = function_of(function, "\nwhen binding FUNCTION")
     items = part(sequence, start, end)
+    if key is None and from_end is None and function is PLUS.function and initial_value is UNSUPPLIED and {*map(type, items)} == {int}:
+        return sum(items)
     key = key_of(key)
     if from_end is not None and from_end is not False:
         items = items[::-1]
@@ -91,12 +95,23 @@ _FIRST = "\nwhen binding SB-IMPL::FIRST-SEQ"
 def every(predicate, sequence, *sequences):
     """``every``: whether ``predicate`` accepts all elements."""
     predicate = _predicate(predicate)
+    if not sequences and sequence.__class__ is Cons:
+        for cell in cells(sequence, _FIRST):
+            if (answer := predicate(cell.car)) is None or answer is not True and not holds(answer):
+                return None
+        return True
     return True if all(holds(predicate(*row)) for row in _rows(sequence, sequences, _FIRST)) else None
 
 
 def some(predicate, sequence, *sequences):
     """``some``: the first true answer of ``predicate``, or nil."""
-    predicate = primary(_predicate(predicate))
+    predicate = _predicate(predicate)
+    if not sequences and sequence.__class__ is Cons:
+        for cell in cells(sequence, _FIRST):
+            if (answer := predicate(cell.car)) is not None and (answer is True or holds(answer)):
+                return one(answer)
+        return None
+    predicate = primary(predicate)
     for row in _rows(sequence, sequences, _FIRST):
         answer = predicate(*row)
         if answer is not None and answer is not False:

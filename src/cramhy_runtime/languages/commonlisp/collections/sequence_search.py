@@ -8,15 +8,38 @@ Source: ANSI 17.2.1 and 17.3; texts are SBCL's.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import TEXTS, Character, Cons
-from cramhy_runtime.ground.equality import eql
-from cramhy_runtime.ground.functions import key_of, match_of, predicate_of, test_of
+from cramhy_runtime.ground.data import STRETCH, TEXTS, Character, Cons
+from cramhy_runtime.ground.equality import EQUAL_TO_THEMSELVES, eql
+from cramhy_runtime.ground.functions import accepted, function_of, holds, match_of, predicate_of, test_of, values_of
+from cramhy_runtime.kernel.active import checkpoint
 from .lists import cells
 from .sequence_types import bounds, elements, in_turns, part, span
 
 LISP_NAMES = """
 find find-if find-if-not position position-if position-if-not count count-if count-if-not search mismatch
 """
+
+
+def _found_among(item, sequence):
+    """The place of ``item``, by ``eql``, in a whole sequence: its index, or -1; ``None`` if it is to be looked for another way."""
+    cls = sequence.__class__
+    if cls in TEXTS:
+        return sequence.find(item.char) if item.__class__ is Character else None
+    if item.__class__ is not int and item.__class__ not in EQUAL_TO_THEMSELVES:
+        return None
+    if cls is Cons:
+        index, cell, number = 0, sequence, item.__class__ is int
+        while True:
+            for _ in STRETCH:
+                if cell.__class__ is not Cons:
+                    return -1 if cell is None else None
+                each = cell.car
+                if each is item or number and each.__class__ is int and each == item:
+                    return index
+                cell = cell.cdr
+                index += 1
+            checkpoint()
+    return None
 
 
 def _walk(match, cell):
@@ -54,12 +77,22 @@ def _first(match, sequence, from_end, start, end):
 
 def find(item, sequence, *, from_end=None, test=None, test_not=None, start=0, end=None, key=None):
     """``find``: the first element that matches ``item``, or nil."""
+    if key is None is test and test_not is None is end and from_end is None and start == 0:
+        index = _found_among(item, sequence)
+        if index is not None:
+            return None if index < 0 else item
     found = _first(match_of(item, key, test, test_not), sequence, from_end, start, end)
     return None if found is None else found[0]
 
 
 def find_if(predicate, sequence, *, from_end=None, start=0, end=None, key=None):
     """``find-if``: the first element that ``predicate`` accepts, or nil."""
+    if sequence.__class__ is Cons and key is None is end and from_end is None and start == 0:
+        predicate = function_of(predicate, "\nwhen binding SB-IMPL::PREDICATE")
+        for cell in cells(sequence):
+            if (answer := predicate(cell.car)) is not None and (answer is True or holds(answer)):
+                return cell.car
+        return None
     found = _first(predicate_of(predicate, key), sequence, from_end, start, end)
     return None if found is None else found[0]
 
@@ -76,6 +109,10 @@ def position(item, sequence, *, from_end=None, test=None, test_not=None, start=0
         start, end = bounds(start, end, len(sequence))
         index = (sequence.find if from_end is None else sequence.rfind)(item.char, start, end)
         return None if index < 0 else index
+    if key is None is test and test_not is None is end and from_end is None and start == 0:
+        index = _found_among(item, sequence)
+        if index is not None:
+            return None if index < 0 else index
     found = _first(match_of(item, key, test, test_not), sequence, from_end, start, end)
     return None if found is None else found[1]
 
@@ -106,6 +143,8 @@ def count(item, sequence, *, from_end=None, test=None, test_not=None, start=0, e
 
 def count_if(predicate, sequence, *, from_end=None, start=0, end=None, key=None):
     """``count-if``: how many elements ``predicate`` accepts."""
+    if key is None is end and from_end is None and start == 0:
+        return len(accepted(function_of(predicate, "\nwhen binding SB-IMPL::PREDICATE"), in_turns(elements(sequence))))
     return _count(predicate_of(predicate, key), sequence, from_end, start, end)
 
 
@@ -119,13 +158,20 @@ def _comparison(test, test_not):
 
 
 def _keyed(items, key):
-    key = key_of(key)
-    return items if key is None else [key(item) for item in in_turns(items)]
+    if key is None or key is False:
+        return items
+    return values_of(function_of(key, "\nwhen binding SB-IMPL::KEY"), in_turns(items))
 
 
 def search(pattern, sequence, *, from_end=None, test=None, test_not=None, key=None, start1=0, end1=None, start2=0, end2=None):
     """``search``: the index in ``sequence`` where the elements of ``pattern`` stand in a row, or nil."""
     context = "\nwhen binding SB-IMPL::SUB-SEQUENCE1"
+    if pattern.__class__ in TEXTS and sequence.__class__ in TEXTS and test is None is test_not and key is None:
+        first, last = bounds(start1, end1, len(pattern))
+        start, end = bounds(start2, end2, len(sequence))
+        backwards = from_end is not None and from_end is not False
+        found = (sequence.rfind if backwards else sequence.find)(pattern[first:last], start, end)
+        return None if found < 0 else found
     wanted = elements(pattern, context)
     first, last = bounds(start1, end1, len(wanted))
     items, start, end = span(sequence, start2, end2)

@@ -9,12 +9,15 @@ Source: ANSI 17.3; texts are SBCL's.
 
 from __future__ import annotations
 
+from functools import cmp_to_key
+
 from cramhy_runtime.ground.equality import is_number
-from cramhy_runtime.ground.functions import function_of, holds, key_of
+from cramhy_runtime.ground.functions import directly, function_of, holds, key_of, values_of
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.kernel.active import checkpoint
 from .sequence_types import elements, in_turns, same_kind, sequence_type, store_all
 
+LESS, GREATER = sym("<"), sym(">")
 LISP_NAMES = "sort stable-sort merge"
 
 RUN = 20_000
@@ -25,24 +28,35 @@ _CONTEXT = "\nwhen binding SB-IMPL::PREDICATE"
 
 def _ordered(items, predicate, key):
     """A new Python list of ``items`` in the order of the predicate."""
-    key = key_of(key)
-    keys = items if key is None else [key(item) for item in in_turns(items)]
-    if predicate is sym("<").function or predicate is sym(">").function:
-        if all(is_number(one) and one.__class__ is not complex and one == one for one in in_turns(keys)):
-            indices = _numbered(keys, predicate is sym(">").function)
+    plain = key is None or key is False
+    keys = items if plain else values_of(function_of(key, "\nwhen binding SB-IMPL::KEY"), in_turns(items))
+    if predicate is LESS.function or predicate is GREATER.function:
+        if _comparable(keys):
+            if plain and len(items) <= RUN:
+                return sorted(items, reverse=predicate is GREATER.function)
+            indices = _numbered(keys, predicate is GREATER.function)
             return [items[index] for index in in_turns(indices)]
+    predicate = directly(predicate)
 
-    class Place:
-        __slots__ = ("key", "item")
+    def compared(one, other):
+        """Negative where ``one`` comes before ``other``. Python's sort asks nothing else."""
+        checkpoint()
+        answer = predicate(one, other)
+        return -1 if answer is not None and (answer is True or holds(answer)) else 0
 
-        def __init__(self, key, item):
-            self.key, self.item = key, item
+    in_order = cmp_to_key(compared)
+    if plain:
+        return sorted(items, key=in_order)
+    places = list(map(in_order, keys))
+    return [items[index] for index in sorted(range(len(keys)), key=places.__getitem__)]
 
-        def __lt__(self, other):
-            checkpoint()
-            return holds(predicate(self.key, other.key))
 
-    return [place.item for place in sorted(map(Place, keys, items))]
+def _comparable(keys):
+    """Whether Python compares ``keys`` as ``<`` does: real numbers, none of which is a NaN."""
+    classes = {*map(type, keys)}
+    if classes <= {int}:
+        return True
+    return all(is_number(one) and one.__class__ is not complex and one == one for one in in_turns(keys))
 
 
 def _numbered(keys, descending):

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import SimpleTypeError, TypeError_, formatted
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, Cons, FreshString, LispString, Symbol, list_from
+from cramhy_runtime.ground.data import CHARACTERS, WRITABLE_STRINGS, Character, Cons, FreshString, LispString, Symbol, list_from
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.kernel.active import checkpoint
@@ -81,7 +81,7 @@ def _turns(items):
 
 def characters(string):
     """The `Character` objects of a Python string."""
-    return [Character(char) for char in in_turns(string)]
+    return list(map(CHARACTERS.__getitem__, in_turns(string)))
 
 
 def elements(sequence, context=""):

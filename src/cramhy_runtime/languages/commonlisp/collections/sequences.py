@@ -16,7 +16,7 @@ from cramhy_runtime.kernel.active import checkpoint
 from cramhy_runtime.ground.packages import sym
 from .element_types import check_element
 from .element_types import initial_element as default_element
-from .lists import cells, items_of, not_a_list
+from .lists import items_of, not_a_list
 from .sequence_types import (
     DIMENSION_LIMIT,
     INDEX_TYPE,
@@ -31,6 +31,7 @@ from .sequence_types import (
 )
 from cramhy_runtime.ground.arrays import LispArray, TypedVector, Vector
 
+STRING = sym("STRING")
 LISP_NAMES = "length elt subseq copy-seq reverse nreverse concatenate make-sequence fill replace"
 
 
@@ -88,7 +89,7 @@ def set_elt(value, sequence, index):
 def subseq(sequence, start, end=None):
     """``subseq``: a copy of the part from ``start`` up to ``end``."""
     if isinstance(sequence, (str, LispString)):
-        string = str(sequence)
+        string = sequence if sequence.__class__ in TEXTS else str(sequence)
         start, end = bounds(start, end, len(string))
         return FreshString(string[start:end])
     items = part(sequence, start, end)
@@ -111,10 +112,7 @@ def copy_seq(sequence):
 def reverse(sequence):
     """``reverse``: a new sequence with the elements in reverse order."""
     if isinstance(sequence, Cons):
-        result = None
-        for cell in cells(sequence):
-            result = Cons(cell.car, result)
-        return result
+        return list_from(items_of(sequence)[::-1])
     if isinstance(sequence, (str, LispString)):
         return FreshString(str(sequence)[::-1])
     return same_kind(sequence, elements(sequence)[::-1])
@@ -122,11 +120,12 @@ def reverse(sequence):
 
 def nreverse(sequence):
     """``nreverse``: as `reverse`, using up the argument."""
-    if isinstance(sequence, Cons):
-        items_of(sequence)  # a dotted end is found before anything is changed
+    if sequence.__class__ is Cons:
+        length(sequence)  # a dotted end is found before anything is changed
         result, cell = None, sequence
-        while isinstance(cell, Cons):
-            cell.cdr, result, cell = result, cell, cell.cdr
+        while cell.__class__ is Cons:
+            following, cell.cdr = cell.cdr, result
+            result, cell = cell, following
         return result
     if sequence.__class__ is str:
         return FreshString(sequence[::-1])
@@ -136,9 +135,9 @@ def nreverse(sequence):
 
 def concatenate(result_type, *sequences):
     """``concatenate``: a new sequence of type ``result_type`` with the elements of all arguments."""
-    wanted = sequence_type(result_type)
-    if result_type is sym("STRING") and all([sequence.__class__ in TEXTS for sequence in sequences]):
+    if result_type is STRING and all([sequence.__class__ in TEXTS for sequence in sequences]):
         return FreshString("".join(sequences))
+    wanted = sequence_type(result_type)
     items = []
     for sequence in sequences:
         items += elements(sequence)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import SimpleTypeError
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import UNSUPPLIED, WRITABLE_STRINGS, Character, FreshString, LispString
+from cramhy_runtime.ground.data import CHARACTERS, TEXTS, UNSUPPLIED, WRITABLE_STRINGS, Character, FreshString, LispString
 from cramhy_runtime.ground.equality import folded
 from cramhy_runtime.ground.packages import is_symbol, symbol_name
 from cramhy_runtime.ground.heap import check_room
@@ -89,6 +89,8 @@ def _at(string_, index):
 
 def char(string, index):
     """``char``: character number ``index``."""
+    if string.__class__ in TEXTS and index.__class__ is int and 0 <= index < len(string):
+        return CHARACTERS[string[index]]
     return Character(_at(string, index)[index])
 
 
@@ -110,6 +112,8 @@ schar, set_schar = char, set_char
 
 
 def _parts(string1, string2, start1, end1, start2, end2):
+    if string1.__class__ in TEXTS and string2.__class__ in TEXTS and start1 == start2 == 0 and end1 is None is end2:
+        return string1, string2, 0
     first = _text(string1, "\nwhen binding SB-IMPL::STRING1")
     second = _text(string2, "\nwhen binding SB-IMPL::STRING2")
     if start1 == 0 and end1 is None and start2 == 0 and end2 is None:
@@ -125,6 +129,9 @@ def _fold(text):
 
 def _equality(name, fold, wanted):
     def compared(string1, string2, *, start1=0, end1=None, start2=0, end2=None):
+        if not fold and wanted and string1.__class__ in TEXTS and string2.__class__ in TEXTS and start1 == start2 == 0:
+            if end1 is None is end2:  # as it mostly is: then no other function is needed
+                return True if string1 == string2 else None
         first, second, offset = _parts(string1, string2, start1, end1, start2, end2)
         if fold:
             first, second = _fold(first), _fold(second)
@@ -197,6 +204,8 @@ def _capital(text):
 
 
 def _changed(text, start, end, change):
+    if start == 0 and end is None and start.__class__ is int:
+        return change(text)
     start, end = bounds(start, end, len(text))
     return text[:start] + change(text[start:end]) + text[end:]
 

@@ -8,10 +8,14 @@ by ``#.``, say) makes the file one that is compiled anew each time.
 from __future__ import annotations
 
 from fractions import Fraction
+from operator import attrgetter
 
 from cramhy_runtime.ground.arrays import SimpleArray, TypedVector
+from cramhy_runtime.ground.keyword_calls import KeywordCalls
 from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Symbol
+from ..format.format_pieces import Piece
 from ..numbers.complex_numbers import parts
+from ..objects.makers import Maker
 from ..syntax.backquote import Comma
 from .core import List, expression, word
 
@@ -33,7 +37,8 @@ class Constants:
         self.count = 0
 
     def name(self, kind, obj):
-        """The global name for ``obj``; kind is "object", or for the symbol ``obj`` "function" or "setf_function"."""
+        """The global name for ``obj``; kind is "object", or for the symbol ``obj`` the way to what is meant: "function", "setf_function",
+        "function.python"."""
         key = (kind, id(obj))
         found = self.names.get(key)
         if found is None:
@@ -51,7 +56,7 @@ class Constants:
     def take_objects(self):
         """name → object for the entries made since the last call."""
         fresh, self.fresh = self.fresh, []
-        return {name: obj if kind == "object" else getattr(obj, kind) for name, kind, obj in fresh}
+        return {name: obj if kind == "object" else attrgetter(kind)(obj) for name, kind, obj in fresh}
 
     def take_forms(self):
         """Statements (core forms) that make the entries made since the last call."""
@@ -63,7 +68,8 @@ class Constants:
                 raise NotStorable(obj)
             value = self.builder(obj, top=True)
             if kind != "object":
-                value = expression(word("."), value, word(kind))
+                for attribute in kind.split("."):
+                    value = expression(word("."), value, word(attribute))
             self.make(name, value)
         self.fresh = []
         return self.statements
@@ -120,6 +126,12 @@ class Constants:
             return expression(word("Larray"), List([*obj.dimensions]), List([self.builder(item) for item in obj.storage]))
         if isinstance(obj, TypedVector):
             return expression(word("Ltyped_vector"), List([self.builder(item) for item in obj]), self.builder(obj.element_type))
+        if kind is KeywordCalls:
+            return expression(word("Lkeyword_calls"), self.builder(obj.symbol), obj.count, *map(self.builder, obj.keys))
+        if kind is Piece:
+            return expression(word("Lpiece"), obj.control, obj.index)
+        if kind is Maker:
+            return expression(word("Lmaker"), self.builder(obj.name), *map(self.builder, obj.keys))
         raise NotStorable(obj)
 
 

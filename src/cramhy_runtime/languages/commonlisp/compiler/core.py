@@ -21,6 +21,12 @@ class Symbol(str):
     __slots__ = ()
 
 
+class Keyword(str):
+    """``:name`` in a call: the argument after it is a keyword argument of Python."""
+
+    __slots__ = ()
+
+
 class Expression(list):
     """A call or an operator with its operands. ``position``: where in the user's text, (line, column, end line, end column)."""
 
@@ -69,6 +75,8 @@ def hy_model(form):
     kind = form.__class__
     if kind is Symbol:
         return models.Symbol(form)
+    if kind is Keyword:
+        return models.Keyword(form)
     if kind is str:
         return models.String(form)
     if kind is int:

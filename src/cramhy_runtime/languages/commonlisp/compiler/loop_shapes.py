@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from cramhy_runtime.ground.packages import sym
 from . import nodes
 from .facts import walk
+from .kinds import INT
 
 LENGTH, AREF = sym("LENGTH"), sym("AREF")
 LIMITS = {sym(">="): (1, False), sym(">"): (1, True), sym("<="): (-1, False), sym("<"): (-1, True)}
@@ -23,11 +24,18 @@ QUICK = {
     sym(name)
     for name in """+ - * / < > <= >= = /= 1+ 1- MOD REM MAX MIN ABS SQRT SIN COS EXP ZEROP PLUSP MINUSP EVENP ODDP CAR CDR
 FIRST SECOND THIRD REST CADR CDDR CAAR CDAR CONS LIST NULL NOT EQ EQL CONSP ATOM LISTP ENDP SYMBOLP NUMBERP INTEGERP STRINGP LENGTH
-AREF SVREF CHAR SCHAR GETHASH CHAR= CHAR-CODE CODE-CHAR FLOAT FLOOR TRUNCATE ROUND CEILING LOGAND LOGIOR LOGXOR ASH
+AREF SVREF CHAR SCHAR GETHASH CHAR= CHAR/= CHAR-CODE CODE-CHAR CHAR-UPCASE CHAR-DOWNCASE ALPHA-CHAR-P DIGIT-CHAR-P UPPER-CASE-P
+LOWER-CASE-P ALPHANUMERICP CHARACTERP VALUES FLOAT FLOOR TRUNCATE ROUND CEILING LOGAND LOGIOR LOGXOR ASH
 CRAMHY::COLLECT CRAMHY::CAR-OF-CONS CRAMHY::CDR-OF-CONS CRAMHY::LOOP-VECTOR""".split()
 }
 """Functions that neither call functions of users nor take long: a loop of nothing else need not look at every turn whether its
 slice is over."""
+QUICK_OF_TWO = {sym(name) for name in "FIND POSITION MEMBER ASSOC COUNT STRING= STRING/= STRING< STRING> EQUAL".split()}
+"""The same, if they are called with two arguments. Where an argument is long, they look by themselves whether the slice is over."""
+CHANGES = {sym(name) for name in "VECTOR-PUSH VECTOR-PUSH-EXTEND".split()}
+"""Functions that are as quick, but change the length of a vector."""
+SETTERS = {sym(name) for name in "GETHASH AREF SVREF CHAR".split()}
+"""Places whose setters are as quick, but change what a loop may walk along."""
 
 
 @dataclass
@@ -112,7 +120,7 @@ def counting(statements, tagbody, first, end, scope):
         return _across(variable, limit, step, inclusive, body, scope)
     if not _settled(limit):
         return None
-    if _reads(body, variable) and variable.kind != "int":
+    if _reads(body, variable) and variable.kind != INT:
         return None
     return Counting(variable, limit, step, inclusive, body)
 
@@ -120,6 +128,8 @@ def counting(statements, tagbody, first, end, scope):
 def _across(variable, limit, step, inclusive, body, scope):
     """``(>= index (length vector))`` ends the loop, and ``index`` occurs in ``(setq element (aref vector index))`` only."""
     vector = limit.arguments[0] if len(limit.arguments) == 1 else None
+    if any(item.__class__ is nodes.CallSetf or item.__class__ is nodes.Call and item.symbol in CHANGES for item in walk(body)):
+        return None
     if vector.__class__ is not nodes.LocalVariable or not _settled(vector) or step != 1 or inclusive or not body or variable.reads != 3:
         return None
     setting = body[0]
@@ -172,6 +182,17 @@ _CALLS = (nodes.CallLocal, nodes.CallValue, nodes.CallSetf, nodes.CallSpread, no
 def _quick(statements):
     for item in walk(statements):
         kind = item.__class__
-        if kind is nodes.Call and item.symbol not in QUICK or kind in _CALLS:
+        if kind in _CALLS and not (kind is nodes.CallSetf and item.symbol in SETTERS):
             return False
+        if kind is nodes.Call and item.symbol not in QUICK and item.symbol not in CHANGES:
+            if item.symbol not in QUICK_OF_TWO or len(item.arguments) != 2:
+                return False
     return True
+
+
+def quiet(node):
+    """Whether evaluating ``node`` surely changes no variable: a simple expression of quick functions."""
+    kind = node.__class__
+    if kind is nodes.Call:
+        return node.symbol in QUICK and all(map(quiet, node.arguments))
+    return kind is nodes.Constant or kind is nodes.LocalVariable or kind is nodes.GlobalVariable

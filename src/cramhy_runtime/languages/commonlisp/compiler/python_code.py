@@ -11,7 +11,7 @@ import ast
 import sys
 import warnings
 
-from .core import Expression, List, Symbol, Tuple
+from .core import Expression, Keyword, List, Symbol, Tuple
 
 _LOAD, _STORE = ast.Load(), ast.Store()
 _JUMPS = (ast.Return, ast.Break, ast.Continue, ast.Raise)
@@ -262,9 +262,14 @@ def value(form, place):
 
 
 def _call(form, own, place):
-    arguments, keywords = [], []
+    arguments, keywords, name = [], [], None
     for item in form[1:]:
-        if item.__class__ is Expression and item[0] == "unpack-iterable":
+        if name is not None:
+            keywords.append(_at(ast.keyword(name, value(item, place)), place))
+            name = None
+        elif item.__class__ is Keyword:
+            name = str(item)
+        elif item.__class__ is Expression and item[0] == "unpack-iterable":
             arguments.append(_at(ast.Starred(value(item[1], place), _LOAD), place))
         elif item.__class__ is Expression and item[0] == "unpack-mapping":
             keywords.append(_at(ast.keyword(None, value(item[1], place)), place))

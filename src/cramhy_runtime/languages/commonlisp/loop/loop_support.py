@@ -10,7 +10,7 @@ from ..collections.arrays import vectorp
 from cramhy_runtime.ground.hash_tables import maphash
 from ..collections.lists import not_a_list
 from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Cons, list_from
+from cramhy_runtime.ground.data import Cons, list_from, new_object
 from cramhy_runtime.ground.packages import find_package_or_error, intern
 
 NEXT_LOOP, END_LOOP = intern("NEXT-LOOP", "CRAMHY"), intern("END-LOOP", "CRAMHY")
@@ -42,8 +42,9 @@ def collect_append(tail, items):
     """Add a copy of the list ``items`` behind the cell ``tail``; the new last cell."""
     if items is not None and not isinstance(items, Cons):
         return type_error(items, "LIST", "\nwhen binding LIST")
-    while isinstance(items, Cons):
-        cell = tail.cdr = Cons(items.car)
+    while items.__class__ is Cons:
+        cell = tail.cdr = new_object(Cons)
+        cell.car, cell.cdr = items.car, None
         tail, items = cell, items.cdr
     if items is not None:
         tail.cdr = items

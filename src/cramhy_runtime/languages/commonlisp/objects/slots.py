@@ -211,7 +211,17 @@ def reader_for(name):
             return lambda obj: slot.cell.__get__(obj, type(obj))
         return attrgetter(slot.attribute)
 
+    for_classes.attribute_in = _attribute_of_instances(name)
     return for_classes
+
+
+def _attribute_of_instances(name):
+    def attribute_in(cls):
+        """The attribute of the slot in instances of ``cls``; ``None`` if it has one value for all."""
+        slot = find_slot(cls, name) if isinstance(cls, type) else None
+        return slot.attribute if slot is not None and slot.cell is None else None
+
+    return attribute_in
 
 
 def writer_for(name):
@@ -229,6 +239,8 @@ def writer_for(name):
             cell.value = new
             return new
 
+        write.writes_attribute = attribute
         return write if cell is None else write_shared
 
+    for_classes.attribute_in = _attribute_of_instances(name)
     return for_classes

@@ -181,7 +181,11 @@ def _destructure(parsed, form, what, lambda_list, bindings, environment):
     rest = gensym("REST")
     minimum = len(parsed.required)
     maximum = None if parsed.rest is not None or parsed.has_keys else minimum + len(parsed.optional)
-    bindings.append((rest, lisp_list(support("CHECK-SHAPE"), whole, minimum, maximum, what, lisp_list(quote, lambda_list))))
+    check = lisp_list(support("CHECK-SHAPE"), whole, minimum, maximum, what, lisp_list(quote, lambda_list))
+    if not (parsed.optional or parsed.has_keys):
+        _destructure_plain(parsed, whole, check, what, bindings)
+        return
+    bindings.append((rest, check))
     for item in parsed.required:
         _bind(item, lisp_list(car, rest), what, bindings)
         rest = _advance(rest, bindings, cdr)
@@ -207,6 +211,33 @@ def _destructure(parsed, form, what, lambda_list, bindings, environment):
                 given = supplied
             value = lisp_list(support("KEY-VALUE"), table, lisp_list(quote, key))
             _bind(variable, lisp_list(sym("IF"), given, value, default), what, bindings)
+    bindings.extend(parsed.aux)
+
+
+def _destructure_plain(parsed, whole, check, what, bindings):
+    """As `_destructure`, without optional and keyword variables: the conses themselves are tested, ``check`` only makes the error."""
+    if_, consp, null, car, cdr = sym("IF"), sym("CONSP"), sym("NULL"), support("CAR-OF-CONS"), support("CDR-OF-CONS")
+    cells = [whole]
+    for _ in parsed.required[1:]:
+        cells.append(gensym("REST"))
+        bindings.append((cells[-1], lisp_list(if_, lisp_list(consp, cells[-2]), lisp_list(cdr, cells[-2]), None)))
+    last, rest = cells[-1], parsed.rest
+    if parsed.required:
+        fits, after = lisp_list(consp, last), lisp_list(cdr, last)
+        if rest is None:
+            fits = lisp_list(if_, fits, lisp_list(null, after), None)
+    else:
+        fits, after = lisp_list(null, whole), whole
+    if parsed.required or rest is None:
+        bindings.append((gensym("CHECKED"), lisp_list(if_, fits, None, check)))
+    if isinstance(rest, Cons):
+        tail = gensym("REST")
+        bindings.append((tail, after))
+        after = tail
+    for item, cell in zip(parsed.required, cells):  # noqa: B905  without variables there is still the whole
+        _bind(item, lisp_list(car, cell), what, bindings)
+    if rest is not None:
+        _bind(rest, after, what, bindings)
     bindings.extend(parsed.aux)
 
 

@@ -198,9 +198,9 @@ def _facts(symbol: Symbol) -> list[Any]:
         facts.append("special")
     if symbol.constant:
         facts += "constant", symbol.value
-    for use in (symbol.reads, symbol.writes):
-        if use is not None:
-            facts += "slot", use.__name__, symbol.attribute
+    for function in (symbol.function, symbol.setf_function):
+        if hasattr(function, "slot_of"):
+            facts += "slot", function.slot_of.__name__, function.attribute
     if symbol.compiler_data:
         facts += _notes(symbol.compiler_data)
     expander = type_expander(symbol)

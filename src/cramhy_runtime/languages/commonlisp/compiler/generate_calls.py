@@ -1,0 +1,255 @@
+"""Calls of functions whose shape is known: no frame stands between the call and the function.
+
+A standard function with keywords is a Python function with keyword-only parameters behind one that sorts keyword objects
+(`ground.keyword_calls`). A call that names its keywords is sorted here, once, and calls the Python function itself. Several values
+are taken apart where they are made, if that can be seen.
+"""
+
+from __future__ import annotations
+
+from types import FunctionType
+
+from cramhy_runtime.ground.data import Character, Keyword, Symbol
+from cramhy_runtime.ground.keyword_calls import keyword_calls, name_of_key, takes_keywords
+from cramhy_runtime.ground.packages import sym
+from ..objects.makers import maker
+from . import core, nodes
+from .core import NONE, List, Tuple, expression, word
+from .destinations import VALUES as ALL_VALUES
+from .generate_arithmetic import AND, DOT, IF, INT_CLASS, IS, IS_NOT, SETX, class_of
+
+FIND, FLOOR, GETHASH, LIST, VALUES = map(sym, "FIND FLOOR GETHASH LIST VALUES".split())
+MAKE_INSTANCE, SAME_CHARACTER = sym("MAKE-INSTANCE"), sym("CHAR=")
+CHARACTER = word("Lcharacter")
+
+
+class CallGenerator:
+    """The part of the `Generator` that calls functions of known shape."""
+
+    def standard_function(self, symbol, models, arguments):
+        """The call of a standard function with the values ``models`` of the nodes ``arguments``."""
+        function = symbol.function
+        python = getattr(function, "python", None)
+        if python is not None:
+            sorted_ = sorted_arguments(function, models, arguments)
+            if sorted_ is not None:
+                return expression(word(self.constants.name("function.python", symbol)), *sorted_)
+        return expression(word(self.constants.name("function", symbol)), *models)
+
+    def keyword_call(self, node, symbol, models, arguments):
+        """The call of a user's function with keywords that the code names, if it takes them as Python's; else ``None``."""
+        if not isinstance(symbol, Symbol) or (count := _keys_begin(symbol.function, arguments)) is None:
+            return None
+        names = [name_of_key(key.value) for key in arguments[count::2]]
+        if not takes_keywords(symbol.function, count, names) or len({*names}) < len(names):
+            return None
+        calls = self.constant(keyword_calls(symbol, count, *[key.value for key in arguments[count::2]]))
+        done = models[:count]
+        for name, value in zip(names, models[count + 1 :: 2], strict=True):
+            done += [core.Keyword(name), value]
+        return self.positioned(expression(expression(DOT, calls, word("call")), *done), node)
+
+    def known_function(self, symbol):
+        return word(self.constants.name("function", symbol))
+
+    # ---------------------------------------------------------------------------------------------------------- in place
+
+    def open_call(self, node, symbol, arguments, destination):
+        """The expression of a call of a standard function that needs no function, or another one; ``None`` for a usual call.
+
+        It has one value, but that of ``values`` with all that are wanted.
+        """
+        count = len(arguments)
+        if symbol is VALUES and count > 1:
+            if destination.multiple:
+                return expression(word("LMultipleValues"), Tuple(self.arguments(arguments)))
+            (first, *_) = self.stable_names(self.arguments(arguments))
+            return first
+        if symbol is MAKE_INSTANCE:
+            return self.instance_made(node, arguments)
+        if symbol is FLOOR and count == 2 and destination.multiple and _is_number(arguments[1]):
+            divisor = arguments[1].value
+            number, name = self.named(arguments[0])
+            slow = self.positioned(expression(self.known_function(symbol), name, divisor), node)
+            quick = expression(word("LMultipleValues"), self.call("divmod", name, divisor))
+            return expression(IF, expression(IS, class_of(number), INT_CLASS), quick, slow)
+        if symbol is LIST and count > 4:
+            return self.call("list", *self.arguments(arguments))
+        if symbol is SAME_CHARACTER and count == 2:
+            test = self.same_character(node, arguments)
+            return None if test is None else self.truth_value(test)
+        if symbol is FIND and count == 2 and _is_text(arguments[1]):
+            item, name, among, slow = self.found_in_text(node, arguments)
+            return expression(IF, expression(IS, class_of(item), CHARACTER), expression(IF, among, name, NONE), slow)
+        return None
+
+    def open_test(self, node, symbol, arguments):
+        """A Python expression that is true when the value of such a call is; ``None`` for other calls."""
+        if symbol is SAME_CHARACTER and len(arguments) == 2:
+            return self.same_character(node, arguments)
+        if symbol is FIND and len(arguments) == 2 and _is_text(arguments[1]):
+            item, _, among, slow = self.found_in_text(node, arguments)
+            return expression(IF, expression(IS, class_of(item), CHARACTER), among, expression(IS_NOT, slow, NONE))
+        return None
+
+    def found_in_text(self, node, arguments):
+        """``(find item "text")``: the first and later use of the item, a test whether the character is in the text, and the usual call."""
+        item, name = self.named(arguments[0])
+        among = expression(word("in"), expression(DOT, name, word("char")), arguments[1].value)
+        return item, name, among, self.positioned(expression(self.known_function(FIND), name, arguments[1].value), node)
+
+    def instance_made(self, node, arguments):
+        """``(make-instance 'class :key value ...)``"""
+        keys = arguments[1::2]
+        constant = all(each.__class__ is nodes.Constant for each in (arguments[:1] + keys))
+        if not arguments or not constant or len(arguments) % 2 == 0 or any(key.value.__class__ is not Keyword for key in keys):
+            return None
+        name = arguments[0].value
+        if name.__class__ is not Symbol or name.package is None:
+            return None
+        made_by = self.constant(maker(name, *[key.value for key in keys]))
+        model = expression(expression(DOT, made_by, word("make")), *self.arguments(arguments[2::2]))
+        return self.first_value(self.positioned(model, node))
+
+    def same_character(self, node, arguments):
+        """A test for ``(char= x y)``: characters are the same object if they are the same."""
+        if any(each.__class__ is nodes.Constant and each.value.__class__ is not Character for each in arguments):
+            return None
+        models = self.stable_names(self.arguments(arguments))
+        unknown = [
+            expression(IS, class_of(model), CHARACTER)
+            for model, argument in zip(models, arguments, strict=True)
+            if not (argument.__class__ is nodes.Constant and argument.value.__class__ is Character)
+        ]
+        same = expression(IS, *models)
+        if not unknown:
+            return same
+        test = unknown[0] if len(unknown) == 1 else expression(AND, *unknown)
+        slow = self.positioned(expression(self.known_function(SAME_CHARACTER), *models), node)
+        return expression(IF, test, same, expression(IS_NOT, slow, NONE))
+
+    # -------------------------------------------------------------------------------------------------------------- slots
+
+    def slot_read(self, node, symbol, models):
+        """A call of an accessor: the attribute itself, if the object is of a class where that means the same; or ``None``."""
+        if len(models) != 1 or not isinstance(symbol, Symbol) or (attribute := _attribute(symbol.function)) is None:
+            return None
+        (target,) = self.stable_names(models)
+        classes = word(self.constants.name(f"reads.of_{attribute}", symbol))
+        slow = self.positioned(expression(expression(DOT, self.constant(symbol), word("function")), target), node)
+        quick = expression(word("in"), class_of(target), classes)
+        return expression(IF, quick, expression(DOT, target, word(attribute)), self.first_value(slow))
+
+    def slot_written(self, node, attribute, models, destination):
+        """``(setf (accessor object) new)``, with the new value and the object as ``models``."""
+        new, target = self.stable_names(models)
+        classes = word(self.constants.name(f"writes.of_{attribute}", node.symbol))
+        quick, _ = self.captured(lambda: self.finish(new, nodes.Constant(None), destination, pure=True))
+        call = self.positioned(expression(self.call("setf_function", self.constant(node.symbol)), new, target), node)
+        slow, _ = self.captured(lambda: self.finish(call, node, destination))
+        store = expression(word("setv"), expression(DOT, target, word(attribute)), new)
+        self.branch(expression(word("in"), class_of(target), classes), [store, *quick], slow)
+        self.effects += 1
+
+    # ----------------------------------------------------------------------------------------------------- several values
+
+    def assign_values(self, names, node):
+        """Assign the values of ``node`` to the variables ``names``; those that are missing are nil."""
+        target = List(names) if len(names) > 1 else names[0]
+        made = self.values_in_place(names, node)
+        if made is not None:
+            self.emit(word("setv"), target, made)
+            return
+        value = self.gen(node, ALL_VALUES)
+        if len(names) == 1:
+            self.emit(word("setv"), target, self.first_value(value))
+            return
+        values = word(self.temporary())
+        several = expression(IS, class_of(expression(SETX, values, value)), word("LMultipleValues"))
+        fits = expression(AND, several, expression(word("="), self.call("len", values), len(names)))
+        self.emit(word("setv"), target, expression(IF, fits, values, self.call("spread", values, len(names))))
+
+    def values_in_place(self, names, node):
+        """A Python tuple of as many values of ``node``, a call of a function that gives them, as there are ``names``; or ``None``."""
+        if node.__class__ is not nodes.Call or not self.standard(node.symbol):
+            return None
+        symbol, arguments, wanted = node.symbol, node.arguments, len(names)
+        if symbol is VALUES and arguments:
+            models = self.arguments(arguments)
+            if len(models) > wanted:
+                models = self.stable_names(models)[:wanted]
+            models += [NONE] * (wanted - len(models))
+            return Tuple(models) if wanted > 1 else models[0]
+        if wanted != 2:
+            return None
+        if symbol is GETHASH and len(arguments) in (2, 3):
+            return self.positioned(self.call("gethash_values", *self.arguments(arguments)), node)
+        if symbol is FLOOR and len(arguments) == 2:
+            if _is_number(arguments[1]):
+                divisor = arguments[1].value
+                number, name = self.named(arguments[0])
+                slow = self.call("spread", self.positioned(expression(self.known_function(symbol), name, divisor), node), 2)
+                return expression(IF, expression(IS, class_of(number), INT_CLASS), self.call("divmod", name, divisor), slow)
+        return None
+
+
+def _keys_begin(function, arguments):
+    """The number of arguments of a call of ``function`` before those with keywords; ``None`` if there are none, or odd ones."""
+    if function.__class__ is not FunctionType or len(arguments) < 2:
+        return None
+    code = function.__code__
+    if not code.co_kwonlyargcount and "python_keys" not in function.__dict__:
+        return None
+    count = code.co_argcount
+    keys = arguments[count::2]
+    if not keys or len(arguments) - count & 1:
+        return None
+    return count if all(key.__class__ is nodes.Constant and key.value.__class__ is Keyword for key in keys) else None
+
+
+def _attribute(function):
+    """The attribute of its argument that ``function`` just reads or writes, for the usual argument; ``None`` if it does more."""
+    known = getattr(function, "__dict__", None)
+    if not known:
+        return None
+    if "slot_of" in known:
+        return None if "traced" in known else function.attribute
+    return function.slot_attribute() if hasattr(function, "slot_attribute") else None
+
+
+def written_attribute(symbol):
+    """The attribute that the function ``(setf symbol)`` just writes, or ``None``."""
+    return _attribute(symbol.setf_function) if isinstance(symbol, Symbol) else None
+
+
+def _is_text(node):
+    return node.__class__ is nodes.Constant and node.value.__class__ is str
+
+
+def _is_number(node):
+    """Whether ``node`` is an integer that one can divide by."""
+    return node.__class__ is nodes.Constant and node.value.__class__ is int and node.value != 0
+
+
+def sorted_arguments(function, models, arguments):
+    """``models``, the arguments of a call of the lispified ``function``, for the Python function behind it; ``None`` if only it can
+    sort them, as where a keyword is computed, unknown or repeated."""
+    code = function.python.__code__
+    positional, defaults = code.co_argcount, function.python.__defaults__ or ()
+    if len(models) <= positional:
+        return models if len(models) >= positional - len(defaults) else None
+    if len(models) - positional & 1 or code.co_flags & 0x0C:
+        return None
+    keys = arguments[positional::2]
+    if any(key.__class__ is not nodes.Constant or key.value.__class__ is not Keyword for key in keys):
+        return None
+    names = [function.python_keywords.get(key.value) for key in keys]
+    if None in names or len(set(names)) < len(names):
+        return None
+    done = models[:positional]
+    for name, value in zip(names, models[positional + 1 :: 2], strict=True):
+        done += [core.Keyword(name), value]
+    return done
+
+
+__all__ = ["CallGenerator", "written_attribute"]
