@@ -11,6 +11,7 @@ first. Handlers established before a task was evaporated cannot bring it back: t
 from __future__ import annotations
 
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.active import ACTIVE
 
 from cramhy_runtime.ground import condition_types as types
 from cramhy_runtime.ground.conditions import (
@@ -63,7 +64,8 @@ def fail(*arguments: Any) -> NoReturn:
         condition.format_control, condition.format_arguments = arguments[0], arguments[1:]
     else:
         condition = _designated(*arguments)
-    _begin_to_fail(condition, arguments)
+    if active_tags or on_fail.methods or BREAK_ON_PLAN_FAILURES.value or current_task() is None or not isinstance(condition, PlanFailure):
+        _begin_to_fail(condition, arguments)
     signal_condition(condition)
     raise condition
 
@@ -121,8 +123,9 @@ class Handling(Cluster, BaseException):
     __slots__ = ("clauses", "task", "ending", "id", "left", "values")
 
     def __init__(self, clauses: Sequence[Clause]):
+        running = ACTIVE.value
         self.clauses = clauses
-        self.task = task = kernel.current()
+        self.task = task = kernel.current() if running is None else running.current
         self.ending = task.cancelled_delivered
         self.id: tuple[object] | None = None  # what the first hook returned, once it has run
         self.left = False
@@ -167,7 +170,7 @@ class Handling(Cluster, BaseException):
         if self.id is None and (on_with_failure_handling_begin.methods or on_with_failure_handling_end.methods):
             return observed([_type_name(specifier) for specifier, _ in self.clauses], lambda: self.run(body), self)
         while True:
-            self.enter()
+            bind(HANDLERS, (self, HANDLERS.value))  # as `enter` does
             try:
                 try:
                     return body(self)

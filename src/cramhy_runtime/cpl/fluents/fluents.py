@@ -119,7 +119,7 @@ class Fluent(Notation[T_co]):
 
     def _notify(self, value: Any) -> None:
         if not self.nets and not self.callbacks:  # as a rule only tasks wait
-            if truth(value):
+            if value is not None and value is not False:
                 for task in self.waiters:
                     task.kernel.unpark(task)
         elif self.callbacks or self.sheltered:
