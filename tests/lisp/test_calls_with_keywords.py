@@ -66,6 +66,11 @@ def test_keywords_come_in_both_ways(lisp):
     assert list(hurry(1, lisp.value(":slow"), 3, fast=2)) == [1, 2, 3]
 
 
+def test_keys_that_are_no_keywords(lisp):
+    lisp("(defun odd (&key ((nil x) 5) ((secret y) 6) ((:|Lgiven| z) 7) ((:if w) 8)) (list x y z w))")
+    assert lisp("(list (odd) (odd nil 1 'secret 2) (odd :|Lgiven| 3) (odd :if 4))") == "((5 6 7 8) (1 2 7 8) (5 6 3 8) (5 6 7 4))"
+
+
 def test_a_trace_is_seen(lisp):
     lisp("(call-it 1) (trace hurry) (defvar *shown* (make-string-output-stream))")
     lisp("(let ((*trace-output* *shown*)) (call-it 5)) (untrace hurry)")

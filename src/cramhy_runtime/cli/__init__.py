@@ -36,7 +36,7 @@ def session(options, closings, opened=True):
     made = Session(
         time=time_setting.decide(options.time, DEFAULT_TIMES[options.command], robot=bool(getattr(options, "ros", None))),
         seed=options.seed,
-        backend=options.backend,
+        backend="threads" if options.command == "jupyter" else options.backend,
         time_limit=options.time_limit,
         turtlesim=not (options.no_turtlesim or getattr(options, "ros", None)),
         cleanup_limit=options.cleanup_limit,

@@ -70,7 +70,13 @@ def _session_options(command):
     options = _Parser(add_help=False)
     _add_time(options, DEFAULT_TIMES[command])
     options.add_argument("--seed", type=int, default=None, help="shuffle the order of tasks, reproducibly (first come, first served)")
-    options.add_argument("--backend", choices=["threads", "greenlet"], default="threads", help="how tasks get their stacks (threads)")
+    auto = "as threads, since Jupyter's loop has the main thread" if command == "jupyter" else "as greenlets where they are installed"
+    options.add_argument(
+        "--backend",
+        choices=["auto", "threads"] if command == "jupyter" else ["auto", "threads", "greenlet"],
+        default="auto",
+        help=f"how tasks get their stacks; auto: {auto} (auto)",
+    )
     options.add_argument("--time-limit", type=float, default=None, metavar="SECONDS", help="end a form after so much plan time (no limit)")
     options.add_argument(
         "--cleanup-limit",

@@ -21,6 +21,7 @@ from cramhy_runtime.kernel.images import Cell
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, NoReturn
 from . import condition_types as types
 from .condition_types import *  # noqa: F403  the classes are this module's interface too
+from .condition_types import matches
 from .data import LispString, MultipleValues, Symbol, UNBOUND, UndefinedFunction, all_values, truth, values
 from .dynamic import bind, binding, special, unbind
 from . import plain_answers  # noqa: F401  the ports have answers from here on
@@ -70,20 +71,6 @@ def install_root(handler):
 
 
 # ---------------------------------------------------------------------------------------------------------------- handlers
-
-
-def matches(condition, specifier):
-    """Whether ``condition`` is of the type ``specifier``: a Python class, a class name, or any Lisp type specifier."""
-    if isinstance(specifier, type):
-        return isinstance(condition, specifier)
-    if specifier is True:
-        return True
-    if specifier is None:
-        return False
-
-    # what names no type fits nothing: an error about it here would come to the same handler again, without end
-    test = PORTS.types.test(specifier)
-    return test is not None and test(condition)
 
 
 def signal_condition(condition):
@@ -211,49 +198,6 @@ class HandlerExit(BaseException):
         self.token, self.index, self.condition = token, index, condition
 
 
-class Case(Cluster):
-    """The handlers of a ``handler-case`` that was compiled in place, for one run of it; the token of its exit.
-
-    ``specifiers``: the list of its clauses' types. ``index``: which clause was chosen.
-    """
-
-    __slots__ = ("specifiers", "index")
-
-    def __init__(self, specifiers):
-        self.specifiers = specifiers
-
-    def offer(self, condition, outer):
-        """Leave the form if ``condition`` is of the type of a clause."""
-        index, cell = 0, self.specifiers
-        while cell is not None:
-            if matches(condition, cell.car):
-                self.index = index
-                raise HandlerExit(self, index, condition)
-            index, cell = index + 1, cell.cdr
-
-
-def enter_case(specifiers):
-    """Put the handlers of a ``handler-case`` in force; they are undone by `dynamic.unbind`."""
-    case = Case(specifiers)
-    case.enter()
-    return case
-
-
-def foreign_case(exception, case):
-    """Offer an exception of foreign code to the ``case`` that it passes, and let it go on."""
-    asked = exception.signalled if isinstance(exception, types.Condition) else getattr(exception, "__lisp_asked__", None) is EVERYBODY
-    if not asked:
-        _offer(from_python(exception), case, HANDLERS.value[1])
-    raise exception
-
-
-def caught(exit_, case):
-    """The condition for which ``case`` was left; any other exit goes on."""
-    if exit_.token is not case:
-        raise exit_
-    return exit_.condition
-
-
 def handler_case(clauses, thunk, no_error=None):
     """Call ``thunk``; on a condition of a clause's type unwind, and return what the clause's function returns for it.
 
@@ -273,7 +217,7 @@ def handler_case(clauses, thunk, no_error=None):
     except HandlerExit as exit_:
         if exit_.token is not token:
             raise
-        chosen = exit_
+        chosen, exit_.__traceback__ = exit_, None  # that leads to this very frame: a circle
     else:
         if no_error is None:
             return result
@@ -291,6 +235,12 @@ def ignore_errors(thunk):
 
 def make_condition(datum, arguments=(), default=types.SimpleError):
     """The condition that the designator ``datum`` with ``arguments`` stands for (ANSI 9.1.2.1)."""
+    if datum.__class__ is str:
+        return default(datum, *arguments)
+    if datum.__class__ is Symbol:
+        cls = PORTS.classes.find(datum, False)
+        if isinstance(cls, type) and issubclass(cls, types.Condition):
+            return PORTS.classes.make(cls, *arguments)
     if isinstance(datum, types.Condition):
         return datum
     if isinstance(datum, type) and issubclass(datum, types.Condition):
@@ -313,7 +263,13 @@ def _instance(cls, arguments):
 
 def designated(datum):
     """``datum``, a designator for ``signal`` or ``warn``, which have a text of their own for others."""
-    if isinstance(datum, (str, types.Condition)) or is_symbol(datum) or callable(datum) or isinstance(datum, LispString):
+    if (
+        datum.__class__ is Symbol
+        or isinstance(datum, (str, types.Condition))
+        or is_symbol(datum)
+        or callable(datum)
+        or isinstance(datum, LispString)
+    ):
         return datum
     return error(types.SimpleTypeError("~S does not designate a condition class.", datum, datum=datum, expected_type=sym("SYMBOL")))
 
@@ -331,6 +287,11 @@ def error(datum: object, *arguments: object, hint: str | Callable[[], str] | Non
     condition = make_condition(datum, arguments)
     if hint is not None:
         condition.hint = hint
+    signal_error(condition)
+
+
+def signal_error(condition: types.Condition) -> NoReturn:
+    """What `error` does with its condition."""
     signal_condition(condition)
     if _root.value is not None:
         _root.value(condition)

@@ -64,15 +64,22 @@ GIVEN = "Lgiven"
 
 
 def name_of_key(key):
-    """The Python name of the keyword object ``key``; ``None`` if the way back does not lead to it."""
+    """The Python name of the keyword ``key``; ``None`` if the way back does not lead to it, as from other symbols."""
+    if key.__class__ is not Keyword:
+        return None
     name = python_name(key.name)
     return name if name.isidentifier() and not name.startswith("_") and keyword(name.upper().replace("_", "-")) is key else None
 
 
 def takes_keywords(function, count, names):
-    """Whether the compiled ``function`` takes the keywords ``names`` as Python's, behind ``count`` other arguments."""
+    """Whether the compiled ``function`` takes the keywords ``names`` as Python's, behind ``count`` other arguments.
+
+    One that is not compiled may have ``python_keys``, the set of the names that the function which ``written()`` returns takes.
+    """
     if function.__class__ is not FunctionType or "traced" in function.__dict__:
         return False
+    if "python_keys" in function.__dict__:
+        return not count and function.python_keys.issuperset(names)
     code = function.__code__
     positional, keys = code.co_argcount, code.co_kwonlyargcount
     if code.co_flags & 0x0C != 0x0C or not code.co_varnames[positional + keys].startswith(GIVEN):
@@ -93,7 +100,14 @@ class KeywordCalls:
     def refresh(self):
         """Find out anew what the function takes."""
         function = self.symbol.function
-        self.call = function if takes_keywords(function, self.count, map(name_of_key, self.keys)) else self._as_lisp_calls
+        if takes_keywords(function, self.count, map(name_of_key, self.keys)):
+            self.call = self._write if "python_keys" in function.__dict__ else function
+        else:
+            self.call = self._as_lisp_calls
+
+    def _write(self, **keywords):
+        self.call = self.symbol.function.written()
+        return self.call(**keywords)
 
     def _as_lisp_calls(self, *arguments, **keywords):
         for key, value in zip(self.keys, keywords.values(), strict=True):

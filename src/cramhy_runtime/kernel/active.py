@@ -38,7 +38,7 @@ ACTIVE: Cell[Kernel | None] = Cell(None, fresh=True)
 
 def start(
     clock: ClockName | Clock = "virtual",
-    backend: BackendName | Backend = "threads",
+    backend: BackendName | Backend = "auto",
     seed: Seed | None = None,
     time_limit: float | None = None,
     kind: type[K] = Kernel,  # type: ignore[assignment]  # which is what K is then
@@ -49,9 +49,10 @@ def start(
     In the main thread the kernel handles SIGINT and the signals that end a process from now on, unless other code handles them
     (`signals`).
 
-    CLOCK: "virtual", "wall", or a clock object. BACKEND: "threads", "greenlet", or a back end. SEED: None for first
-    come, first served; a number shuffles the order, reproducibly; a function of the queue gives the place in it of the
-    task that goes next. TIME_LIMIT: seconds of the kernel's clock after which the main task gets `TimeLimit`, or None.
+    CLOCK: "virtual", "wall", or a clock object. BACKEND: "threads", "greenlet", "auto" (greenlets where they are installed),
+    or a back end. SEED: None for first come, first served; a number shuffles the order, reproducibly; a function of the
+    queue gives the place in it of the task that goes next. TIME_LIMIT: seconds of the kernel's clock after which the main
+    task gets `TimeLimit`, or None.
     KIND: a subclass of `Kernel`, for tests. CLEANUP_LIMIT: seconds that plans get for their cleanup when the process is
     asked to end, by the kernel's clock and by the wall clock, or None. Another word for CLOCK or BACKEND is a ValueError.
     """

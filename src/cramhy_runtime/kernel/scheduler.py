@@ -67,7 +67,7 @@ class Kernel(Endings, Outside):
     def __init__(
         self,
         clock: ClockName | Clock = "virtual",
-        backend: BackendName | Backend = "threads",
+        backend: BackendName | Backend = "auto",
         seed: Seed | None = None,
         time_limit: float | None = None,
     ):

@@ -28,7 +28,7 @@ from .generic_errors import incongruent, no_applicable_method_error
 from ..keyword_calls import lispify
 from .keyword_checks import checking_keys
 from .method_combination import DIRECTLY, STANDARD, Combination, find_combination
-from .reached_slots import ReachedSlots, attribute_of
+from .reached_slots import ReachedSlots
 from .methods import EqlSpecializer, Method, Shape, class_for_dispatch, is_sized
 from ..packages import is_symbol, keyword, our_own, redefined, sym, symbol_name
 from ..ports import PORTS
@@ -157,8 +157,7 @@ class GenericFunction(ReachedSlots, FunctionObject):
             if found is None:
                 return lambda *arguments: no_applicable_method(self, arguments)
             self.cache[key] = found
-            if attribute_of(found) is not None:
-                self.tell_callers()
+            self.tell_callers()
         return found
 
     def _eql_possible(self, index, argument):
@@ -254,7 +253,7 @@ class GenericFunction(ReachedSlots, FunctionObject):
 
 
 class UnaryGeneric(GenericFunction):
-    by_object = True
+    by_object, by_first_of = True, 1
 
     def __call__(self, *arguments, **keywords):
         try:
@@ -269,7 +268,7 @@ class UnaryGeneric(GenericFunction):
 
 
 class FirstOfTwo(UnaryGeneric):
-    by_object = False
+    by_object, by_first_of = False, 2
 
     def __call__(self, *arguments, **keywords):
         try:

@@ -15,9 +15,11 @@ class ReachedSlots:
     """The part of a generic function that tells the calls in compiled code what it does with slots.
 
     by_object: whether the function is called with one object, or a new value and an object, and chooses by the object's class alone.
+    by_first_of: with how many arguments it is called, if it chooses by the class of the first one alone and there are one or two.
     """
 
     by_object = False
+    by_first_of: int | None = None
 
     def slot_accesses(self):
         """The pairs (class, attribute) for which a call just reads or writes that attribute of an object of that class."""

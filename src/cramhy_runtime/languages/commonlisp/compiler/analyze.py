@@ -399,7 +399,7 @@ note_traits(
     "gensym error make-hash-table vector copy-list cadr cddr caar cdar caddr string-upcase string-downcase coerce reduce "
     "cramhy::car-of-cons cramhy::cdr-of-cons cramhy::collect cramhy::loop-vector "
     "rplaca rplacd list-length subseq type-of class-of identity random sqrt sin cos atan expt exp log tan asin acos "
-    "float gcd lcm isqrt logand logior logxor ash array-dimension",
+    "float gcd lcm isqrt logand logior logxor ash array-dimension make-array",
     "single",
 )
 

@@ -76,6 +76,10 @@ def study(root):
                     bound.append(variable)
         elif kind is nodes.ReturnFrom:
             node.block.values.append(node.value)
+    for variable in reversed(bound):
+        value = variable.values[0]
+        if not variable.writes and value.__class__ is nodes.LocalVariable:  # another name
+            value.variable.operand_uses += variable.operand_uses
     find_kinds(bound)
 
 

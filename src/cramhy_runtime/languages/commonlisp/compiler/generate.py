@@ -19,17 +19,15 @@ from .facts import study, walk
 from .generate_calls import CallGenerator, written_attribute
 from .generate_exits import ExitGenerator
 from .generate_functions import FunctionGenerator
-from .generate_numbers import NUMBER_FUNCTIONS
+from .arithmetic.functions import NUMBER_FUNCTIONS
 from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS, OperatorGenerator
 from .generate_texts import TextGenerator
-from .kinds import BOOLEAN, MINUS, OPERATORS, PI, PLUS, STEPS, THING, WHOLE, kind_of
+from .kinds import BOOLEAN, MAX, MIN, MINUS, OPERATORS, PI, PLUS, STEPS, THING, WHOLE, kind_of
 
 
-COLLECT, CONS, FORMAT, GETHASH = map(sym, "CRAMHY::COLLECT CONS FORMAT GETHASH".split())
+COLLECT, CONS, ERROR, FORMAT, GETHASH = map(sym, "CRAMHY::COLLECT CONS ERROR FORMAT GETHASH".split())
 KNOWN_SETTERS = {sym(name) for name in "GETHASH AREF SVREF ELT NTH GET CHAR".split()}
 """Functions of Common Lisp whose ``setf`` is a function, which nobody may redefine or give methods."""
-DISPATCHERS = {"UnaryGeneric": 1, "FirstOfTwo": 2}
-"""Kinds of generic functions that look only at the class of the first of so many arguments; the caller's code may ask them for it."""
 
 
 SINGLE_VALUE = nodes.Constant(None)
@@ -48,6 +46,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         self.destinations = {}
         self.jump_codes = {}
         self.class_names = {}  # names of parameters → names of variables that hold their classes
+        self.cases = []  # the names and scopes of the ``handler-case`` forms around
         self.before = []  # statements that must stand before the definition of the function being generated
 
     # ------------------------------------------------------------------------------------------------------------- output
@@ -255,13 +254,13 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         if symbol in STEPS and len(arguments) == 1:
             symbol, arguments = STEPS[symbol], [*arguments, nodes.Constant(1)]
         standard = self.standard(symbol) and destination.kind != "effect"
-        if standard and len(arguments) > 2 and symbol in OPERATORS:
+        if standard and len(arguments) > 2 and (symbol in OPERATORS or symbol is MAX or symbol is MIN):
             arguments = self.nested(node)
             if arguments is None:
                 return self.gen(self.named_arguments(node), destination)
         if standard and len(arguments) == 2 and symbol in ARITHMETIC:
             if symbol not in COMPARISONS:
-                model, raw = self.arithmetic(node, symbol, arguments)
+                model, raw = self.arithmetic(node, symbol, arguments, destination.raw)
                 return self.finish(model, node, destination, raw=raw)
             return self.finish(self.truth_value(self.comparison(node, symbol, arguments)), node, destination)
         if standard and symbol in NUMBER_FUNCTIONS:
@@ -281,6 +280,10 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
             model = self.open_call(node, symbol, arguments, destination)
             if model is not None:
                 return self.finish(model, nodes.Constant(None), destination)
+        if symbol is ERROR and self.cases and self.cases[-1][1] is self.scope and arguments and self.standard(symbol):
+            call = self.call("error_in_case", self.cases[-1][0], *self.arguments(arguments))
+            self.emit(word("raise"), self.positioned(call, node))
+            return NONE if destination.kind == "value" else None
         if symbol is FORMAT:
             model = self.text(node, arguments)
             if model is not None:
@@ -318,22 +321,13 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         return done
 
     def through_object(self, node, symbol, models):
-        """A call that goes through its first argument, if that is of the expected class, or ``None``.
-
-        A generic function is asked for the effective function of its first argument's class right here, if the function is still
-        that one.
-        """
-        if not isinstance(symbol, Symbol) or not models:
-            return None
-        kind = symbol.function.__class__.__name__
-        if DISPATCHERS.get(kind) != len(models):
+        """A call of a generic function that looks at the class of its first argument only: that is looked up right here; or ``None``."""
+        if not isinstance(symbol, Symbol) or not models or getattr(symbol.function, "by_first_of", None) != len(models):
             return None
         models = self.stable_names(models)
-        name, key = word("Lf"), expression(word("."), models[0], word("__class__"))
-        cached = expression(expression(word("."), expression(word("."), name, word("cache")), word("get")), key)
-        current = expression(word("setx"), name, expression(word("."), self.constant(symbol), word("function")))
-        same = expression(word("is"), expression(word("."), current, word("__class__")), word("L" + kind))
-        chosen = expression(word("if"), same, expression(word("or"), cached, name), name)
+        table = word(self.constants.name("unary" if len(models) == 1 else "binary", symbol))
+        known = expression(expression(word("."), table, word("get")), expression(word("."), models[0], word("__class__")))
+        chosen = expression(word("or"), known, expression(word("."), self.constant(symbol), word("function")))
         return self.positioned(expression(chosen, *models), node)
 
     @staticmethod
@@ -425,7 +419,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         if isinstance(node, nodes.Call) and self.standard(node.symbol):
             if node.symbol in COMPARISONS and len(node.arguments) == 2:
                 return self.comparison(node, node.symbol, node.arguments)
-            test = self.small_test(node, node.symbol, node.arguments)
+            test = self.small_test(node, node.symbol, node.arguments) or self.open_test(node, node.symbol, node.arguments)
             if test is not None:
                 return test
         if node.boolean:

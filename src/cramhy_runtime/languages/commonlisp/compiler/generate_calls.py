@@ -7,16 +7,18 @@ are taken apart where they are made, if that can be seen.
 
 from __future__ import annotations
 
+from types import FunctionType
+
 from cramhy_runtime.ground.data import Character, Keyword, Symbol
 from cramhy_runtime.ground.keyword_calls import keyword_calls, name_of_key, takes_keywords
 from cramhy_runtime.ground.packages import sym
 from ..objects.makers import maker
 from . import core, nodes
 from .core import NONE, List, Tuple, expression, word
-from .destinations import EFFECT, VALUES as ALL_VALUES
-from .generate_arithmetic import AND, DOT, IF, INT_CLASS, IS, SETX, class_of
+from .destinations import VALUES as ALL_VALUES
+from .arithmetic.operations import AND, DOT, IF, INT_CLASS, IS, IS_NOT, SETX, class_of
 
-APPLY, FIND, FLOOR, GETHASH, LIST, VALUES = map(sym, "APPLY FIND FLOOR GETHASH LIST VALUES".split())
+FIND, FLOOR, GETHASH, LIST, VALUES = map(sym, "FIND FLOOR GETHASH LIST VALUES".split())
 MAKE_INSTANCE, SAME_CHARACTER = sym("MAKE-INSTANCE"), sym("CHAR=")
 CHARACTER = word("Lcharacter")
 
@@ -74,13 +76,27 @@ class CallGenerator:
         if symbol is LIST and count > 4:
             return self.call("list", *self.arguments(arguments))
         if symbol is SAME_CHARACTER and count == 2:
-            return self.same_character(node, arguments)
-        if symbol is FIND and count == 2 and arguments[1].__class__ is nodes.Constant and arguments[1].value.__class__ is str:
-            item, name = self.named(arguments[0])
-            among = expression(IF, expression(word("in"), expression(DOT, name, word("char")), arguments[1].value), name, NONE)
-            slow = self.positioned(expression(self.known_function(symbol), name, arguments[1].value), node)
-            return expression(IF, expression(IS, class_of(item), CHARACTER), among, slow)
+            test = self.same_character(node, arguments)
+            return None if test is None else self.truth_value(test)
+        if symbol is FIND and count == 2 and _is_text(arguments[1]):
+            item, name, among, slow = self.found_in_text(node, arguments)
+            return expression(IF, expression(IS, class_of(item), CHARACTER), expression(IF, among, name, NONE), slow)
         return None
+
+    def open_test(self, node, symbol, arguments):
+        """A Python expression that is true when the value of such a call is; ``None`` for other calls."""
+        if symbol is SAME_CHARACTER and len(arguments) == 2:
+            return self.same_character(node, arguments)
+        if symbol is FIND and len(arguments) == 2 and _is_text(arguments[1]):
+            item, _, among, slow = self.found_in_text(node, arguments)
+            return expression(IF, expression(IS, class_of(item), CHARACTER), among, expression(IS_NOT, slow, NONE))
+        return None
+
+    def found_in_text(self, node, arguments):
+        """``(find item "text")``: the first and later use of the item, a test whether the character is in the text, and the usual call."""
+        item, name = self.named(arguments[0])
+        among = expression(word("in"), expression(DOT, name, word("char")), arguments[1].value)
+        return item, name, among, self.positioned(expression(self.known_function(FIND), name, arguments[1].value), node)
 
     def instance_made(self, node, arguments):
         """``(make-instance 'class :key value ...)``"""
@@ -96,7 +112,7 @@ class CallGenerator:
         return self.first_value(self.positioned(model, node))
 
     def same_character(self, node, arguments):
-        """``(char= x y)``: characters are the same object if they are the same."""
+        """A test for ``(char= x y)``: characters are the same object if they are the same."""
         if any(each.__class__ is nodes.Constant and each.value.__class__ is not Character for each in arguments):
             return None
         models = self.stable_names(self.arguments(arguments))
@@ -105,11 +121,12 @@ class CallGenerator:
             for model, argument in zip(models, arguments, strict=True)
             if not (argument.__class__ is nodes.Constant and argument.value.__class__ is Character)
         ]
-        same = expression(IF, expression(IS, *models), word("True"), NONE)
+        same = expression(IS, *models)
         if not unknown:
             return same
         test = unknown[0] if len(unknown) == 1 else expression(AND, *unknown)
-        return expression(IF, test, same, self.positioned(expression(self.known_function(SAME_CHARACTER), *models), node))
+        slow = self.positioned(expression(self.known_function(SAME_CHARACTER), *models), node)
+        return expression(IF, test, same, expression(IS_NOT, slow, NONE))
 
     # -------------------------------------------------------------------------------------------------------------- slots
 
@@ -178,8 +195,10 @@ class CallGenerator:
 
 def _keys_begin(function, arguments):
     """The number of arguments of a call of ``function`` before those with keywords; ``None`` if there are none, or odd ones."""
-    code = getattr(function, "__code__", None)
-    if code is None or not code.co_kwonlyargcount or len(arguments) < 2:
+    if function.__class__ is not FunctionType or len(arguments) < 2:
+        return None
+    code = function.__code__
+    if not code.co_kwonlyargcount and "python_keys" not in function.__dict__:
         return None
     count = code.co_argcount
     keys = arguments[count::2]
@@ -201,6 +220,10 @@ def _attribute(function):
 def written_attribute(symbol):
     """The attribute that the function ``(setf symbol)`` just writes, or ``None``."""
     return _attribute(symbol.setf_function) if isinstance(symbol, Symbol) else None
+
+
+def _is_text(node):
+    return node.__class__ is nodes.Constant and node.value.__class__ is str
 
 
 def _is_number(node):
@@ -229,4 +252,4 @@ def sorted_arguments(function, models, arguments):
     return done
 
 
-__all__ = ["EFFECT", "VALUES", "CallGenerator"]
+__all__ = ["CallGenerator", "written_attribute"]

@@ -16,23 +16,12 @@ from operator import itemgetter
 from types import FunctionType
 
 from cramhy_runtime.ground.arrays import SimpleArray, TypedVector, Vector
-from cramhy_runtime.ground.catching import ThrowExit, catch, throw  # noqa: F401  compiled code calls them
+from cramhy_runtime.ground.catching import caught, catch, enter_case, error_in_case, foreign_case, throw
 from cramhy_runtime.ground.functions import fdefinition, setf_function  # noqa: F401  compiled code calls them
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.budget import TICKS, budget
 
-from cramhy_runtime.ground.conditions import (
-    Condition,
-    HandlerExit,
-    SimpleControlError,
-    caught,
-    enter_case,
-    error,
-    foreign_case,
-    program_error,
-    unbound_variable,
-    unknown_key,
-)
+from cramhy_runtime.ground.conditions import Condition, HandlerExit, SimpleControlError, error, program_error, unbound_variable, unknown_key
 from .frame_exits import FrameExit, ends_here
 from cramhy_runtime.ground.data import (
     FreshString,
@@ -61,7 +50,6 @@ from ..format.format_templates import decimal, piece_of, prin1_atom, princ_atom
 from ..numbers import arithmetic
 from ..numbers.irrational import complex_
 from ..objects.makers import maker
-from cramhy_runtime.ground.dispatch.generic_functions import FirstOfTwo, UnaryGeneric
 from cramhy_runtime.ground.packages import intern, keyword, printed
 from ..syntax.backquote import Comma
 from .declared_types import checked
@@ -305,6 +293,7 @@ NAMESPACE = {
     "Lblock": BlockExit,
     "LHandlerExit": HandlerExit,
     "Lenter_case": enter_case,
+    "Lerror_in_case": error_in_case,
     "Lforeign_case": foreign_case,
     "Lcaught": caught,
     "LException": (Exception, Condition),
@@ -326,8 +315,6 @@ NAMESPACE = {
     "LtextA": princ_atom,
     "LtextS": prin1_atom,
     "LtextD": decimal,
-    "LUnaryGeneric": UnaryGeneric,
-    "LFirstOfTwo": FirstOfTwo,
     "LFunction": FunctionType,
     "Lcleanup": kernel.cleanup,
     "Llist_from": list_from,

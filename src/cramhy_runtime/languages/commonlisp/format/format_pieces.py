@@ -6,12 +6,12 @@ an object that has a print function or does not fit. Templates (``format_templat
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, list_parts
+from cramhy_runtime.ground.data import Character, Cons, DoubleFloat
 from .format_numbers import integer_field, write_fixed
 from .format_parser import Directive
 
 _LONG = 1000
-"""A list of more elements is left to ``format``, which lets others have their turn."""
+"""A list of more elements is left to ``format``, which lets others have their turn and knows circular lists."""
 
 
 class Piece:
@@ -131,8 +131,13 @@ def _iteration(node, values, texts):
             return ""
         if argument.__class__ is not Cons:
             return None
-        items, end = list_parts(argument)
-        if end is not None or len(items) > _LONG:
+        items, cell = [], argument
+        for _ in range(_LONG):
+            if cell.__class__ is not Cons:
+                break
+            items.append(cell.car)
+            cell = cell.cdr
+        if cell is not None:
             return None
         left, parts = len(items), []
         rest = iter(items)

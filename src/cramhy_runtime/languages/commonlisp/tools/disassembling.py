@@ -115,6 +115,8 @@ class _Named(ast.NodeTransformer):
         if node.id[:1] == "K" and node.id[1:].isdigit() and truth(value):
             if isinstance(value, Symbol):
                 return ast.Name(f"«{prin1_to_string(value)}»", node.ctx)
+            if value.__class__ is dict:  # of effective functions
+                return ast.Name("{" + ", ".join(sorted(each.__name__ for each in value)) + "}", node.ctx)
             if value.__class__ is set:  # of classes whose slot the code takes itself
                 return ast.Name("{" + ", ".join(sorted(each.__name__ for each in value)) + "}", node.ctx)
             if isinstance(value, KeywordCalls):
