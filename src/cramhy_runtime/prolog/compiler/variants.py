@@ -26,7 +26,7 @@ from ..terms.terms import Var
 _LEAST, _MOST = 3, 24
 """The number of conses of an argument that is worth a variant."""
 _CLAUSES = 8
-_CALLS = 300
+_CALLS = 60
 """So often a variant calls the predicate itself before it is written."""
 _UNIFIES, _FILTER = sym("CRAM-PROLOG::=="), sym("CRAM-PROLOG::FILTER-BINDINGS")
 
