@@ -25,6 +25,7 @@ class FunctionScope:
         self.parent = parent
         self.names = parent.names if parent else (names if names is not None else {})
         self.loop_depth = 0
+        self.loops = False  # whether there is any tagbody in it
         self.catching_depth = 0
         self.nonlocals = set()
         self.exits_set = 0  # how many statements that leave a loop for an outer one have been generated

@@ -377,6 +377,7 @@ def _tagbody(analyzer, form, env):
             segments[-1].append(item)
     if index:
         env.scope.loop_depth += 1
+        env.scope.loops = True
     try:
         analysed = [[analyzer.form(item, inner) for item in segment] for segment in segments]
     finally:
