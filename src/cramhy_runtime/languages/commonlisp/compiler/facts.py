@@ -7,7 +7,7 @@ solution: all begin as ``NONE_YET`` and are widened until nothing changes. Param
 
 from __future__ import annotations
 
-from dataclasses import fields
+from cramhy_runtime.utilities.records import fields
 
 from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.packages import sym
