@@ -40,7 +40,7 @@ _NUMBERS = frozenset(formulas.NUMBERS)
 
 def net(operator: str, formula: Callable[[], A], arguments: Sequence[object], careful: bool = False) -> Net[A]:
     """The net of ``formula`` over the fluents among ``arguments``. ``careful`` says that ``formula`` calls a function of the user."""
-    inputs = tuple(dict.fromkeys(argument for argument in arguments if isinstance(argument, Fluent)))
+    inputs = tuple(dict.fromkeys([argument for argument in arguments if isinstance(argument, Fluent)]))
     kind = CachedNet if all(map(is_cacheable, inputs)) else Net
     return announce(kind(operator, formula, inputs, careful))
 

@@ -57,6 +57,11 @@ class PulseFluent(Fluent[bool | None]):
         self.seen = self.parent.pulses
         self.pulse()
 
+    def pulse(self) -> None:
+        self.pulses += 1
+        if self.waiters or self.nets or self.callbacks:
+            self._notify(True if self.processed < self.seen else None)
+
 
 class ChangeFluent(Net[bool | None]):
     """True when its parent's value has changed since the last reading (``fl-value-changed``)."""

@@ -32,7 +32,7 @@ from cramhy_runtime.ground.source_places import locate
 from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.looking_on import only_looked_at
 from ..current import current_task
-from .ending import end_tasks, end_waits, limit_cleanup
+from .ending import LIMIT, end_tasks, end_waits, limit_cleanup
 from ..failures.failure_types import PlanFailure, envelope, opened
 from ..failures.handling import signal_failure
 from ..fluents.operators import fl_and
@@ -41,7 +41,7 @@ from ..logging import EVENT, active_tags, log, log_sending
 from .pausing import AT_REST, AWAKE, obey, pause, release, request
 from ..statuses import CREATED, DEAD, EVAPORATED, FAILED, NEXT, RUNNING, SUCCEEDED
 from ..symbols import sym
-from ..task_variables import inherit, inherited_bindings
+from ..task_variables import declared, inherit, inherited_bindings
 from .waiting import wait_for
 
 if TYPE_CHECKING:
@@ -231,8 +231,9 @@ class AbstractTask(Generic[T]):
             error("Tried to execute task ~S which has no thread-fun.", self)
         if self.kernel_task is not None or self.status is not CREATED:
             error("Task ~S is already running a thread.", self)
-        self._find_parent()
-        parent = self.parent
+        running = ACTIVE.value
+        me = kernel.current() if running is None else running.current
+        parent = self.parent = self._parent_in(me)
         if parent is not None:
             self.depth = parent.depth + 1
             if self.depth > DEEPEST:
@@ -249,8 +250,8 @@ class AbstractTask(Generic[T]):
                 self.path, self.node = parent.path, parent.node
         if self._name is None:
             self.name  # names are numbered in the order in which tasks start
-        me = ACTIVE.value.current
-        self.kernel_task = task = me.kernel.spawn(self._live, inherited_bindings(me, self, parent), name=self._name_as_text)
+        bindings = inherited_bindings(me, self, parent) if me.dynamic is not None or declared else None
+        self.kernel_task = task = me.kernel.spawn(self._live, bindings, name=self._name_as_text)
         task.when_refused = self._refused
         if self.held:
             task.interject(lambda: obey(self))
@@ -259,10 +260,11 @@ class AbstractTask(Generic[T]):
             saved_tasks.append(self)
         return self
 
-    def _find_parent(self) -> None:
-        self.parent = current_task()
-        if self.parent is None:
+    def _parent_in(self, me: kernel.Task[object]) -> AbstractTask[object] | None:
+        """The parent of this task, which the kernel's task ``me`` starts."""
+        if me.owner is None:
             error("No current task active (*CURRENT-TASK* is NIL).")
+        return me.owner  # type: ignore[no-any-return]  # the kernel does not know whose its tasks are
 
     def _name_as_text(self) -> str:
         return self.name
@@ -405,16 +407,16 @@ class AbstractTask(Generic[T]):
 
     def _begin_to_end(self, reason: str | None) -> kernel.Cancelled:
         """The exception for a request to end that arrives in the task itself. Cleanup begins after it is raised."""
-        if ACTIVE.value.current is self.kernel_task:
+        me = self.kernel_task
+        if me is not None and me.kernel.current is me:
             if active_tags:
                 log("RECEIVE-EVENT", EVENT, "EVAPORATE", reason)
             if self.children:
                 strays = [child for child in self.children if child.ended is None]  # no form waits for these and ends them
                 if strays:
                     end_tasks(strays, reason)
-            limit = limit_cleanup(self)
-            if limit is not None:
-                self.cleanup_limit = limit
+            if LIMIT.value is not None:
+                self.cleanup_limit = limit_cleanup(self)
         return kernel.Cancelled(reason)
 
     def suspend(self, reason: str | None = None, sync: bool | None = True) -> None:
@@ -487,7 +489,7 @@ class ToplevelTask(AbstractTask[T]):
     __slots__ = ()
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::TOPLEVEL-TASK"
 
-    def _find_parent(self) -> None:
+    def _parent_in(self, me: kernel.Task[object]) -> None:
         self.processor_time = time.process_time()
         if truth(RECORD.value):
             self.record = [] if self.record is None else self.record

@@ -11,7 +11,9 @@ values, and a variable that occurs twice, are handled in general: rows that may 
 from __future__ import annotations
 
 import gc
+from collections import defaultdict
 from functools import lru_cache
+from itertools import islice
 
 from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol
 from cramhy_runtime.utilities.generated_functions import generated_function
@@ -23,6 +25,8 @@ from ..terms.terms import UNSET, Var, deref, unify
 _SYMBOLS = {Symbol, Keyword}
 _OWN_KEYS = {Symbol, Keyword, int, str, type(None)}
 """The kinds of atoms that are their own key."""
+_SAMPLE = 500
+"""So many rows are looked at in order to guess whether each has a key of its own."""
 _CONSTANTS = {int, str, float, DoubleFloat, type(None), bool}
 """The kinds of atoms that are never variables."""
 
@@ -72,24 +76,18 @@ class Relation:
         return table
 
     def _table(self, known, kept):
-        keys = _side_by_side([self.keys[i] for i in known], self.count)
         if not known:
             return {(): self._listed([*_side_by_side([self.columns[i] for i in kept], self.count)])}
-        if not kept:
-            table = dict.fromkeys(keys, [()])
-        else:
-            rows = _side_by_side([self.columns[i] for i in kept], self.count)
-            table = dict(zip(keys, map(list, zip(rows))))
-        if len(table) == self.count:  # no two rows have the same key
-            return table
-        table = {}
-        keys = _side_by_side([self.keys[i] for i in known], self.count)
-        for key, row in zip(keys, _side_by_side([self.columns[i] for i in kept], self.count)):
-            found = table.get(key)
-            if found is None:
-                table[key] = [row]
-            else:
-                found.append(row)
+        keys = [self.keys[i] for i in known]
+        if self.count > _SAMPLE == len(set(islice(_side_by_side(keys, self.count), _SAMPLE))):  # perhaps each row has a key of its own
+            rows = map(list, zip(_side_by_side([self.columns[i] for i in kept], self.count)))
+            table = dict(zip(_side_by_side(keys, self.count), rows)) if kept else dict.fromkeys(_side_by_side(keys, self.count), [()])
+            if len(table) == self.count:
+                return table
+        table = defaultdict(list)
+        for key, row in zip(_side_by_side(keys, self.count), _side_by_side([self.columns[i] for i in kept], self.count)):
+            table[key].append(row)
+        table.default_factory = None
         if not self.exact:
             for key, rows in table.items():
                 table[key] = self._listed(rows)

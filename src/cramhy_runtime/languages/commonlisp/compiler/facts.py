@@ -18,6 +18,8 @@ OPERANDS_OF = {PLUS, MINUS, TIMES, DIVIDE, MAX, MIN, ABS, SQRT, *STEPS, *SMOOTH,
 """Functions for whose arguments it pays to know the class, or to be raw."""
 
 _node_fields: dict = {}
+_ENDS = {nodes.Constant, nodes.LocalVariable, nodes.GlobalVariable, nodes.FunctionReference, nodes.Go}
+"""Nodes that have none below them."""
 
 
 def children(node):
@@ -50,7 +52,8 @@ def walk(roots):
     while pending:
         node = pending.pop()
         yield node
-        pending.extend(children(node))
+        if node.__class__ not in _ENDS:
+            pending.extend(children(node))
 
 
 def study(root):
@@ -76,6 +79,10 @@ def study(root):
                     bound.append(variable)
         elif kind is nodes.ReturnFrom:
             node.block.values.append(node.value)
+    for variable in reversed(bound):
+        value = variable.values[0]
+        if not variable.writes and value.__class__ is nodes.LocalVariable:  # another name
+            value.variable.operand_uses += variable.operand_uses
     find_kinds(bound)
 
 

@@ -19,10 +19,10 @@ from .facts import study, walk
 from .generate_calls import CallGenerator, written_attribute
 from .generate_exits import ExitGenerator
 from .generate_functions import FunctionGenerator
-from .generate_numbers import NUMBER_FUNCTIONS
+from .arithmetic.functions import NUMBER_FUNCTIONS
 from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS, OperatorGenerator
 from .generate_texts import TextGenerator
-from .kinds import BOOLEAN, MINUS, OPERATORS, PI, PLUS, STEPS, THING, WHOLE, kind_of
+from .kinds import BOOLEAN, MAX, MIN, MINUS, OPERATORS, PI, PLUS, STEPS, THING, WHOLE, kind_of
 
 
 COLLECT, CONS, ERROR, FORMAT, GETHASH = map(sym, "CRAMHY::COLLECT CONS ERROR FORMAT GETHASH".split())
@@ -254,13 +254,13 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         if symbol in STEPS and len(arguments) == 1:
             symbol, arguments = STEPS[symbol], [*arguments, nodes.Constant(1)]
         standard = self.standard(symbol) and destination.kind != "effect"
-        if standard and len(arguments) > 2 and symbol in OPERATORS:
+        if standard and len(arguments) > 2 and (symbol in OPERATORS or symbol is MAX or symbol is MIN):
             arguments = self.nested(node)
             if arguments is None:
                 return self.gen(self.named_arguments(node), destination)
         if standard and len(arguments) == 2 and symbol in ARITHMETIC:
             if symbol not in COMPARISONS:
-                model, raw = self.arithmetic(node, symbol, arguments)
+                model, raw = self.arithmetic(node, symbol, arguments, destination.raw)
                 return self.finish(model, node, destination, raw=raw)
             return self.finish(self.truth_value(self.comparison(node, symbol, arguments)), node, destination)
         if standard and symbol in NUMBER_FUNCTIONS:

@@ -16,7 +16,7 @@ from ..objects.makers import maker
 from . import core, nodes
 from .core import NONE, List, Tuple, expression, word
 from .destinations import VALUES as ALL_VALUES
-from .generate_arithmetic import AND, DOT, IF, INT_CLASS, IS, IS_NOT, SETX, class_of
+from .arithmetic.operations import AND, DOT, IF, INT_CLASS, IS, IS_NOT, SETX, class_of
 
 FIND, FLOOR, GETHASH, LIST, VALUES = map(sym, "FIND FLOOR GETHASH LIST VALUES".split())
 MAKE_INSTANCE, SAME_CHARACTER = sym("MAKE-INSTANCE"), sym("CHAR=")

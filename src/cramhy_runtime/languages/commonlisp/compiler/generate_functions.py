@@ -13,7 +13,9 @@ from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.packages import symbol_name
 from . import nodes
 from .core import List, Tuple, expression, word
-from .generate_arithmetic import class_of
+from .arithmetic.operations import AND, DOUBLE_CLASS, FLOAT_CLASS, INT_CLASS, IS, class_of, fixnum_test
+from .kinds import DOUBLE, INT, SINGLE
+from .arithmetic.versions import assumed, guesses
 from .destinations import NONE, RETURN, TRUE, Destination
 
 DEBUGGED = special(Symbol("*DEBUGGED*"), False)
@@ -37,6 +39,7 @@ class FunctionGenerator:
         outer_before, self.before = self.before, []
         parameters = self.parameters(node)
         outer_classes, self.class_names = self.class_names, {}
+        self.version(node)
         for variable in node.parameters.required:
             if variable.operand_uses > 1 and not (variable.writes or variable.captured or variable.proven):
                 noted = self.temporary("Lk")
@@ -63,6 +66,28 @@ class FunctionGenerator:
         definition = expression(word("defn"), word(name), List(parameters), *header, *statements)
         self.out.append(self.positioned(definition, node))
         return word(name)
+
+    def version(self, node):
+        """Emit the body for arguments of the usual classes, behind a test of them, if that pays (``arithmetic/versions.py``)."""
+        found = guesses(node)
+        if not found:
+            return
+        tests = []
+        for variable, kind in found.items():
+            name = word(variable.name)
+            tests.append(expression(IS, class_of(name), {INT: INT_CLASS, SINGLE: FLOAT_CLASS, DOUBLE: DOUBLE_CLASS}[kind]))
+            if kind == INT and not variable.writes:
+                tests.append(fixnum_test(name))
+
+        def body():
+            for variable in found:
+                if variable.raw:
+                    self.assign(variable.name, self.call("float", word(variable.name)))
+            self.gen(node.body, RETURN)
+
+        with assumed(node, found):
+            statements, _ = self.captured(body)
+        self.emit(word("when"), tests[0] if len(tests) == 1 else expression(AND, *tests), *statements)
 
     def leavable(self, statements):
         """``statements``, the body of a function, so that a debugger can end the call or begin it anew (`frame_exits`)."""

@@ -1,6 +1,6 @@
 """Operators: the small functions on numbers and lists, and the tests, that become Python expressions.
 
-Sums, products, quotients and comparisons are in ``generate_arithmetic.py``.
+Sums, products, quotients and comparisons are in ``arithmetic/``.
 """
 
 from __future__ import annotations
@@ -9,10 +9,25 @@ from cramhy_runtime.ground.data import Symbol as LispSymbol
 from cramhy_runtime.ground.packages import sym
 from . import nodes
 from .core import NONE, Expression, Symbol, expression, word
-from .declared_types import FIXNUM, GREATEST_FIXNUM, LEAST_FIXNUM, is_fixnum
-from .generate_arithmetic import AND, ARITHMETIC, COMPARISONS, DOT, DOUBLE_CLASS, FLOAT_CLASS, IF, INT_CLASS, IS, IS_NOT, OR, SETX, class_of
-from .generate_arrays import ELEMENTS, LENGTH, ArrayGenerator
-from .generate_numbers import NumberGenerator
+from .declared_types import FIXNUM, is_fixnum
+from .arithmetic.operations import (
+    AND,
+    ARITHMETIC,
+    COMPARISONS,
+    DOT,
+    DOUBLE_CLASS,
+    FLOAT_CLASS,
+    IF,
+    INT_CLASS,
+    IS,
+    IS_NOT,
+    OR,
+    SETX,
+    class_of,
+    fixnum_test,
+)
+from .arithmetic.elements import ELEMENTS, LENGTH, ArrayGenerator
+from .arithmetic.functions import NumberGenerator
 from .kinds import DOUBLE_TYPES, INT, MACHINE, exactly, kind_of, kind_of_type
 
 SIGNS = {sym("ZEROP"): COMPARISONS[sym("=")], sym("PLUSP"): COMPARISONS[sym(">")], sym("MINUSP"): COMPARISONS[sym("<")]}
@@ -61,7 +76,7 @@ class OperatorGenerator(ArrayGenerator, NumberGenerator):
             tests = [expression(IS, again if index else noted, each) for index, each in enumerate(classes)]
             test = tests[0] if len(tests) == 1 else expression(OR, *tests)
         if not fits:
-            test = expression(AND, test, expression(word("<="), LEAST_FIXNUM, operand.later, GREATEST_FIXNUM))
+            test = expression(AND, test, fixnum_test(operand.later))
         if destination.kind == "effect":
             self.emit(word("when"), expression(word("not"), test), slow)
             self.effects += 1

@@ -358,6 +358,8 @@ def _bits_of_variable(variable):
     if known is None:
         if not (variable.proven or variable.kind) & INT:
             return 0
+        if variable.proven and variable.type is FIXNUM:
+            return 62
         variable.bits = INFINITE  # while it is found out: so is a variable that depends on itself otherwise than by steps
         known = variable.bits = _bits_of_values(variable)
     return known

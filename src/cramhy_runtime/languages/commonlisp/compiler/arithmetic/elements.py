@@ -7,10 +7,10 @@ simple array with two axes the element is found by its row and its column. Other
 from __future__ import annotations
 
 from cramhy_runtime.ground.packages import sym
-from . import nodes
-from .core import TRUE, Symbol, expression, word
-from .generate_arithmetic import AND, DOT, IF, INT_CLASS, IS, ArithmeticGenerator
-from .kinds import INT, exactly, never_negative
+from .. import nodes
+from ..core import TRUE, Symbol, expression, word
+from .operations import AND, DOT, IF, INT_CLASS, IS, ArithmeticGenerator
+from ..kinds import INT, exactly, never_negative
 
 AREF, SVREF, ELT, LENGTH = map(sym, "AREF SVREF ELT LENGTH".split())
 ELEMENTS = {AREF, SVREF, ELT}
@@ -44,7 +44,11 @@ class ArrayGenerator(ArithmeticGenerator):
     def place(self, operands):
         """(tests, Python's place) of the element of a vector or matrix that ``operands`` mean; (``None``, ``None``) if they cannot."""
         array, *subscripts = operands
-        if array.later.__class__ is not Symbol or any(not each.kind & INT or each.raw for each in subscripts):
+        if (
+            array.later.__class__ is not Symbol
+            or array.later in ("None", "True")
+            or any(not each.kind & INT or each.raw for each in subscripts)
+        ):
             return None, None
         matrix = len(subscripts) == 2
         tests = [expression(IS, self.class_of(array.later), MATRIX if matrix else VECTOR)]

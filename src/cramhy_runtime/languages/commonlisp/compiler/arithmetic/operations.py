@@ -15,12 +15,13 @@ import sys
 
 from cramhy_runtime.ground.data import DoubleFloat
 from cramhy_runtime.ground.packages import sym
-from . import nodes
-from .core import NONE, TRUE, Symbol, expression, word
-from .destinations import FIRST_OF_VALUES, RAW, VALUE
-from .environment import Variable
-from .loop_shapes import quiet
-from .kinds import (
+from .. import nodes
+from ..core import NONE, TRUE, Symbol, expression, word
+from ..declared_types import GREATEST_FIXNUM, LEAST_FIXNUM
+from ..destinations import FIRST_OF_VALUES, RAW, VALUE
+from ..environment import Variable
+from ..loop_shapes import quiet
+from ..kinds import (
     DIVIDE,
     DOUBLE,
     FEW_BITS,
@@ -30,7 +31,6 @@ from .kinds import (
     MINUS,
     NUMBER,
     ODD,
-    OTHER,
     PLUS,
     SINGLE,
     STEPS,
@@ -66,6 +66,8 @@ INT_CLASS, FLOAT_CLASS, DOUBLE_CLASS = word("Lint"), word("Lfloat"), word("Ldoub
 CLASS, CLASSES, RESULT = word("__class__"), word("Lc"), word("Lr")
 IS, IS_NOT, AND, OR, IF, DOT, SETX = map(word, "is is-not and or if . setx".split())
 MOST_LEAVES, MOST_OPERATIONS = 5, 8
+FIXNUM, FIXNUM_BITS = 1 << 10, 62
+"""That what is not known is assumed to be a fixnum, which needs a look at its size as well."""
 
 
 def class_of(model):
@@ -75,6 +77,11 @@ def class_of(model):
 def nameable(model):
     """Whether ``model`` may be evaluated twice: a name or a number."""
     return model.__class__ in (Symbol, int, float)
+
+
+def fixnum_test(model):
+    """A test that ``model``, an integer, is a fixnum."""
+    return expression(word("<="), LEAST_FIXNUM, model, GREATEST_FIXNUM)
 
 
 class Operand:
@@ -182,9 +189,12 @@ class ArithmeticGenerator:
 
     # --------------------------------------------------------------------------------------------------------- operations
 
-    def arithmetic(self, node, symbol, arguments):
-        """(the expression of a sum, difference, product or quotient of two operands, whether it is raw)."""
-        alone = symbol is DIVIDE and not _certain_divisor(arguments[1])
+    def arithmetic(self, node, symbol, arguments, wanted_raw):
+        """(the expression of a sum, difference, product or quotient of two operands, whether it is raw).
+
+        It may be raw even if that is not wanted, where it is all the same.
+        """
+        alone = symbol is DIVIDE and not _never_ratio(*arguments)
         found = None if alone else self.tree(node, symbol, arguments, MOST_OPERATIONS)
         operation, leaves = found or self.tree(node, symbol, arguments, 1)
         operands = self.operands(list(leaves.values()))
@@ -197,17 +207,10 @@ class ArithmeticGenerator:
             return part
 
         filled(operation)
-        is_raw = raw(kind_of(node))
+        is_raw = raw(kind_of(node)) and (wanted_raw or all(operand.known for operand in operands))
         if symbol is DIVIDE and self.may_fail(*operation.parts):
             return self.divided(operation, operands, is_raw), is_raw
         return self.computed(operation, operands, is_raw), is_raw
-
-    @staticmethod
-    def may_fail(one, other):
-        """Whether a quotient needs a look at the numbers: at the divisor for zero, at integers for a ratio."""
-        if other.__class__ is Operand and other.later.__class__ in (int, float) and other.later:
-            return one.__class__ is Operand and exactly(one.kind, INT) and exactly(other.kind, INT)
-        return True
 
     def tree(self, node, symbol, arguments, most):
         """(the `Operation` of ``node``, key → node of its leaves), or ``None`` if they are too many, or would be evaluated too early.
@@ -253,7 +256,7 @@ class ArithmeticGenerator:
             return None, None
         if len(arguments) > 2:
             arguments = self.nested(item)
-        if arguments is None or len(arguments) != 2 or symbol is DIVIDE and not _certain_divisor(arguments[1]):
+        if arguments is None or len(arguments) != 2 or symbol is DIVIDE and not _never_ratio(*arguments):
             return None, None
         return symbol, arguments
 
@@ -326,16 +329,14 @@ class ArithmeticGenerator:
                 known |= operand.kind
         count = sum(1 for _ in operations_of(operation))
         products = any(each.symbol is TIMES for each in operations_of(operation))
-        if known & (DOUBLE | ODD):
-            order = (DOUBLE,)
-        elif known & SINGLE:
-            order = (SINGLE,)
+        if known & (FLOATS | ODD):
+            order = (DOUBLE if known & (DOUBLE | ODD) else SINGLE,)
+            if len(unknown) == 1:
+                order = (*order, FIXNUM)
         elif known:
             order = (INT,)
         else:
-            order = (SINGLE, INT) if products and count > 1 else (INT, SINGLE)
-            if count > 1:
-                order = (*order, DOUBLE)
+            order = (SINGLE, INT, DOUBLE) if products and count > 1 else (INT, SINGLE, DOUBLE)
         found = []
         for assumed in order:
             kind = self.kind_in(operation, assumed)
@@ -372,7 +373,7 @@ class ArithmeticGenerator:
         elif assumed == SINGLE and operation.symbol is not TIMES and all(operand.first is operand.later for operand in unknown):
             certain = [each for each, operand in zip(tests, unknown) if not exactly(operand.kind, NUMBER)]
             tests = certain or tests
-        guard = expression(IS, *tests, {INT: INT_CLASS, SINGLE: FLOAT_CLASS, DOUBLE: DOUBLE_CLASS}[assumed])
+        guard = self.world_test(assumed, tests, unknown)
         model = self.bare_model(operation, assumed, None)
         if self.needs_check(operation, kind):
             inside = self.finite_test(model, kind)
@@ -382,6 +383,13 @@ class ArithmeticGenerator:
             model = self.wrapped(model, kind)
         return expression(IF, guard, model, rest)
 
+    @staticmethod
+    def world_test(assumed, classes, unknown):
+        """A test that the ``classes`` of the ``unknown`` operands are the assumed one."""
+        if assumed == FIXNUM:
+            return expression(AND, expression(IS, *classes, INT_CLASS), fixnum_test(unknown[0].later))
+        return expression(IS, *classes, {INT: INT_CLASS, SINGLE: FLOAT_CLASS, DOUBLE: DOUBLE_CLASS}[assumed])
+
     def kind_in(self, part, assumed):
         """The kind of ``part`` when all unknown operands are of the class ``assumed`` and Python's operators give it; else 0."""
         return self._kind_and_size(part, assumed)[0]
@@ -390,7 +398,7 @@ class ArithmeticGenerator:
         if part.__class__ is Operand:
             if part.known:
                 return part.kind, part.size
-            return assumed, 0 if assumed != INT else FEW_BITS + 1
+            return (INT, FIXNUM_BITS) if assumed == FIXNUM else (assumed, FEW_BITS + 1 if assumed == INT else 0)
         (one, size), (other, other_size) = (self._kind_and_size(each, assumed) for each in part.parts)
         kind = one and other and bare(part.symbol, one, other, size, other_size)
         return kind, size + other_size + 2 if kind & INT else 0
@@ -455,49 +463,6 @@ class ArithmeticGenerator:
         test = expression(OR, expression(IS, noted, INT_CLASS), expression(IS, again, FLOAT_CLASS))
         return expression(IF, test, expression(OPERATORS[operation.symbol], *models), slow)
 
-    def divided(self, operation, operands, is_raw):
-        """A quotient by what is not a constant, or of integers."""
-        one, other = operation.parts
-        generic = self.generic(operation)
-        slow = self.unwrapped(generic, 0) if is_raw else generic
-        unknown = [operand for operand in operands if not operand.known]
-        zero = other.later.__class__ in (int, float) and not other.later
-        if len(operands) < 2 or zero or any(operand.kind and not operand.kind & (NUMBER | THING) for operand in operands):
-            self.settle(operands)
-            return slow
-        if one.first is not one.later and other.first is not other.later and not unknown:
-            self.settle(operands)
-        if exactly(one.kind, INT) and exactly(other.kind, INT):
-            self.settle(operands)
-            whole = expression(word("not"), expression(word("%"), one.later, other.later))
-            return expression(IF, expression(AND, other.later, whole), expression(word("//"), one.later, other.later), slow)
-        if not unknown:
-            if not self.kind_in(operation, 0):
-                self.settle(operands)
-                return slow
-            if one.first is not one.later:  # only one of the branches is run
-                slow = self.positioned(expression(ARITHMETIC[DIVIDE], one.first, self.generic(other)), operation.node)
-                if one.raw:
-                    slow[1] = self.wrapped(one.first, one.kind)
-                slow = self.unwrapped(slow, 0) if is_raw else slow
-            return expression(IF, other.first, expression(word("/"), one.first, other.later), slow)
-        known = 0
-        for operand in operands:
-            if operand.known:
-                known |= operand.kind
-        declared = any(exactly(operand.kind, FLOATS | OTHER) for operand in unknown)
-        assumed = DOUBLE if known & (DOUBLE | ODD) or declared and not known & SINGLE else SINGLE
-        kind = self.kind_in(operation, assumed)
-        if not kind or bool(raw(kind)) < bool(is_raw):
-            self.settle(operands)
-            return slow
-        self.settle_all_but(unknown, operands)
-        guard = expression(IS, *(self.class_of(operand.first) for operand in unknown), DOUBLE_CLASS if assumed == DOUBLE else FLOAT_CLASS)
-        model = self.bare_model(operation, assumed, None)
-        if raw(kind) and not is_raw:
-            model = self.wrapped(model, kind)
-        return expression(IF, expression(AND, guard, other.later), model, slow)
-
     # -------------------------------------------------------------------------------------------------------- comparisons
 
     def comparison(self, node, symbol, arguments):
@@ -546,6 +511,11 @@ def nameable_node(node):
     if node.__class__ is nodes.LocalVariable:
         return not (node.variable.captured and node.variable.assigned)
     return node.__class__ is nodes.Constant
+
+
+def _never_ratio(node, divisor):
+    """Whether a quotient fails nowhere and is not one of integers."""
+    return _certain_divisor(divisor) and not (divisor.value.__class__ is int and kind_of(node) & INT)
 
 
 def _certain_divisor(node):

@@ -7,10 +7,11 @@ the same; what the test refuses is called as it stands.
 from __future__ import annotations
 
 from cramhy_runtime.ground.packages import sym
-from . import nodes
-from .core import expression, word
-from .generate_arithmetic import AND, DOUBLE_CLASS, FLOAT_CLASS, IF, INT_CLASS, IS, LARGEST, OR, ArithmeticGenerator
-from .kinds import (
+from .. import nodes
+from ..core import expression, word
+from .operations import AND, DOUBLE_CLASS, FLOAT_CLASS, IF, INT_CLASS, IS, LARGEST, OR
+from .quotients import QuotientGenerator
+from ..kinds import (
     ABS,
     COERCE,
     DOUBLE,
@@ -22,6 +23,7 @@ from .kinds import (
     MACHINE,
     MAX,
     MIN,
+    MINUS,
     MOD,
     NUMBER,
     REM,
@@ -62,7 +64,7 @@ SMOOTH_RANGES = {
 """Function of one number → the function of Python's ``math``, and the test that a real number is where both mean the same."""
 
 
-class NumberGenerator(ArithmeticGenerator):
+class NumberGenerator(QuotientGenerator):
     """The part of the `Generator` that makes expressions of functions of numbers."""
 
     def number_function(self, node, symbol, arguments, multiple):
@@ -72,8 +74,8 @@ class NumberGenerator(ArithmeticGenerator):
             return self.smooth(node, symbol, arguments)
         if symbol is MAX or symbol is MIN:
             return self.extreme(node, symbol, arguments) if count == 2 else None
-        if symbol is ABS and count == 1:
-            return self.absolute(node, arguments)
+        if count == 1 and (symbol is ABS or symbol is MINUS):
+            return self.changed_sign(node, symbol, arguments)
         if (symbol is MOD or symbol is REM) and count == 2:
             return self.remainder(node, symbol, arguments), False
         if symbol in WHOLE and not multiple and 0 < count < 3:
@@ -171,18 +173,22 @@ class NumberGenerator(ArithmeticGenerator):
         test = self.same_class(one, other) if len(unsure) == 2 else self.real_test(unsure[0])
         return expression(IF, test, model, slow), is_raw
 
-    def absolute(self, node, arguments):
+    def changed_sign(self, node, symbol, arguments):
+        """``(abs x)`` and ``(- x)``."""
         (operand,) = self.operands(arguments)
-        model = self.call("abs", operand.first)
+
+        def change(value):
+            return self.call("abs", value) if symbol is ABS else expression(NEGATIVE, value)
+
         if exactly(operand.kind, MACHINE) and operand.known:
-            return model, operand.raw
-        slow = self.called(node, ABS, [operand])
+            return change(operand.first), operand.raw
+        slow = self.called(node, symbol, [operand])
         if operand.raw:
             self.settle([operand])
-            return self.unwrapped(slow, 0), True
+            return (self.unwrapped(slow, 0), True) if raw(kind_of(node)) else (slow, False)
         noted, again = self.noted_class(operand.first)
         test = expression(OR, expression(IS, noted, INT_CLASS), expression(IS, again, FLOAT_CLASS))
-        return expression(IF, test, self.call("abs", operand.later), slow), False
+        return expression(IF, test, change(operand.later), slow), False
 
     def integers(self, operands):
         """A test that all ``operands``, which are settled, are integers; ``None`` if they surely are."""
@@ -262,4 +268,4 @@ class NumberGenerator(ArithmeticGenerator):
         return self.call("float", operand.first), kind == DOUBLE
 
 
-NUMBER_FUNCTIONS = {*SMOOTH_RANGES, *WHOLE, MAX, MIN, ABS, MOD, REM, FLOAT, COERCE}
+NUMBER_FUNCTIONS = {*SMOOTH_RANGES, *WHOLE, MAX, MIN, ABS, MINUS, MOD, REM, FLOAT, COERCE}
