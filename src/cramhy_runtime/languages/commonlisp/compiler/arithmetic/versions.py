@@ -20,7 +20,7 @@ WHOLE_ARGUMENTS = {sym(name) for name in "MOD REM EVENP ODDP LOGAND LOGIOR LOGXO
 INDEXED = {sym(name) for name in "AREF SVREF ELT".split()}
 COMPARISONS = {sym(name) for name in "< > <= >= =".split()}
 MAKE_ARRAY = sym("MAKE-ARRAY")
-LARGEST, FEW, MANY = 500, 4, 8
+LARGEST, FEW, MANY = 500, 4, 12
 """The most nodes of a body that is made twice; the least number of operations in one that is run often, by a loop or by calling itself,
 and in any other one."""
 FIXNUM_BITS = 62
