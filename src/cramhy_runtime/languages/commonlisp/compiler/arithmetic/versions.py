@@ -107,6 +107,11 @@ def _guess(variable, signs):
     return INT if signs == {"number"} else 0
 
 
+def bounded(node, variable):
+    """Whether the test at the entry of ``node`` asks whether an integer is a fixnum: where a loop makes it worth its time."""
+    return node.scope.loops and not variable.writes
+
+
 _FACTS = "kind", "raw", "bits", "never_negative", "name", "proven"
 
 
@@ -122,7 +127,7 @@ def assumed(node, found):
         variable.kind, variable.raw, variable.bits, variable.never_negative = NONE_YET, False, None, None
     for variable, kind in found.items():
         variable.kind, variable.proven, variable.never_negative = kind, None, False
-        variable.bits = INFINITE if variable.writes or kind != INT else FIXNUM_BITS
+        variable.bits = FIXNUM_BITS if kind == INT and bounded(node, variable) else INFINITE
     try:
         find_kinds([*bound, *found])
         yield
