@@ -348,7 +348,7 @@ class ArithmeticGenerator:
         """The bare expression of the first of ``worlds`` that the classes of ``unknown`` make, or ``slow``."""
         tests = [self.class_of(operand.first) for operand in unknown]
         again = [self.class_of(operand.later) for operand in unknown]
-        both = {assumed for assumed, _ in worlds[:2]} == {INT, SINGLE}
+        both = [assumed for assumed, _ in worlds[:2]] == [INT, SINGLE]  # in this order: see `worlds`
         checked = [self.needs_check(operation, kind) for _, kind in worlds]
         if both and not any(checked[:2]):
             noted = expression(SETX, CLASSES, tests[0])

@@ -20,7 +20,7 @@ WHOLE_ARGUMENTS = {sym(name) for name in "MOD REM EVENP ODDP LOGAND LOGIOR LOGXO
 INDEXED = {sym(name) for name in "AREF SVREF ELT".split()}
 COMPARISONS = {sym(name) for name in "< > <= >= =".split()}
 MAKE_ARRAY = sym("MAKE-ARRAY")
-LARGEST, FEW, MANY = 500, 4, 8
+LARGEST, FEW, MANY = 500, 4, 12
 """The most nodes of a body that is made twice; the least number of operations in one that is run often, by a loop or by calling itself,
 and in any other one."""
 FIXNUM_BITS = 62
@@ -107,6 +107,11 @@ def _guess(variable, signs):
     return INT if signs == {"number"} else 0
 
 
+def bounded(node, variable):
+    """Whether the test at the entry of ``node`` asks whether an integer is a fixnum: where a loop makes it worth its time."""
+    return node.scope.loops and not variable.writes
+
+
 _FACTS = "kind", "raw", "bits", "never_negative", "name", "proven"
 
 
@@ -122,7 +127,7 @@ def assumed(node, found):
         variable.kind, variable.raw, variable.bits, variable.never_negative = NONE_YET, False, None, None
     for variable, kind in found.items():
         variable.kind, variable.proven, variable.never_negative = kind, None, False
-        variable.bits = INFINITE if variable.writes or kind != INT else FIXNUM_BITS
+        variable.bits = FIXNUM_BITS if kind == INT and bounded(node, variable) else INFINITE
     try:
         find_kinds([*bound, *found])
         yield
