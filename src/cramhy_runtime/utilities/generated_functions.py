@@ -11,7 +11,6 @@ This module is the only one that runs text that the library has written; ``tests
 
 from __future__ import annotations
 
-import linecache
 import weakref
 from itertools import count
 from keyword import iskeyword
@@ -52,6 +51,8 @@ def define_functions(title: str, functions: Iterable[tuple[str, Iterable[str], I
 
 def _code(title, functions, scope):
     """The code object that defines ``functions``; `linecache` has its lines until ``scope`` is gone."""
+    import linecache  # takes long, and many programs need no such function
+
     text = "\n".join([_text(*function) for function in functions]) + "\n"
     filename = f"<{title}, text {next(_numbers)}>"
     code = compile(text, filename, "exec")
