@@ -230,6 +230,14 @@ def parser():
     replay = commands.add_parser("replay", help="show a recording in the page")
     replay.add_argument("file", metavar="FILE.mcap", help="the recording, which --record has written")
     replay.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens (a free port)")
+    browser = commands.add_parser("browser", help="write the course as static files, which run in a browser's tab")
+    browser.add_argument("--out", required=True, metavar="FOLDER", help="where the files go: an empty folder, or that of an older site")
+    browser.add_argument(
+        "--pyodide",
+        default=None,
+        metavar="FOLDER",
+        help="the package pyodide of npm, unpacked (in a clone: the one that make pyodide has fetched)",
+    )
     shims = commands.add_parser("ros-shims", help="roscore, rosrun, catkin_make ... as shell functions, or installed in a folder")
     shims.add_argument("--install", metavar="FOLDER", help="write them as programs into FOLDER (print functions)")
     shims.add_argument(
