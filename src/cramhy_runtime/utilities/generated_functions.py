@@ -15,7 +15,8 @@ import linecache
 import weakref
 from itertools import count
 from keyword import iskeyword
-from typing import TYPE_CHECKING
+
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -13,6 +13,7 @@ class Tab {
   constructor() {
     this.sockets = new Set(); // that wait for the session or talk with it
     this.printed = 0; // characters
+    this.prompts = 0; // that there have been
   }
 
   begin() {
@@ -20,6 +21,7 @@ class Tab {
     this.worker = new Worker(`worker.mjs${location.search}`, { type: "module" });
     this.worker.onmessage = ({ data: { kind, value } }) => this.#told[kind]?.(value);
     this.worker.onerror = (event) => this.failed(event.message || "the worker cannot be loaded");
+    document.body.dataset.prompt = "begins";
     this.say("loading Python …");
   }
 
@@ -49,6 +51,7 @@ class Tab {
       clearTimeout(this.deaf);
       this.say("");
       byId("repl-prompt").textContent = value;
+      document.body.dataset.prompts = ++this.prompts;
       document.body.dataset.prompt = "waits";
     },
     busy: () => (document.body.dataset.prompt = "busy"),

@@ -18,7 +18,7 @@ a carrier, since it carries one task after the other: making one costs more than
 
 A carrier has `ident`, the thread of the operating system on which it runs.
 
-In WebAssembly (a browser, Node) there are neither threads nor greenlets. There the back end "jspi" stands for "threads", the default.
+In WebAssembly (a browser, Node) there are neither threads nor greenlets. There "jspi" is the only back end.
 """
 
 from __future__ import annotations
@@ -34,12 +34,21 @@ if TYPE_CHECKING:
 def make_backend(backend: BackendName | Backend) -> Backend:
     """A fresh back end for "threads", "greenlet" or "jspi". An object with the interface above is returned as it is.
 
-    Another word is a ValueError; "greenlet" without the package, and "jspi" outside of WebAssembly, is an ImportError.
+    "auto" is "greenlet" where the package is installed, and "threads" elsewhere: plans do the same on both, and greenlets are faster. In
+    WebAssembly both "auto" and "threads" are "jspi". Another word is a ValueError; "greenlet" without the package, and "jspi" outside of
+    WebAssembly, is an ImportError.
     """
-    if backend == "jspi" or backend == "threads" and sys.platform == "emscripten":
+    if backend == "jspi" or backend in ("auto", "threads") and sys.platform == "emscripten":
         from .jspi import JspiBackend
 
         return JspiBackend()
+    if backend == "auto":
+        try:
+            from .greenlet import GreenletBackend
+
+            return GreenletBackend()
+        except ImportError:
+            backend = "threads"
     if backend == "threads":
         from .threads import ThreadBackend
 
@@ -56,5 +65,5 @@ def make_backend(backend: BackendName | Backend) -> Backend:
             ) from missing
         return GreenletBackend()
     if isinstance(backend, str):
-        raise ValueError(f'There is no back end "{backend}". Choose "threads" or "greenlet".')
+        raise ValueError(f'There is no back end "{backend}". Choose "auto", "threads" or "greenlet".')
     return backend

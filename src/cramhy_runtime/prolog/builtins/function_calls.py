@@ -8,15 +8,13 @@ Plan failures and other conditions that are not errors pass. Source: prolog.md s
 
 from __future__ import annotations
 
+from cramhy_runtime.ground.catching import caught, enter_case, foreign_case
 from cramhy_runtime.ground.conditions import (
     Condition,
     Error,
     HandlerExit,
     SimpleWarning,
     StorageCondition,
-    caught,
-    enter_case,
-    foreign_case,
     type_error,
     undefined_function,
     warn,

@@ -11,6 +11,7 @@ from cramhy_runtime.ground.data import Cons
 from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.packages import sym, symbol_name
 from .core import HEADS
+from .kinds import ANY
 
 EXECUTE = {sym(":EXECUTE"), sym("EVAL")}
 """The situations of ``eval-when`` in which ``eval`` evaluates; a file is compiled and loaded at once, so it evaluates in all."""
@@ -67,7 +68,9 @@ class Variable:
         self.used = self.ignored = self.ignorable = False
         self.reads = self.writes = self.operand_uses = 0  # these and the next are found by ``facts.py``
         self.values = []
-        self.kind = None
+        self.kind = ANY
+        self.raw = False  # whether a float that it holds stands for a double: see ``kinds.py``
+        self.bits = self.never_negative = None  # asked for when code is made
         self.type = None  # the declared type, which assigned values are checked for
         self.proven = None  # the kind of a parameter whose type is checked on entry
 
@@ -108,11 +111,15 @@ class SymbolMacro:
 
 
 class LocalFunction:
-    """A function of ``flet`` or ``labels``: the value of a variable. ``shape``: the calls that it takes."""
+    """A function of ``flet`` or ``labels``: the value of a variable. ``shape``: the calls that it takes.
 
-    def __init__(self, variable, shape=None):
+    next: if it is ``call-next-method`` or ``next-method-p``, what it means (`next_methods`).
+    """
+
+    def __init__(self, variable, shape=None, next=None):
         self.variable = variable
         self.shape = shape
+        self.next = next
 
 
 class LocalMacro:
@@ -147,6 +154,7 @@ class Block(_Exit):
     def __init__(self, symbol, owner):
         super().__init__(owner)
         self.symbol = symbol
+        self.values = []  # what it is left with
 
 
 class Tagbody(_Exit):
