@@ -16,6 +16,8 @@ Three things differ from threads and greenlets.
 The collector of Python 3.14 looks at these frames, too (pyodide#6464). `cramhy_runtime.browser.pyodide_files` mends Pyodide for that.
 """
 
+from __future__ import annotations
+
 import _thread
 import asyncio
 import sys
@@ -24,6 +26,16 @@ from collections import deque
 
 from ..clocks import LONGEST_WAIT
 from ..errors import NoStack
+from ..typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import FrameType
+
+    from ..scheduler import Kernel
+    from ..tasks import Task
+
+    Job = Callable[[Any], Any]  # of a carrier; it returns the carrier that goes on, or None
 
 try:
     from cramhy_host import host
@@ -44,10 +56,10 @@ _stacks = 0  # that are not over, of all kernels
 # ---------------------------------------------------------------------------------------------------------------- waiting for promises
 
 _ensure_future = asyncio.ensure_future
-_awaited = None  # the promise that `wait_for` is about to wait for
+_awaited: Any = None  # the promise that `wait_for` is about to wait for
 
 
-def _as_it_is(awaitable, *, loop=None):
+def _as_it_is(awaitable: Any, *, loop: Any = None) -> Any:
     """`asyncio.ensure_future`, but the promise of `wait_for` stays a promise.
 
     `run_sync` gives whatever it waits for to this function, which would make a task of asyncio's and take four turns of the event loop for
@@ -56,10 +68,10 @@ def _as_it_is(awaitable, *, loop=None):
     return awaitable if awaitable is _awaited else _ensure_future(awaitable, loop=loop)
 
 
-asyncio.ensure_future = _as_it_is
+asyncio.ensure_future = _as_it_is  # type: ignore[assignment]
 
 
-def wait_for(promise):
+def wait_for(promise: Any) -> Any:
     """Suspend this stack until ``promise``, of JavaScript, is resolved, and return what it gives. A rejection is raised."""
     global _awaited
     _awaited = promise
@@ -74,15 +86,16 @@ class Carrier:
 
     __slots__ = ("backend", "job", "started", "suspended", "ident", "_turn", "_asker", "_seen", "_counts")
 
-    def __init__(self, backend, job):
+    def __init__(self, backend: JspiBackend, job: Job | None):
         self.backend = backend
-        self.job = job
+        self.job: Any = job  # as for `Job`; None while it waits for one
         self.started = self.suspended = self._counts = False
         self.ident = backend.ident
         self._turn = host.Turn.new()
-        self._asker = self._seen = None  # the turn of whoever wants to know where it stands, and the answer
+        self._asker: Any = None  # the turn of whoever wants to know where it stands
+        self._seen: Seen | None = None  # the answer
 
-    def wake(self):
+    def wake(self) -> None:
         """Give it the baton as soon as the present stack is suspended or has ended."""
         if self.started:
             self._turn.give()
@@ -90,7 +103,7 @@ class Carrier:
             self.started = True
             host.launch(self._life)
 
-    def wait(self):
+    def wait(self) -> None:
         """Suspend this stack until another one wakes it."""
         self.suspended = True
         wait_for(self._turn.turn)
@@ -101,7 +114,7 @@ class Carrier:
             wait_for(self._turn.turn)
         self.suspended = False
 
-    def look(self):
+    def look(self) -> Seen | None:
         """The innermost frame of this suspended stack, as `Seen`. None if another stack is looking at it."""
         if self._asker is not None:
             return None
@@ -112,7 +125,7 @@ class Carrier:
         found, self._seen = self._seen, None
         return found
 
-    def take_place(self):
+    def take_place(self) -> None:
         """Take one of the `MOST` places. If there is none left, it is `NoStack`."""
         global _stacks
         if _stacks >= MOST:
@@ -120,14 +133,14 @@ class Carrier:
         _stacks += 1
         self._counts = True
 
-    def leave_place(self):
+    def leave_place(self) -> None:
         """Give the place back. Does nothing a second time."""
         global _stacks
         if self._counts:
             self._counts = False
             _stacks -= 1
 
-    def _life(self):
+    def _life(self) -> None:
         """Do a job, hand the baton on, and again: the bottom of the stack."""
         idle = self.backend.idle
         try:
@@ -155,16 +168,18 @@ class Seen:
 
     __slots__ = ("f_code", "f_lineno", "f_lasti", "f_back")
 
-    def __init__(self, frame):
-        self.f_code, self.f_lineno, self.f_lasti, self.f_back = frame.f_code, frame.f_lineno, frame.f_lasti, None
+    def __init__(self, frame: FrameType):
+        self.f_code, self.f_lineno, self.f_lasti = frame.f_code, frame.f_lineno, frame.f_lasti
+        self.f_back: Seen | None = None
 
 
-def seen(frame):
+def seen(frame: FrameType) -> Seen:
     """FRAME, which must be of the running stack, and the frames around it, as `Seen`."""
     innermost = last = Seen(frame)
-    while (frame := frame.f_back) is not None:
-        last.f_back = Seen(frame)
-        last = last.f_back
+    around = frame.f_back
+    while around is not None:
+        outer = last.f_back = Seen(around)
+        last, around = outer, around.f_back
     return innermost
 
 
@@ -177,17 +192,17 @@ class JspiBackend:
     name = "jspi"
     calls_back = True  # a task that is outside can be called back, for its call is on a stack of its own
 
-    def __init__(self):
-        self.idle = deque()
+    def __init__(self) -> None:
+        self.idle: deque[Carrier] = deque()
         self.closed = False
         self.ident = _thread.get_ident()
 
-    def adopt(self, kernel):
+    def adopt(self, kernel: Kernel) -> Carrier:
         carrier = Carrier(self, None)
         carrier.started = True
         return carrier
 
-    def carrier(self, job):
+    def carrier(self, job: Job) -> Carrier:
         if self.idle:
             carrier = self.idle.pop()
             carrier.job = job
@@ -196,15 +211,15 @@ class JspiBackend:
         carrier.take_place()
         return carrier
 
-    def transfer(self, mine, other):
+    def transfer(self, mine: Carrier, other: Carrier) -> None:
         other.wake()
         mine.wait()
 
-    def run_blocking(self, kernel, task, call):
+    def run_blocking(self, kernel: Kernel, task: Task[object], call: Callable[[], Any]) -> Any:
         """Run CALL on another stack. It begins, and goes on, whenever the others wait or the event loop has its turn."""
-        outcome = []
+        outcome: list[Any] = []
 
-        def outside(carrier):
+        def outside(carrier: Carrier) -> None:
             try:
                 outcome[:] = call(), None
             except BaseException as exception:
@@ -222,26 +237,26 @@ class JspiBackend:
             raise exception
         return result
 
-    def frame(self, carrier):
+    def frame(self, carrier: Carrier) -> Any:
         if not can_run_sync():
             return None  # the event loop asks, which stands on none of our stacks and cannot wait for an answer
         return carrier.look() if carrier.suspended else sys._getframe()
 
-    def bell(self):
+    def bell(self) -> Any:
         return Bell()
 
-    def breathe(self):
+    def breathe(self) -> None:
         if host.due() and can_run_sync():
             wait_for(host.tick)
 
-    def close(self):
+    def close(self) -> None:
         self.closed = True
         while self.idle:
             carrier = self.idle.pop()
             carrier.leave_place()
             carrier.wake()  # finds no job, and ends as soon as this stack is suspended
 
-    def forsake(self, carrier):
+    def forsake(self, carrier: Carrier) -> None:
         """Do nothing: a stack that waits for ever takes memory, and one of the `MOST` places."""
 
 
@@ -250,15 +265,15 @@ class Bell:
 
     __slots__ = ("waited", "_host")
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._host = host.Bell.new()
         self.waited = 0.0
 
-    def ring(self):
+    def ring(self) -> None:
         """Wake the waiting stack, or let the next wait return at once."""
         self._host.ring()
 
-    def wait(self, timeout=None):
+    def wait(self, timeout: float | None = None) -> None:
         """Wait until the bell rings, at most TIMEOUT seconds. It may return early."""
         if timeout is None or timeout > LONGEST_WAIT:
             timeout = LONGEST_WAIT
