@@ -42,7 +42,7 @@ def paths():
 @pytest.fixture(scope="module")
 def results():
     """For each room the results of its tests: (name, "passed", "skipped" or the text of what failed)."""
-    done = run_pytest("--junitxml=/compiled/results.xml", "-W", "ignore", *([] if SOAK else ["-k", "not hy]"]), *paths())
+    done = run_pytest("--junitxml=/compiled/results.xml", "-W", "ignore", *([] if SOAK else ["-k", "not jspi-hy"]), *paths())
     report = KEPT / "compiled" / "results.xml"
     assert done.returncode in (0, 1) and report.exists(), done.stdout[-5000:]
     found = {room: [] for room in LAWS}
@@ -54,7 +54,7 @@ def results():
     return found
 
 
-@pytest.mark.parametrize(("room", "at_least"), [("kernel", 90), ("cpl", 60), ("process_modules", 50), ("designators", 50)])
+@pytest.mark.parametrize(("room", "at_least"), [("kernel", 110), ("cpl", 190), ("process_modules", 50), ("designators", 80)])
 @pytest.mark.timeout(3600 if SOAK else 400)
 def test_a_room_passes_its_tests(results, room, at_least):
     outcomes = [outcome for _, outcome in results[room]]

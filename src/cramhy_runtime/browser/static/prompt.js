@@ -27,6 +27,12 @@ class Tab {
 
   // ---------------------------------------------------------------------------------------------------------- the views
 
+  // Call CALL once, when there is a session.
+  whenReady(call) {
+    this.told = call;
+    if (this.ready) call();
+  }
+
   join(socket, port) {
     this.worker?.postMessage({ kind: "port" }, [port]);
     this.sockets.add(socket);
@@ -44,6 +50,7 @@ class Tab {
     imported: () => this.say("making the session …"),
     ready: () => {
       this.ready = true;
+      this.told?.();
       for (const socket of this.sockets) socket.onopen?.();
     },
     text: (value) => this.print(value),

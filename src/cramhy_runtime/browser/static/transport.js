@@ -4,6 +4,7 @@ import { tab } from "./prompt.js";
 
 export const url = "worker:///";
 export const token = "of this tab";
+export const ready = new Promise((resolve) => tab.whenReady(resolve));
 
 export function make() {
   const { port1, port2 } = new MessageChannel();

@@ -17,7 +17,7 @@ import { Stage } from "./stage.js";
 import { StatusView } from "./status.js";
 import { offerThemes } from "./theme.js";
 import { Timeline } from "./timeline.js";
-import { make, token, url } from "./transport.js";
+import { make, ready, token, url } from "./transport.js";
 import { TreeView } from "./tree.js";
 import { WorldView } from "./world.js";
 
@@ -179,7 +179,7 @@ async function start() {
     waiting.render();
   }
 
-  if (token) session.connect();
+  if (token) ready.then(() => session.connect());
   else status.connection(STATES.REFUSED, "this address has no token");
   requestAnimationFrame(frame);
 }

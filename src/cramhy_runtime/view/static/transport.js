@@ -4,3 +4,4 @@
 export const url = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/`;
 export const token = new URLSearchParams(location.hash.slice(1)).get("token") ?? location.hash.slice(1);
 export const make = (address) => new WebSocket(address);
+export const ready = Promise.resolve(); // when there is somebody to connect with
