@@ -71,7 +71,7 @@ class PrologTable(Table):
     """A table whose last column is SWI-Prolog: the recorded figure, and the live one."""
 
     def __init__(self, title):
-        super().__init__(title, "threads", last="SWI-Prolog recorded, here")
+        super().__init__(title, kernel.active().backend.name, last="SWI-Prolog recorded, here")
         self.swi = swi_figures(read)
 
     def rate(self, title, name, work, count, goal, cram, swi, units=1):

@@ -115,3 +115,13 @@ def test_variants_of_variants_end():
     )
     read("minus-one").function = lambda n: n - 1
     assert ask("(and (grow (a ?u) 3 ?y) (== ?u 1))").count("G") == 3
+
+
+@pytest.mark.parametrize(
+    "construct", ["(call {})", "(and {})", "(once {})", "(call (call {}))", "(call (and {} (true)))", "(or (call {}))"]
+)
+@pytest.mark.parametrize("goal", ["(or (== ?b 5) (== ?b 2))", "(-> (true) (== ?b 2))", "(mem ?b (5 2))", "(*-> (mem ?c (5 2)) (== ?b ?c))"])
+def test_a_variable_that_a_construct_sets_is_seen_after_it(construct, goal):
+    group("all", *LISTS, "((two 2))", f"((found ?a) {construct.format(goal)} (or (two ?b) (== ?b 5)) (== ?a ?b))")
+    found = " ".join(show(answer[read("?a")]) for answer in query.solve(read("(found ?a)")))
+    assert found == ("2" if goal.startswith("(->") else "5" if "once" in construct else "5 2")

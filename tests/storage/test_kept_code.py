@@ -135,6 +135,12 @@ def compiling(tmp_path, monkeypatch):
     return tmp_path / "compiler", loader.stamp.__wrapped__
 
 
+def test_the_fingerprint_covers_all_folders_of_the_compiler():
+    """A folder in the compiler's folder, too, in whichever depth."""
+    compiler = Path(loader.__file__).parents[1] / "compiler"
+    assert {path.parent for path in compiler.rglob("*.py")} <= set(loader._compiling_folders())
+
+
 def test_the_fingerprint_of_cramhy_is_that_of_its_content(compiling, tmp_path, monkeypatch):
     folder, stamp = compiling
     first = stamp()

@@ -139,6 +139,13 @@ class Symbol:
 
     def function_changed(self):
         """To be called after ``function`` or ``setf_function`` got another value."""
+        self.more_known()
+        if self.keyed is not None:
+            for calls in self.keyed.values():
+                calls.refresh()
+
+    def more_known(self):
+        """To be called after ``function`` or ``setf_function``, which is generic, found the methods for a call."""
         if self._reads is not None:
             self._reads.refresh()
         if self._writes is not None:
@@ -147,9 +154,6 @@ class Symbol:
             if table is not None:
                 table.clear()
                 table.update(_effective_functions(self.function, count))
-        if self.keyed is not None:
-            for calls in self.keyed.values():
-                calls.refresh()
 
     @property
     def reads(self) -> SlotClasses:

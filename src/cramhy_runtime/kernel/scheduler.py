@@ -24,7 +24,7 @@ from collections import deque
 from . import images, reports
 from .backends import make_backend
 from .budget import SLICE, budget, need_headroom, need_steps
-from .clocks import make_clock
+from .clocks import VirtualClock, make_clock
 from .endings import CLEANUP_LIMIT, PATIENCE, Endings
 from .errors import Cancelled, Deadlock, Interrupted, KernelError, NoStack, Terminated, TimeLimit
 from .inbox import Outside
@@ -151,7 +151,8 @@ class Kernel(Endings, Outside):
             parent = self.main if me is self._scheduler else me
         number = self._born
         self._born = number + 1
-        task = self._tasks[number] = Task(self, number, fn, args, name or getattr(fn, "__name__", "task"), parent)
+        task: Task[T] = Task(self, number, fn, args, name or str(getattr(fn, "__name__", "task")), parent)
+        self._tasks[number] = task
         self._queue.append(task)
         self._streak = 0
         return task
@@ -175,7 +176,7 @@ class Kernel(Endings, Outside):
         if me.attention and me.deliver():
             return True
         entries, clock = self._timers.entries, self.clock
-        next_waits = len(self._queue) > self._streak and clock.virtual and not (entries and entries[0][0] <= clock.time)
+        next_waits = len(self._queue) > self._streak and type(clock) is VirtualClock and not (entries and entries[0][0] <= clock.time)
         if self._inbox or self._unclaimed or entries and not next_waits:
             need_headroom()
         else:  # no timer fires before the next task runs
@@ -416,7 +417,7 @@ class Kernel(Endings, Outside):
         while True:
             if self._inbox:
                 self._read_inbox()
-            if entries and entries[0][0] <= (clock.time if clock.virtual else clock.now()):
+            if entries and entries[0][0] <= (clock.time if type(clock) is VirtualClock else clock.now()):
                 self._fire(clock.now())
             if self._urgent is not None:
                 task, self._urgent = self._urgent, None

@@ -4,6 +4,6 @@ Lazy lists (``lazy_lists``) and pattern matching (``patterns``, ``compiled_patte
 wait for (``threads``, ``locks``, ``semaphores``, ``queues``, ``barriers``, on the waiting lines of ``wait_queue``), made of the kernel's
 tasks; ``quad_trees`` and the ``small_functions``; ``symbols``, the Lisp package. Source: prolog.md section 13, cpl.md section 13.
 
-One tool is for this library only: ``generated_functions`` makes Python functions of text, for messages, patterns, Prolog and nets of
-fluents.
+Two tools are for this library only: ``generated_functions`` makes Python functions of text, for messages, patterns, Prolog and nets of
+fluents, and ``records`` makes classes of records, for the compiler of Lisp.
 """

@@ -16,8 +16,7 @@ import weakref
 from itertools import count
 from keyword import iskeyword
 
-from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
-
+TYPE_CHECKING = False  # as type checkers read it; `typing` takes long to import
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 

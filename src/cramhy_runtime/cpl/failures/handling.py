@@ -60,7 +60,7 @@ def fail(*arguments: Any) -> NoReturn:
     Handlers run now, on top of this stack. Without arguments the text is ``Plan failure.`` Source: cpl.md 4.2.
     """
     if arguments and arguments[0].__class__ is str:
-        condition = _new(SimplePlanFailure)
+        condition: Any = _new(SimplePlanFailure)
         condition.format_control, condition.format_arguments = arguments[0], arguments[1:]
     else:
         condition = _designated(*arguments)
@@ -120,15 +120,17 @@ class Handling(Cluster, BaseException):
     Lisp is written ``(return value)`` and compiled to an exit of its own. It is the exception that unwinds to its form.
     """
 
-    __slots__ = ("clauses", "task", "ending", "id", "left", "values")
+    __slots__ = ("clauses", "task", "ending", "observed", "id", "left", "values")
 
     def __init__(self, clauses: Sequence[Clause]):
         running = ACTIVE.value
         self.clauses = clauses
         self.task = task = kernel.current() if running is None else running.current
         self.ending = task.cancelled_delivered
-        self.id: tuple[object] | None = None  # what the first hook returned, once it has run
+        self.observed = False  # the hook of its beginning has run, and returned
+        self.id: object = None
         self.left = False
+        self.values: object = None
 
     def __call__(self) -> NoReturn:
         """Unwind to the form, and try its body again."""
@@ -139,14 +141,14 @@ class Handling(Cluster, BaseException):
         self.values, self.left = value, True
         raise self
 
-    def offer(self, condition: Any, outer: Any) -> None:
+    def offer(self, condition: types.Condition, outer: object) -> None:
         """Try the clauses of the form in order (cpl.md 4.5, points 4 and 5). Returns if all of them decline."""
         if self.task.cancelled_delivered and not self.ending:
             return
         clauses = self.clauses
         bind(HANDLERS, outer)
         try:
-            if condition.__class__ is CommonLispErrorEnvelope:
+            if type(condition) is CommonLispErrorEnvelope:
                 wrapped = condition.error
                 for specifier, handler in clauses:
                     if matches(wrapped, specifier):
@@ -155,10 +157,10 @@ class Handling(Cluster, BaseException):
             for specifier, handler in clauses:
                 if matches(condition, specifier):
                     if on_with_failure_handling_handled.methods:
-                        on_with_failure_handling_handled(*self.id)
+                        on_with_failure_handling_handled(self.id)
                     handler(condition, self)
                     if on_with_failure_handling_rethrown.methods:
-                        on_with_failure_handling_rethrown(*self.id)
+                        on_with_failure_handling_rethrown(self.id)
         except (types.Condition, Exception) as raised:
             raised_by_handler(raised)
             raise
@@ -167,7 +169,8 @@ class Handling(Cluster, BaseException):
 
     def run(self, body: Callable[[Handling], T]) -> T:
         """Call ``body`` with the handlers in force, and again after each ``retry``. Returns its values, or what a handler left with."""
-        if self.id is None and (on_with_failure_handling_begin.methods or on_with_failure_handling_end.methods):
+        if not self.observed and (on_with_failure_handling_begin.methods or on_with_failure_handling_end.methods):
+            self.observed = True
             return observed([_type_name(specifier) for specifier, _ in self.clauses], lambda: self.run(body), self)
         while True:
             bind(HANDLERS, (self, HANDLERS.value))  # as `enter` does
@@ -184,7 +187,7 @@ class Handling(Cluster, BaseException):
                     raise
                 self.__traceback__ = self.__context__ = None  # a circle with the frames that it passed
                 if self.left:
-                    return self.values  # type: ignore[no-any-return]  # what the handler says is what the form returns
+                    return self.values  # type: ignore[return-value]  # what the handler says is what the form returns
             kernel.checkpoint()
 
 
@@ -206,7 +209,7 @@ def observed(types: list[str], thunk: Callable[[], T], handling: Handling | None
     """
     run_id = on_with_failure_handling_begin.first(list_from(types))
     if handling is not None:
-        handling.id = (run_id,)
+        handling.id = run_id
     try:
         return thunk()
     finally:

@@ -185,9 +185,9 @@ _slots_read_by: dict[Callable[..., Any], Any] = {}
 """A method `read` → the slot that it returns."""
 
 
-def reads_slot(cls: Any, slot: Any) -> None:
-    """Note that ``cls.read`` returns ``slot`` and does nothing else."""
-    _slots_read_by[cls.read] = cls._fluent_value = slot
+def reads_slot(cls: Any, name: str) -> None:
+    """Note that ``cls.read`` returns the slot ``name`` and does nothing else."""
+    _slots_read_by[cls.read] = cls._fluent_value = vars(cls)[name]
 
 
 @circumstance(lambda here: f"in the callback {princ_to_string(here['name'])} of {_shown(here['fluent'])}")
@@ -280,7 +280,7 @@ class ValueFluent(Fluent[T]):
         return f"#<FLUENT {getattr(self.name, 'name', self.name)} [{self.stored!r}]>"
 
 
-reads_slot(ValueFluent, ValueFluent.stored)
+reads_slot(ValueFluent, "stored")
 
 
 class FunctionNamed:

@@ -123,7 +123,7 @@ class CachedNet(Net[T_co]):
                 return new
 
 
-reads_slot(CachedNet, CachedNet.cached)
+reads_slot(CachedNet, "cached")
 
 peekers: set[kernel.Task[object]] = set()
 """The tasks of the kernel that are reading without side effects."""

@@ -407,7 +407,8 @@ class AbstractTask(Generic[T]):
 
     def _begin_to_end(self, reason: str | None) -> kernel.Cancelled:
         """The exception for a request to end that arrives in the task itself. Cleanup begins after it is raised."""
-        if ACTIVE.value.current is self.kernel_task:
+        me = self.kernel_task
+        if me is not None and me.kernel.current is me:
             if active_tags:
                 log("RECEIVE-EVENT", EVENT, "EVAPORATE", reason)
             if self.children:

@@ -157,7 +157,7 @@ class GenericFunction(ReachedSlots, FunctionObject):
             if found is None:
                 return lambda *arguments: no_applicable_method(self, arguments)
             self.cache[key] = found
-            self.tell_callers()
+            self.tell_callers(found=True)
         return found
 
     def _eql_possible(self, index, argument):

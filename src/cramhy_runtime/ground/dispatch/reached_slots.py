@@ -39,12 +39,12 @@ class ReachedSlots:
         }
         return found.pop() if len(found) == 1 else None
 
-    def tell_callers(self):
-        """Let the calls that reach into objects themselves know what this function does now."""
+    def tell_callers(self, found=False):
+        """Let calls that find methods and slots themselves know what this function does now. found: only that it knows one call more."""
         name = self.__lisp_name__
         symbol = name.cdr.car if isinstance(name, Cons) else name
         if isinstance(symbol, Symbol):
-            symbol.function_changed()
+            symbol.more_known() if found else symbol.function_changed()
 
 
 def attribute_of(effective):

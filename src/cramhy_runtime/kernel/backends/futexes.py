@@ -7,6 +7,8 @@ It does so when it has many threads: a list takes 64 bytes. Older versions share
 on other systems, nothing is done.
 """
 
+from __future__ import annotations
+
 import sys
 
 MANY = 128  # threads, from which on the table is worth its memory
@@ -19,10 +21,14 @@ class Table:
 
     __slots__ = ("wide",)
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.wide = False  # or it was refused, and need not be tried again
 
-    def widen(self):
+    def forget(self) -> None:
+        """Begin anew: a forked process has a table of its own."""
+        self.wide = False
+
+    def widen(self) -> bool:
         """Ask for `LISTS` lists. Returns whether the process has them now."""
         self.wide = True
         if not sys.platform.startswith("linux"):
@@ -30,6 +36,6 @@ class Table:
         import ctypes  # takes 5 ms
 
         try:
-            return ctypes.CDLL(None).prctl(PR_FUTEX_HASH, PR_FUTEX_HASH_SET_SLOTS, LISTS, 0, 0) == 0
+            return bool(ctypes.CDLL(None).prctl(PR_FUTEX_HASH, PR_FUTEX_HASH_SET_SLOTS, LISTS, 0, 0) == 0)
         except (AttributeError, OSError):
             return False

@@ -31,7 +31,7 @@ _idle = deque()
 _affinity = None  # see `affinity`; asked for when the first kernel starts
 _table = Table()
 in_forked_child(_idle.clear)  # threads do not come along
-in_forked_child(_table.__init__)
+in_forked_child(_table.forget)
 
 
 class ThreadCarrier:

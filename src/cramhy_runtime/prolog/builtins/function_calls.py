@@ -75,8 +75,8 @@ def call_lisp(function, arguments, kind, written, m=None):
         finally:
             unbind()
     except HandlerExit as left:
+        inside = exception_position(left)  # before `caught` takes the frames from it
         problem = caught(left, case)
-        inside = exception_position(left)
     except RecursionError:
         problem = StorageCondition("Control stack exhausted.")
     warning = SimpleWarning(f"An error occurred while executing the lisp {kind} `~a': `~a'", written, problem)

@@ -435,6 +435,7 @@ class Bodies(Matching):
         if known_goal(goal, CONSTRUCTS) is None:
             self._call(list_from([CALL, goal]), goals, names, context)
             return
+        self._shared(arguments, goals, names)
         k = self._rest(goals, names, context)
         self.body([goal], names, Context(k, self._height()))
 

@@ -436,7 +436,7 @@ class PredicateCode(Holes, Bodies):
     def _enumerate(self, numbers, known):
         outer = self.leaving, self.enumerating
         self.leaving, self.enumerating = "return", True
-        self.emit("trail, choice = m.trail, m.choices[-1]")
+        self.emit("trail, choice, code = m.trail, m.choices[-1], P.call")
         self.emit("for _ in ONCE:")  # the first turn takes the clauses that are left
         self.depth += 1
         self._chain(numbers, known, "continue")
@@ -448,7 +448,7 @@ class PredicateCode(Holes, Bodies):
         self._dispatch(list(range(len(self.fitting))), {})
         self.depth -= 1
         self.emit(f"budget.left -= {len(LOOP)}")
-        self.emit(f"if P.call is not predicate: {self._going_on()}")
+        self.emit(f"if P.call is not code: {self._going_on()}")
         self.emit("m.rest()")
         self.depth -= 1
         self.leaving, self.enumerating = outer

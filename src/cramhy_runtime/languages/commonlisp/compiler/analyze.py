@@ -20,7 +20,6 @@ from . import nodes
 from .declared_types import declared_types
 from .environment import Env, FunctionScope, LocalFunction, SpecialVariable, SymbolMacro, Variable, function_key
 from .kinds import kind_of_type
-from .next_methods import call_of_next
 from .net_tests import WAITING, look_at_wait
 from .nodes import (
     Call,
@@ -39,7 +38,7 @@ from .nodes import (
     SetGlobal,
     SetLocal,
 )
-from .open_coding import MAPPING, open_coded
+from .open_coding import MAPPING, call_of_next, open_coded
 from .style_checks import CRAMHY, Scrutiny, tuple_of
 
 SPECIAL_FORMS: dict = {}

@@ -25,6 +25,7 @@ class FunctionScope:
         self.parent = parent
         self.names = parent.names if parent else (names if names is not None else {})
         self.loop_depth = 0
+        self.loops = False  # whether there is any tagbody in it
         self.catching_depth = 0
         self.nonlocals = set()
         self.exits_set = 0  # how many statements that leave a loop for an outer one have been generated
@@ -113,7 +114,7 @@ class SymbolMacro:
 class LocalFunction:
     """A function of ``flet`` or ``labels``: the value of a variable. ``shape``: the calls that it takes.
 
-    next: if it is ``call-next-method`` or ``next-method-p``, what it means (`next_methods`).
+    next: if it is ``call-next-method`` or ``next-method-p``, what it means (`open_coding.next_method`).
     """
 
     def __init__(self, variable, shape=None, next=None):

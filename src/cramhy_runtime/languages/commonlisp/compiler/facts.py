@@ -7,7 +7,7 @@ solution: all begin as ``NONE_YET`` and are widened until nothing changes. Param
 
 from __future__ import annotations
 
-from dataclasses import fields
+from cramhy_runtime.utilities.records import fields
 
 from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.packages import sym
@@ -18,6 +18,8 @@ OPERANDS_OF = {PLUS, MINUS, TIMES, DIVIDE, MAX, MIN, ABS, SQRT, *STEPS, *SMOOTH,
 """Functions for whose arguments it pays to know the class, or to be raw."""
 
 _node_fields: dict = {}
+_ENDS = {nodes.Constant, nodes.LocalVariable, nodes.GlobalVariable, nodes.FunctionReference, nodes.Go}
+"""Nodes that have none below them."""
 
 
 def children(node):
@@ -50,7 +52,8 @@ def walk(roots):
     while pending:
         node = pending.pop()
         yield node
-        pending.extend(children(node))
+        if node.__class__ not in _ENDS:
+            pending.extend(children(node))
 
 
 def study(root):

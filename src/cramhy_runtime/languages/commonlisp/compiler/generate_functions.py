@@ -15,7 +15,7 @@ from . import nodes
 from .core import List, Tuple, expression, word
 from .arithmetic.operations import AND, DOUBLE_CLASS, FLOAT_CLASS, INT_CLASS, IS, class_of, fixnum_test
 from .kinds import DOUBLE, INT, SINGLE
-from .arithmetic.versions import assumed, guesses
+from .arithmetic.versions import assumed, bounded, guesses
 from .destinations import NONE, RETURN, TRUE, Destination
 
 DEBUGGED = special(Symbol("*DEBUGGED*"), False)
@@ -76,7 +76,7 @@ class FunctionGenerator:
         for variable, kind in found.items():
             name = word(variable.name)
             tests.append(expression(IS, class_of(name), {INT: INT_CLASS, SINGLE: FLOAT_CLASS, DOUBLE: DOUBLE_CLASS}[kind]))
-            if kind == INT and not variable.writes:
+            if kind == INT and bounded(node, variable):
                 tests.append(fixnum_test(name))
 
         def body():

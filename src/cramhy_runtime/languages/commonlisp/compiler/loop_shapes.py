@@ -8,7 +8,7 @@ only serves to walk along a vector, so that Python's ``for`` can do that.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from cramhy_runtime.utilities.records import dataclass
 
 from cramhy_runtime.ground.packages import sym
 from . import nodes

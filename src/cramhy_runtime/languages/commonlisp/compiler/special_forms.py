@@ -11,7 +11,7 @@ from ..syntax.lambda_lists import gensym
 from cramhy_runtime.ground.dispatch.methods import Shape
 from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym, symbol_name, symbol_package
 from ..packages.package_errors import locked
-from .next_methods import next_method
+from .open_coding import next_method
 from .analyze import LAMBDA, SETF, SPECIAL_FORMS, progn
 from .declared_types import checkable, declared_types
 from .environment import EXECUTE, SITUATIONS, Block, LocalFunction, LocalMacro, SpecialVariable, SymbolMacro, Tagbody, Variable
@@ -377,6 +377,7 @@ def _tagbody(analyzer, form, env):
             segments[-1].append(item)
     if index:
         env.scope.loop_depth += 1
+        env.scope.loops = True
     try:
         analysed = [[analyzer.form(item, inner) for item in segment] for segment in segments]
     finally:

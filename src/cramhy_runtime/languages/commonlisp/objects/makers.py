@@ -33,6 +33,7 @@ class Maker:
         if written is None:
             return self._make_any(*values)
         self.make = written
+        _in_use.append(self)
         return written(*values)
 
     def _make_any(self, *values):
@@ -47,6 +48,10 @@ class Maker:
         return constructor_for(cls, self.keys) if issubclass(cls, StandardObject) else None
 
 
+_in_use: list[Maker] = []
+"""Those whose function was written."""
+
+
 def maker(name, *keys):
     """The `Maker` for the class that the symbol ``name`` names and the keywords ``keys``, one for all calls."""
     if MAKE_INSTANCE.keyed is None:
@@ -59,8 +64,9 @@ def maker(name, *keys):
 
 @when_plans_change
 def _forget():
-    for each in (MAKE_INSTANCE.keyed or {}).values():
+    for each in _in_use:
         each.refresh()
+    _in_use.clear()
 
 
 __all__ = ["Maker", "maker"]

@@ -80,7 +80,9 @@ def _compiling_folders():
     """The folders with what compiles, in an order that depends on their names only."""
     here = Path(__file__).parents[1]
     libraries, ground = here.parents[1] / "libraries", here.parents[1] / "ground"
-    inside = [Path(entry) for room in (here, here / "faces", libraries, ground) for entry in os.scandir(room) if entry.is_dir()]
+    inside = [
+        Path(entry) for room in (here, here / "compiler", here / "faces", libraries, ground) for entry in os.scandir(room) if entry.is_dir()
+    ]
     folders = [here, ground, here.parent / "operators", here.parent / "hy", *sorted(inside, key=lambda folder: folder.parts)]
     language = importlib.util.find_spec("cramhy")
     return folders + [Path(folder) for folder in (language and language.submodule_search_locations or ())]

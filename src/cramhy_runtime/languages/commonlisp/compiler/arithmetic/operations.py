@@ -336,7 +336,8 @@ class ArithmeticGenerator:
         elif known:
             order = (INT,)
         else:
-            order = (SINGLE, INT, DOUBLE) if products and count > 1 else (INT, SINGLE, DOUBLE)
+            simple = all(operand.first is operand.later for operand in operands)
+            order = (SINGLE, INT, DOUBLE) if products and count > 1 and simple else (INT, SINGLE, DOUBLE)
         found = []
         for assumed in order:
             kind = self.kind_in(operation, assumed)
@@ -348,7 +349,7 @@ class ArithmeticGenerator:
         """The bare expression of the first of ``worlds`` that the classes of ``unknown`` make, or ``slow``."""
         tests = [self.class_of(operand.first) for operand in unknown]
         again = [self.class_of(operand.later) for operand in unknown]
-        both = {assumed for assumed, _ in worlds[:2]} == {INT, SINGLE}
+        both = [assumed for assumed, _ in worlds[:2]] == [INT, SINGLE]  # in this order: see `worlds`
         checked = [self.needs_check(operation, kind) for _, kind in worlds]
         if both and not any(checked[:2]):
             noted = expression(SETX, CLASSES, tests[0])

@@ -20,8 +20,9 @@ WHOLE_ARGUMENTS = {sym(name) for name in "MOD REM EVENP ODDP LOGAND LOGIOR LOGXO
 INDEXED = {sym(name) for name in "AREF SVREF ELT".split()}
 COMPARISONS = {sym(name) for name in "< > <= >= =".split()}
 MAKE_ARRAY = sym("MAKE-ARRAY")
-LARGEST, FEW = 500, 4
-"""The most nodes of a body that is made twice, and the least number of operations in one that has no loop."""
+LARGEST, FEW, MANY = 500, 4, 12
+"""The most nodes of a body that is made twice; the least number of operations in one that is run often, by a loop or by calling itself,
+and in any other one."""
 FIXNUM_BITS = 62
 
 
@@ -32,16 +33,17 @@ def guesses(node):
         for variable in node.parameters.required
         if variable.operand_uses and not variable.captured and (variable.proven is None or variable.proven == FLOATS | OTHER)
     }
-    if not candidates:
+    if not candidates or not node.scope.loops and sum(variable.operand_uses for variable in candidates) < FEW - 1:
         return {}
-    size = loops = operations = 0
+    size = operations = 0
+    often = False
     for item in walk([node.body]):
         kind = item.__class__
         size += 1
         if kind is nodes.Lambda or size > LARGEST:
             return {}
         if kind is nodes.TagbodyNode:
-            loops += 1
+            often = True
         elif kind is nodes.Let:
             for variable, value in item.bindings:  # another name of a parameter
                 if value.__class__ is nodes.LocalVariable and value.variable in candidates and not isinstance(variable, Symbol):
@@ -49,8 +51,9 @@ def guesses(node):
                         candidates[variable] = candidates[value.variable]
         elif kind is nodes.Call:
             operations += item.symbol in OPERANDS_OF
+            often = often or item.symbol is node.name
             _note(item, candidates)
-    if operations < (2 if loops else FEW):
+    if operations < (FEW if often else MANY):
         return {}
     found = {variable: _guess(variable, candidates[variable]) for variable in node.parameters.required if variable in candidates}
     return {variable: kind for variable, kind in found.items() if kind}
@@ -104,6 +107,11 @@ def _guess(variable, signs):
     return INT if signs == {"number"} else 0
 
 
+def bounded(node, variable):
+    """Whether the test at the entry of ``node`` asks whether an integer is a fixnum: where a loop makes it worth its time."""
+    return node.scope.loops and not variable.writes
+
+
 _FACTS = "kind", "raw", "bits", "never_negative", "name", "proven"
 
 
@@ -119,7 +127,7 @@ def assumed(node, found):
         variable.kind, variable.raw, variable.bits, variable.never_negative = NONE_YET, False, None, None
     for variable, kind in found.items():
         variable.kind, variable.proven, variable.never_negative = kind, None, False
-        variable.bits = INFINITE if variable.writes or kind != INT else FIXNUM_BITS
+        variable.bits = FIXNUM_BITS if kind == INT and bounded(node, variable) else INFINITE
     try:
         find_kinds([*bound, *found])
         yield
