@@ -5,7 +5,7 @@ import sys
 
 import pytest
 from outside_world import Event
-from systems import needs_processes
+from systems import IN_WEBASSEMBLY, needs_processes
 
 from cramhy_runtime import kernel
 from cramhy_runtime.extras import install_command
@@ -244,6 +244,15 @@ told()
 """
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
     assert (done.stdout.split(), done.stderr) == (["GreenletBackend" if installed else "ThreadBackend"] * 4, "")
+
+
+@pytest.mark.skipif(IN_WEBASSEMBLY, reason="there it is the back end")
+def test_outside_of_webassembly_its_back_end_says_what_it_needs():
+    with pytest.raises(ImportError) as missing:
+        kernel.start(backend="jspi")
+    assert str(missing.value) == (
+        'The back end "jspi" needs Pyodide, with the file stacks.mjs given to it as the module cramhy_host. Choose "auto", "threads" or "greenlet".'
+    )
 
 
 @needs_processes

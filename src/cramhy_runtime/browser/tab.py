@@ -8,11 +8,8 @@ from __future__ import annotations
 
 import sys
 
-from cramhy_host import host
-from pyodide.ffi import create_once_callable, create_proxy
-
 from .. import chronicle, kernel
-from ..kernel.backends.jspi import wait_for
+from ..kernel.backends.jspi import host, wait_for
 from ..languages.commonlisp.streams import streams
 from ..repl.console import Console
 from ..repl.line_input import BROKEN_OFF, Lines
@@ -53,6 +50,8 @@ class PageLines(Lines):
 
 
 def _later(seconds, function):
+    from pyodide.ffi import create_once_callable
+
     host.later(seconds * 1000, create_once_callable(function))
 
 
@@ -64,6 +63,8 @@ def _interrupt():
 
 def main(speed: float | None = 1.0) -> int:
     """Run the prompt until ``(quit)``. Returns the exit status. speed: plan seconds per second at first, ``None`` without a bound."""
+    from pyodide.ffi import create_proxy
+
     kernel.allow_deep_recursion()
     sys.stdout.reconfigure(line_buffering=True)
     sys.stderr.reconfigure(line_buffering=True)

@@ -40,10 +40,8 @@ if TYPE_CHECKING:
 try:
     from cramhy_host import host
     from pyodide.ffi import can_run_sync, run_sync
-except ImportError as missing:
-    raise ImportError(
-        'The back end "jspi" needs Pyodide, with the file stacks.mjs given to it as the module cramhy_host. Choose "threads" or "greenlet".'
-    ) from missing
+except ImportError:
+    host = None  # this is not WebAssembly: the module can be imported, and makes no back end
 
 KEEP = 256  # idle stacks that one kernel keeps
 MOST = 8_000
@@ -68,7 +66,8 @@ def _as_it_is(awaitable: Any, *, loop: Any = None) -> Any:
     return awaitable if awaitable is _awaited else _ensure_future(awaitable, loop=loop)
 
 
-asyncio.ensure_future = _as_it_is  # type: ignore[assignment]
+if host is not None:
+    asyncio.ensure_future = _as_it_is  # type: ignore[assignment]
 
 
 def wait_for(promise: Any) -> Any:
@@ -193,6 +192,11 @@ class JspiBackend:
     calls_back = True  # a task that is outside can be called back, for its call is on a stack of its own
 
     def __init__(self) -> None:
+        if host is None:
+            raise ImportError(
+                'The back end "jspi" needs Pyodide, with the file stacks.mjs given to it as the module cramhy_host. '
+                'Choose "auto", "threads" or "greenlet".'
+            )
         self.idle: deque[Carrier] = deque()
         self.closed = False
         self.ident = _thread.get_ident()
