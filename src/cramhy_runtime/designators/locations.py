@@ -325,7 +325,7 @@ def location_prolog_generator(designator):
 
 
 def _places_by_prolog(designator):
-    causes = {}
+    causes: dict[Any, Any] = {}
     for (value,) in ask(LOCATION_GROUNDING, designator, Var(), causes=causes):
         yield value
     if causes and isinstance(designator, LocationDesignator):
