@@ -2,7 +2,7 @@
 # make test: the tests. make soak: each case of them, for hours.
 # make docs: the pages with what happens now. make site: the pages as a site, in site/index.html.
 # make bench: what things cost, beside their goals and beside others. make bench-compare COMMIT=HEAD~1: this checkout beside that one.
-# make notebooks OUT=folder: the tutorial as notebooks.
+# make notebooks OUT=folder: the tutorial as notebooks. make pyodide: fetches Python in WebAssembly, and Node, from npm.
 # The first call of tutorial, view or kitchen makes a small environment in .venv; the first call of any other target adds the rest to it.
 PYTHON ?= python3
 COMMIT ?= release
@@ -12,7 +12,7 @@ ROBOT := .venv/.robot
 READY := .venv/.ready
 PEERS := .venv/.peers
 
-.PHONY: tutorial view kitchen test interpreters docs notebooks site bench bench-compare golden lint soak clean
+.PHONY: tutorial view kitchen test interpreters docs notebooks site pyodide bench bench-compare golden lint soak clean
 
 tutorial: $(LIGHT)
 	@$(BIN)/python tutorials/lectures.py --png turtle.png
@@ -44,6 +44,9 @@ notebooks: $(READY)
 
 site: $(READY)
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+
+pyodide:
+	@cd webassembly && npm ci --ignore-scripts --no-audit --no-fund
 
 bench: $(PEERS)
 	@$(BIN)/python benchmarks/table.py

@@ -12,10 +12,14 @@ from pathlib import Path
 
 import late_threads
 import pytest
-from hypothesis import settings
-from systems import takes_long
+from systems import BACKENDS, takes_long
 
 from cramhy_runtime.session import Image
+
+try:
+    from hypothesis import settings
+except ImportError:  # a part of it is compiled, and not for WebAssembly
+    settings = None
 
 TESTS = Path(__file__).parent
 LEFT_OUT = [
@@ -52,10 +56,11 @@ LONG = (
 """Folders and files whose tests take seconds: they come first, so that on two processors neither waits for the other at the end."""
 
 # What hypothesis makes up is the same each time, so that a change is not blamed for what an unlucky draw finds; the soak draws anew.
-settings.register_profile("steady", derandomize=True, max_examples=50)
 os.environ["CRAMHY_HISTORY"] = ""  # what tests type is not the user's
-if not os.environ.get("CRAMHY_SOAK"):
-    settings.load_profile("steady")
+if settings is not None:
+    settings.register_profile("steady", derandomize=True, max_examples=50)
+    if not os.environ.get("CRAMHY_SOAK"):
+        settings.load_profile("steady")
 
 if "CRAMHY_LATE" in os.environ:
     late_threads.install(os.environ["CRAMHY_LATE"])
@@ -99,9 +104,9 @@ def image_of_its_own():
     gc.freeze()
 
 
-@pytest.fixture(params=["threads", "greenlet"])
+@pytest.fixture(params=BACKENDS)
 def backend(request):
-    """The name of a back end: a test that takes it runs on both."""
+    """The name of a back end: a test that takes it runs on each that there can be on this system."""
     if request.param == "greenlet":
         pytest.importorskip("greenlet")
     return request.param

@@ -10,6 +10,14 @@ RUNS_HY_FILES = not (3, 12) <= sys.version_info < (3, 12, 6) or tuple(map(int, h
 WHY_NO_HY_FILES = "Hy 1.3 runs no file at all with Python 3.12.0 to 3.12.5"
 
 
+IN_WEBASSEMBLY = sys.platform == "emscripten"
+"""Whether this is Pyodide, in Node or a browser; see tests/webassembly."""
+BACKENDS = ["jspi"] if IN_WEBASSEMBLY else ["threads", "greenlet"]
+"""The names of the kernel's back ends that this system can have."""
+needs_threads = pytest.mark.skipif(IN_WEBASSEMBLY, reason="WebAssembly has no threads")
+needs_processes = pytest.mark.skipif(IN_WEBASSEMBLY, reason="WebAssembly has no processes and no signals")
+
+
 def has_module(name):
     """Whether a module of that name can be imported."""
     try:

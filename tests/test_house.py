@@ -34,6 +34,7 @@ FLOORS = [
     ["session"],
     ["chronicle", "ros_tools", "testing", "robot"],
     ["view", "repl", "swank", "jupyter", "lsp"],
+    ["browser"],
     ["cli", "pytest_plugin", "coverage_plugin", "__init__"],
 ]
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
@@ -210,6 +211,7 @@ LISTED = {
 }
 """Modules that import modules of ours by a computed name, and the list that the name comes from."""
 OF_OTHERS = {
+    "cramhy_runtime.browser.packing",  # the macros, too
     "cramhy_runtime.languages.commonlisp.syntax.macros",  # the macros, which are written in Hy (hy_src)
     "cramhy_runtime.languages.commonlisp.python.python_calls",  # (py:call "math.sqrt" 2): a module of the user's
     "cramhy_runtime.languages.commonlisp.python.python_packages",  # the same, as a package

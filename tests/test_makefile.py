@@ -12,7 +12,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 LIGHT, ROBOT, REST = "[repl,web,fast]", "[repl,web,fast,robot]", "[dev]"
-SMALL = {"tutorial": [LIGHT], "view": [LIGHT], "kitchen": [LIGHT, ROBOT]}
+SMALL = {"pyodide": [], "tutorial": [LIGHT], "view": [LIGHT], "kitchen": [LIGHT, ROBOT]}
 TARGETS = re.search(r"^\.PHONY: (.*)$", (ROOT / "Makefile").read_text(), re.M)[1].split()
 
 

@@ -4,6 +4,7 @@ import io
 import itertools
 
 import pytest
+from systems import BACKENDS
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import Image, boot
@@ -14,7 +15,7 @@ from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 boot()
 
 
-@pytest.fixture(params=["threads", "greenlet"], autouse=True)
+@pytest.fixture(params=BACKENDS, autouse=True)
 def fresh_kernel(request):
     with Image(as_now=True):
         yield kernel.start(clock="virtual", backend=request.param, time_limit=3600)

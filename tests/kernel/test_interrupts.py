@@ -6,9 +6,10 @@ import threading
 import time
 
 import pytest
+from outside_world import Event, in_a_thread
+from systems import IN_WEBASSEMBLY
 
 from cramhy_runtime import kernel
-from cramhy_runtime.kernel.clocks import Bell
 
 
 ASKING = getattr(signal, "SIGUSR1", signal.SIGINT)
@@ -23,8 +24,10 @@ def on_signal():
 
 
 def send(number=ASKING):
-    """The signal comes to the main thread, whatever that is doing. On Windows it ends no wait."""
-    if hasattr(signal, "pthread_kill"):
+    """The signal comes to the main thread, whatever that is doing. On Windows it ends no wait. A page sends a message instead."""
+    if IN_WEBASSEMBLY:
+        in_a_thread(kernel.interrupt)
+    elif hasattr(signal, "pthread_kill"):
         signal.pthread_kill(threading.main_thread().ident, number)
     else:
         _thread.interrupt_main(number)
@@ -32,7 +35,7 @@ def send(number=ASKING):
 
 def wait_long():
     """A blocking call of ten seconds. In slices: Python loses a signal that comes just before a lock falls asleep."""
-    never = threading.Event()
+    never = Event()
     return any(never.wait(0.05) for _ in range(200))
 
 
@@ -42,9 +45,8 @@ def sends_when_idle():
 
     def wait(bell, seconds):
         if not helpers:
-            helpers.append(threading.Thread(target=send, daemon=True))
-            helpers[0].start()
-        Bell.wait(bell, 10)
+            helpers.append(in_a_thread(send))
+        bell.wait(10)
 
     return wait
 
@@ -54,7 +56,7 @@ def test_the_main_task_in_a_busy_loop(k, on_signal):
         send()
         while True:
             kernel.checkpoint()
-    assert kernel.now() < 0.02
+    assert kernel.now() < (1 if IN_WEBASSEMBLY else 0.02)  # there a message has to wait for a turn of the event loop
 
 
 def test_the_main_task_waits_while_another_is_busy(k, on_signal):
@@ -102,20 +104,20 @@ def test_everything_is_parked_in_wall_time_and_another_waits_for_the_clock(start
 
 def test_everything_waits_for_a_message(k, on_signal):
     with kernel.outside_source(), pytest.raises(kernel.Interrupted):
-        threading.Thread(target=send, daemon=True).start()
+        in_a_thread(send)
         kernel.park("a message")
 
 
 def test_an_interrupt_from_another_thread(k):
     with kernel.outside_source(), pytest.raises(kernel.Interrupted):
-        threading.Thread(target=kernel.interrupt, daemon=True).start()
+        in_a_thread(kernel.interrupt)
         kernel.park("a message")
 
 
 @pytest.mark.parametrize("clock", ["virtual", "wall"])
 def test_the_main_task_is_in_a_blocking_call(start, on_signal, clock):
     start(clock=clock)
-    kernel.spawn(lambda: (kernel.yield_(), threading.Thread(target=send, daemon=True).start()))
+    kernel.spawn(lambda: (kernel.yield_(), in_a_thread(send)))
     begin = time.monotonic()
     with pytest.raises(kernel.Interrupted):
         kernel.run_blocking(wait_long)
@@ -125,18 +127,18 @@ def test_the_main_task_is_in_a_blocking_call(start, on_signal, clock):
 
 
 def test_the_main_task_is_in_a_blocking_call_and_nothing_else_is_there(k, on_signal):
-    threading.Thread(target=send, daemon=True).start()
+    in_a_thread(send)
     with pytest.raises(kernel.Interrupted):
         kernel.run_blocking(wait_long)
     kernel.sleep(1)
 
 
 def test_another_task_in_a_blocking_call_does_not_hold_it_up(k, on_signal):
-    released = threading.Event()
+    released = Event()
     task = kernel.spawn(kernel.run_blocking, released.wait, 10)
     kernel.settle()
     with pytest.raises(kernel.Interrupted):
-        threading.Thread(target=send, daemon=True).start()
+        in_a_thread(send)
         task.join()
     released.set()
     task.join()

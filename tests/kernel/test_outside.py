@@ -1,16 +1,10 @@
 """The world outside: messages from other threads, and calls that block."""
 
-import threading
-
 import pytest
+from outside_world import Barrier, Event, in_a_thread
+from systems import needs_threads
 
 from cramhy_runtime import kernel
-
-
-def in_a_thread(fn, *args):
-    thread = threading.Thread(target=fn, args=args, daemon=True)
-    thread.start()
-    return thread
 
 
 @pytest.mark.parametrize("clock", ["virtual", "wall"])
@@ -72,7 +66,7 @@ def test_a_blocking_call_raises_what_it_raised(k):
 
 
 def test_others_run_while_a_call_blocks(k):
-    done = threading.Event()
+    done = Event()
 
     def other():
         for _ in range(3):
@@ -84,7 +78,7 @@ def test_others_run_while_a_call_blocks(k):
 
 
 def test_several_calls_can_block_at_once(k):
-    barrier = threading.Barrier(4)
+    barrier = Barrier(4)
     tasks = [kernel.spawn(kernel.run_blocking, barrier.wait, 10) for _ in range(3)]
     kernel.run_blocking(barrier.wait, 10)
     assert sorted(task.join() for task in tasks)[0] >= 0
@@ -92,7 +86,7 @@ def test_several_calls_can_block_at_once(k):
 
 
 def test_virtual_time_stands_still_while_a_call_blocks(k):
-    released = threading.Event()
+    released = Event()
     caller = kernel.spawn(kernel.run_blocking, released.wait, 10)
     sleeper = kernel.spawn(kernel.sleep, 5)
     kernel.settle()
@@ -104,7 +98,7 @@ def test_virtual_time_stands_still_while_a_call_blocks(k):
 
 
 def test_virtual_time_stands_still_while_a_call_blocks_although_a_task_is_busy(k):
-    released = threading.Event()
+    released = Event()
     slices = [0]
 
     def busy():
@@ -120,14 +114,14 @@ def test_virtual_time_stands_still_while_a_call_blocks_although_a_task_is_busy(k
 
 
 def test_a_call_that_blocks_is_no_deadlock(k):
-    released = threading.Event()
+    released = Event()
     caller = kernel.spawn(kernel.run_blocking, released.wait, 10)
     kernel.post(lambda: in_a_thread(released.set))
     assert caller.join() is True
 
 
 def test_a_request_to_end_is_delivered_when_the_call_has_returned(k):
-    released = threading.Event()
+    released = Event()
     caller = kernel.spawn(kernel.run_blocking, released.wait, 10)
     kernel.settle()
     caller.cancel()
@@ -139,7 +133,7 @@ def test_a_request_to_end_is_delivered_when_the_call_has_returned(k):
 
 
 def test_a_message_for_a_task_that_waits_is_read_while_the_main_task_is_outside(k):
-    heard = threading.Event()
+    heard = Event()
 
     def listener():
         kernel.park("the message")
@@ -164,6 +158,7 @@ def test_a_message_for_a_task_that_waits_is_read_while_the_main_task_is_outside(
         (lambda task: kernel.run_blocking(print), "start a blocking call"),
     ],
 )
+@needs_threads
 def test_a_thread_without_the_baton_is_refused(k, use, what):
     task = kernel.spawn(kernel.park, "x")
     told = []
@@ -180,6 +175,7 @@ def test_a_thread_without_the_baton_is_refused(k, use, what):
     task.cancel()
 
 
+@needs_threads
 def test_a_checkpoint_in_an_outside_thread_preempts_nobody(k):
     def outside():
         for _ in range(5000):

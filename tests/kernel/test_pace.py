@@ -1,6 +1,8 @@
 """The pace of virtual time: slower, paused, step by step; with a wall clock that is played, so that nobody waits."""
 
 import pytest
+from outside_world import Event
+from systems import BACKENDS
 
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.throttle import FORGOTTEN, Pace
@@ -38,7 +40,7 @@ def wall(virtual):
     return played
 
 
-@pytest.fixture(params=["threads", "greenlet"])
+@pytest.fixture(params=BACKENDS)
 def virtual(request):
     kernel.start(backend=request.param)
     yield
@@ -161,10 +163,7 @@ class TestAtThePrompt:
     @staticmethod
     def prompt(*from_outside):
         """Wait at a prompt until what comes from outside is over; each is a function that is posted, after the one before was read."""
-        import _thread
-
-        lock = _thread.allocate_lock()
-        lock.acquire()
+        over = Event()
         messages = list(from_outside)
 
         def next_message():
@@ -172,10 +171,10 @@ class TestAtThePrompt:
                 messages.pop(0)()
                 kernel.post(next_message)
             else:
-                lock.release()
+                over.set()
 
         kernel.post(next_message)
-        kernel.run_blocking(lock.acquire)
+        kernel.run_blocking(over.wait, 10)
 
     def test_time_stands_still(self, virtual):
         ticks = []
@@ -190,50 +189,40 @@ class TestAtThePrompt:
             ticks.append(kernel.now())
             if len(ticks) == 5:
                 wanted.__exit__()
-                lock.release()
+                over.set()
 
-        import _thread
-
-        lock = _thread.allocate_lock()
-        lock.acquire()
+        over = Event()
         kernel.call_every(0.5, tick, first=0.5)
         kernel.post(wanted.__enter__)
-        kernel.run_blocking(lock.acquire)
+        kernel.run_blocking(over.wait, 10)
         assert ticks == [0.5, 1.0, 1.5, 2.0, 2.5] and kernel.now() == 2.5
 
     def test_a_step_reaches_its_end(self, virtual):
-        import _thread
-
-        lock = _thread.allocate_lock()
-        lock.acquire()
+        over = Event()
         ticks = []
         kernel.call_every(0.5, lambda: ticks.append(kernel.now()), first=0.5)
-        kernel.pace().on_change.append(lambda: kernel.now() >= 1.25 and lock.release())
+        kernel.pace().on_change.append(lambda: kernel.now() >= 1.25 and over.set())
         kernel.post(lambda: kernel.pace().step(1.25))
-        kernel.run_blocking(lock.acquire)
+        kernel.run_blocking(over.wait, 10)
         assert ticks == [0.5, 1.0] and kernel.now() == 1.25
 
     def test_a_task_that_is_outside_for_itself_still_holds_the_clock(self, virtual):
-        import _thread
-
-        lock, other = _thread.allocate_lock(), _thread.allocate_lock()
-        lock.acquire()
-        other.acquire()
+        over, other = Event(), Event()
         ticks = []
         kernel.call_every(0.5, lambda: ticks.append(kernel.now()), first=0.5)
-        kernel.spawn(lambda: kernel.run_blocking(other.acquire))
+        kernel.spawn(lambda: kernel.run_blocking(other.wait, 10))
         kernel.yield_()
 
         def end():
             assert ticks == []
             wanted.__exit__()
-            other.release()
-            lock.release()
+            other.set()
+            over.set()
 
         wanted = kernel.time_wanted()
         kernel.post(wanted.__enter__)
         kernel.post(lambda: kernel.post(lambda: kernel.post(end)))
-        kernel.run_blocking(lock.acquire)
+        kernel.run_blocking(over.wait, 10)
 
 
 def test_ctrl_c_ends_a_plan_that_computes_while_time_is_paused(virtual):

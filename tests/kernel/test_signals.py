@@ -12,8 +12,9 @@ import sys
 import time
 
 import pytest
-from systems import needs
+from systems import needs, needs_processes
 
+pytestmark = needs_processes
 PATIENCE = 30  # s; only a test that fails waits so long
 BEGIN = """
 import os, signal, sys, threading, time

@@ -2,9 +2,10 @@
 
 import subprocess
 import sys
-import threading
 
 import pytest
+from outside_world import Event
+from systems import IN_WEBASSEMBLY, needs_processes
 
 from cramhy_runtime import kernel
 from cramhy_runtime.extras import install_command
@@ -134,7 +135,7 @@ def test_cleanup_that_spawns_without_end_does_not_hold_up_the_end(k):
 def test_a_blocking_call_that_does_not_return_is_left_behind(start, monkeypatch):
     monkeypatch.setattr("cramhy_runtime.kernel.scheduler.PATIENCE", 1)
     start()
-    released = threading.Event()
+    released = Event()
     kernel.spawn(kernel.run_blocking, released.wait, 10)
     kernel.settle()
     kernel.stop()
@@ -196,6 +197,7 @@ def test_a_finished_task_is_not_kept_alive_by_the_kernel(k):
     assert ref() is None
 
 
+@needs_processes
 @pytest.mark.parametrize("clock", ["virtual", "wall"])
 def test_a_script_that_just_ends_runs_the_cleanup_of_its_tasks(backend, clock):
     script = f"""
@@ -213,12 +215,14 @@ kernel.yield_()
     assert (done.stdout, done.stderr, done.returncode) == ("cleaned up\n", "", 0)
 
 
+@needs_processes
 def test_loading_the_kernel_does_not_load_greenlet():
     script = "import sys; from cramhy_runtime import kernel; kernel.start(backend='threads'); print('greenlet' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
     assert done.stdout == "False\n"
 
 
+@needs_processes
 @pytest.mark.parametrize("installed", [True, False])
 def test_greenlets_are_the_back_end_where_they_are_installed(installed):
     """Of a kernel, a session, a plan in Python and a test of a plan, if nothing else is said."""
@@ -242,6 +246,16 @@ told()
     assert (done.stdout.split(), done.stderr) == (["GreenletBackend" if installed else "ThreadBackend"] * 4, "")
 
 
+@pytest.mark.skipif(IN_WEBASSEMBLY, reason="there it is the back end")
+def test_outside_of_webassembly_its_back_end_says_what_it_needs():
+    with pytest.raises(ImportError) as missing:
+        kernel.start(backend="jspi")
+    assert str(missing.value) == (
+        'The back end "jspi" needs Pyodide, with the file stacks.mjs given to it as the module cramhy_host. Choose "auto", "threads" or "greenlet".'
+    )
+
+
+@needs_processes
 def test_without_greenlet_the_back_end_says_what_to_install():
     script = """
 import sys

@@ -2,6 +2,7 @@
 
 import pytest
 from cramhy_runtime.session import Image
+from systems import BACKENDS
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
@@ -11,7 +12,7 @@ from .support import Text
 boot()
 
 
-@pytest.fixture(params=["threads", "greenlet"], autouse=True)
+@pytest.fixture(params=BACKENDS, autouse=True)
 def fresh_kernel(request):
     with Image(as_now=True):
         yield kernel.start(clock="virtual", backend=request.param, time_limit=3600)

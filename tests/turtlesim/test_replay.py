@@ -1,6 +1,7 @@
 """The history of a simulator, and pictures that move: an SVG that any browser plays, and a GIF."""
 
 import math
+import sys
 from fractions import Fraction
 from xml.etree import ElementTree
 
@@ -210,6 +211,21 @@ class TestMistakes:
         assert error.value.report() == (
             "What kind of picture is house.jpg to be? A name ends in .png or .svg (the window as it is), in .gif or .replay.svg (a replay)."
         )
+
+    @pytest.mark.parametrize("name, vectors", [("house.png", "house.svg"), ("A.House.GIF", "A.House.replay.svg")])
+    def test_pixels_without_pillow(self, turtle, tmp_path, monkeypatch, name, vectors):
+        monkeypatch.setitem(sys.modules, "PIL", None)
+        monkeypatch.chdir(tmp_path)
+        package.record()
+        turtle.teleport(8, 8)
+        with pytest.raises(SimpleError) as error:
+            package.save_picture(name)
+        assert error.value.report() == (
+            f"The picture {name} has pixels, which the Python package Pillow writes, and Pillow is not installed (for a browser's tab there "
+            f"is none). Save it as {vectors}, which needs nothing else."
+        )
+        package.save_picture(vectors)
+        assert (tmp_path / vectors).read_text().startswith("<svg")
 
     def test_a_replay_of_what_nobody_recorded(self, turtle, tmp_path):
         with pytest.raises(SimpleError) as error:

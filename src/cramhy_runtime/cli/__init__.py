@@ -1,5 +1,5 @@
-"""The command line: ``cramhy repl | swank | jupyter | lsp | run | eval | test | turtlesim | teleop | view | replay | ros-shims | ros``,
-``roslisp_repl``.
+"""The command line: ``cramhy repl | swank | jupyter | lsp | run | eval | test | turtlesim | teleop | view | replay | browser | ros-shims |
+ros``, ``roslisp_repl``.
 
 `options` says which words there are, `servers` what a session opens to the outside, `standalone_commands` has the commands that are no
 session of Lisp's, `start_modules` the bytecode of the modules that a session starts with, `shims` the ROS commands, which `workspace`,
@@ -244,6 +244,12 @@ def _lsp(options):
     from . import lsp_command
 
     return lsp_command.run()
+
+
+def _browser(options):
+    from . import browser_command
+
+    return browser_command.run(options)
 
 
 def _eval(options):

@@ -270,6 +270,17 @@ def _add_replay(commands):
     replay.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens (a free port)")
 
 
+def _add_browser(commands):
+    browser = commands.add_parser("browser", help="write the course as static files, which run in a browser's tab")
+    browser.add_argument("--out", required=True, metavar="FOLDER", help="where the files go: an empty folder, or that of an older site")
+    browser.add_argument(
+        "--pyodide",
+        default=None,
+        metavar="FOLDER",
+        help="the package pyodide of npm, unpacked (in a clone: the one that make pyodide has fetched)",
+    )
+
+
 def _add_shims(commands):
     shims = commands.add_parser("ros-shims", help="roscore, rosrun, catkin_make ... as shell functions, or installed in a folder")
     shims.add_argument("--install", metavar="FOLDER", help="write them as programs into FOLDER (print functions)")
@@ -303,6 +314,7 @@ _COMMANDS = {
     "teleop": _add_teleop,
     "view": _add_page,
     "replay": _add_replay,
+    "browser": _add_browser,
     "ros-shims": _add_shims,
     "ros": _add_ros,
 }

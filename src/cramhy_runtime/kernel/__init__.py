@@ -26,7 +26,7 @@ Where the parts are:
 * `tasks`      a task, its end, the request to end; `cleanup` the cleanup of a task that ends
 * `timers`, `clocks`, `throttle` (of virtual time for spectators), `budget` (the count of checkpoints), `reports` (for people), `errors`
 * `waiting`    tasks that wait for a change, made of the functions below
-* `backends`   stacks: threads of the operating system, or greenlets; `depth` how deep code may recurse on them
+* `backends`   stacks: threads of the operating system, greenlets, or WebAssembly's; `depth` how deep code may recurse on them
 * `active`     the functions below, which act on the active kernel; `typing_names`, `signatures` the names in their annotations
 * `images`     global state, in cells and tables, and how the state of one image takes the place of another's
 

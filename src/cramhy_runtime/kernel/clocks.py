@@ -97,7 +97,10 @@ class WallClock:
     pace: Pace | None = None
 
     def __init__(
-        self, os_clock: Callable[[], float] = time.monotonic, wait: Callable[[Bell, float], object] = Bell.wait, begin: float = 0.0
+        self,
+        os_clock: Callable[[], float] = time.monotonic,
+        wait: Callable[[Bell, float], object] = lambda bell, seconds: bell.wait(seconds),
+        begin: float = 0.0,
     ):
         self._os_clock = os_clock
         self._wait = wait

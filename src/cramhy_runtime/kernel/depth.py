@@ -8,7 +8,9 @@ that is 6.5 KiB a level: the main thread's by `RLIMIT_STACK`, those of tasks whe
 used: 1000 parked tasks take 30 MB of memory with stacks of 16 MiB and with stacks of 64 MiB, and start as fast.
 
 If the main thread's stack cannot grow, as on Windows, the limit is lower. From Python 3.14 on it need not be: that Python checks the
-stack itself, and an endless recursion through C is an error, too.
+stack itself, and an endless recursion through C is an error, too. In WebAssembly the stacks are JavaScript's, of 1 MB, which end before
+Python expects it, and that ends Python. With 1,000 levels there is room for recursion through functions, callbacks of C and handlers; an
+endless ``__add__`` still ends it (Pyodide 314 in Node 26).
 """
 
 from __future__ import annotations
@@ -16,7 +18,7 @@ from __future__ import annotations
 import sys
 import threading
 
-LEVELS = 10_000
+LEVELS = 1_000 if sys.platform == "emscripten" else 10_000
 SMALL_STACK = 2_000_000
 """Bytes of the main thread's stack if the system has no limit that could be raised: python.exe of Windows is linked with so many."""
 STACK_SIZE = 64 << 20 if sys.maxsize > 2**32 else 1 << 20  # bytes

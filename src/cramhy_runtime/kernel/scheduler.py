@@ -24,7 +24,7 @@ from collections import deque
 from . import images, reports
 from .backends import make_backend
 from .budget import SLICE, budget, need_headroom, need_steps
-from .clocks import Bell, VirtualClock, make_clock
+from .clocks import VirtualClock, make_clock
 from .endings import CLEANUP_LIMIT, PATIENCE, Endings
 from .errors import Cancelled, Deadlock, Interrupted, KernelError, NoStack, Terminated, TimeLimit
 from .inbox import Outside
@@ -58,7 +58,7 @@ class Kernel(Endings, Outside):
 
     # Slots, since Python finds attributes of an object that has thirty or more of them in a slower way.
     __slots__ = (
-        "clock", "backend", "time_limit", "_limit", "seed", "_choose", "_queue", "_timers", "_inbox", "_bell", "_tasks",
+        "clock", "backend", "time_limit", "_limit", "seed", "_choose", "_queue", "_timers", "_inbox", "_bell", "_breathe", "_tasks",
         "_born", "_streak", "_steps", "_urgent", "_settlers", "_watchers", "_unclaimed", "_blocking", "_outside", "_interrupts",
         "_asked_at", "_unwinding", "_stopping", "_stops_since", "_patience", "_at_stop", "_wakers", "cleanup_limit", "ended_by",
         "stopped", "when_stopped", "interruptible", "_scheduler", "main", "current", "__weakref__",
@@ -80,7 +80,8 @@ class Kernel(Endings, Outside):
         self._queue: deque[Task[object]] = deque()
         self._timers = TimerHeap()
         self._inbox: deque[Callback] = deque()
-        self._bell = Bell()
+        self._bell = self.backend.bell()
+        self._breathe = self.backend.breathe
         self._tasks: dict[int, Task[object]] = {}
         self._born = 1  # the main task
         self._streak = 0  # slices that ended since a task was last made runnable
@@ -279,6 +280,8 @@ class Kernel(Endings, Outside):
     def end_slice(self) -> None:
         """End the slice, at a checkpoint: others get a turn, and requests to end are delivered."""
         me = self.current
+        if self._breathe is not None:
+            self._breathe()
         if me is self._scheduler:
             budget.renew()
             if self._interrupts:
@@ -498,6 +501,8 @@ class Kernel(Endings, Outside):
             if when is not None and clock.virtual and (clock.pace is None or not clock.pace.waits):
                 if images.waiting:
                     images.breathe()
+                if self._breathe is not None:
+                    self._breathe()
                 clock.go_to(when, self._bell)
                 return
             with images.outside():

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from types import FrameType
 from typing import Any, Literal, Protocol, TypeVar
 
-from .clocks import VirtualClock, WallClock
+from .clocks import Bell, VirtualClock, WallClock
 from .scheduler import Kernel
 from .tasks import Task
 
@@ -22,7 +22,7 @@ Reason = str | BaseException | Callable[[], BaseException] | None
 """Why a task is asked to end, or the exception to raise in it for that."""
 ClockName = Literal["virtual", "wall"]
 Clock = VirtualClock | WallClock
-BackendName = Literal["auto", "threads", "greenlet"]
+BackendName = Literal["auto", "threads", "greenlet", "jspi"]
 Seed = int | float | str | Callable[[deque[Task[object]]], int]
 """The order of tasks: the seed of a shuffle, or a function of the queue that returns the place of the task that goes next."""
 
@@ -38,11 +38,14 @@ class Backend(Protocol):
 
     calls_back: bool
 
+    @property
+    def breathe(self) -> Callback | None: ...
     def adopt(self, kernel: Kernel) -> Carrier: ...
     def carrier(self, job: Callable[[Carrier], Carrier]) -> Carrier: ...
     def transfer(self, mine: Any, other: Any) -> None: ...
     def run_blocking(self, kernel: Kernel, task: Task[object], call: Callable[[], T]) -> T: ...
     def frame(self, carrier: Any) -> FrameType | None: ...
+    def bell(self) -> Bell: ...
     def close(self) -> None: ...
     def forsake(self, carrier: Any) -> None: ...
 

@@ -13,6 +13,7 @@ the allowed time of a tick, so it is off by default.
 
 from __future__ import annotations
 
+import importlib.util
 import math
 
 from .. import storage
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
 
 _REPLAYS = {".gif": replay.write_gif, ".replay.svg": replay.write_svg}
 _STILLS = {".png": stills.still_png, ".svg": stills.still_svg}
+_VECTORS = {".png": ".svg", ".gif": ".replay.svg"}
+"""The endings of pictures in pixels, which Pillow writes, and those of the same in vectors, which need nothing."""
 
 
 def is_picture(path: str | Path) -> bool:
@@ -41,13 +44,26 @@ def is_picture(path: str | Path) -> bool:
 
 
 def check(path: str | Path) -> None:
-    """Signal a simple error if the ending of the file's name is not that of a picture. Call it before the run to be shown."""
+    """Signal a simple error if the ending of the file's name is not that of a picture, or if Pillow is missing and the picture needs it.
+
+    Call it before the run to be shown.
+    """
     if not is_picture(path):
         conditions.error(
             SimpleError(
                 "~a",
                 f"What kind of picture is {path} to be? A name ends in .png or .svg (the window as it is), in .gif or .replay.svg (a "
                 "replay).",
+            )
+        )
+    text = str(path)
+    vectors = _VECTORS.get(text[-4:].lower())
+    if vectors is not None and importlib.util.find_spec("PIL") is None:
+        conditions.error(
+            SimpleError(
+                "~a",
+                f"The picture {text} has pixels, which the Python package Pillow writes, and Pillow is not installed (for a browser's tab "
+                f"there is none). Save it as {text[:-4]}{vectors}, which needs nothing else.",
             )
         )
 

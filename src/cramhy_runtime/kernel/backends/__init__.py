@@ -10,15 +10,20 @@ a carrier, since it carries one task after the other: making one costs more than
 * `run_blocking(kernel, task, call)` run CALL while other tasks run, and return its result. `calls_back` says whether the task can go on
   before CALL has returned.
 * `frame(carrier)` the innermost Python frame of a stack that does not have the baton, for reports.
+* `bell()` a bell, as in `clocks`. The stack that finds nothing to do waits for it.
+* `breathe` a function that lets the world outside speak, if it has been silent for a while. A kernel calls it when a slice ends and
+  before time goes on. None where the world outside has threads of its own.
 * `close()` the kernel has stopped: free the stacks that are not needed.
 * `forsake(carrier)` its task will never end: keep the stack, but don't expect it back.
 
 A carrier has `ident`, the thread of the operating system on which it runs.
 
-A third back end (for a browser, which has neither threads nor greenlets) would implement these seven and be named in `make_backend`.
+In WebAssembly (a browser, Node) there are neither threads nor greenlets. There "jspi" is the only back end.
 """
 
 from __future__ import annotations
+
+import sys
 
 from ..typing_names import TYPE_CHECKING
 
@@ -27,11 +32,16 @@ if TYPE_CHECKING:
 
 
 def make_backend(backend: BackendName | Backend) -> Backend:
-    """A fresh back end for "threads" or "greenlet". An object with the interface above is returned as it is.
+    """A fresh back end for "threads", "greenlet" or "jspi". An object with the interface above is returned as it is.
 
-    "auto" is "greenlet" where the package is installed, and "threads" elsewhere: plans do the same on both, and greenlets are faster.
-    Another word is a ValueError; "greenlet" without the package is an ImportError.
+    "auto" is "greenlet" where the package is installed, and "threads" elsewhere: plans do the same on both, and greenlets are faster. In
+    WebAssembly both "auto" and "threads" are "jspi". Another word is a ValueError; "greenlet" without the package, and "jspi" outside of
+    WebAssembly, is an ImportError.
     """
+    if backend == "jspi" or backend in ("auto", "threads") and sys.platform == "emscripten":
+        from .jspi import JspiBackend
+
+        return JspiBackend()
     if backend == "auto":
         try:
             from .greenlet import GreenletBackend

@@ -10,6 +10,7 @@ from collections import deque
 
 from greenlet import getcurrent, greenlet
 
+from ..clocks import Bell
 from .threads import borrow_unless_leaving
 
 KEEP = 16_384  # idle greenlets that one kernel keeps; each holds some 4 KiB, and a new one takes 15 us to get them
@@ -64,6 +65,8 @@ class GreenletBackend:
     """See the interface in `backends`."""
 
     name = "greenlet"
+    bell = Bell
+    breathe = None
     calls_back = True  # a task that is outside can be called back, for its helper thread goes on without it
 
     def __init__(self):

@@ -16,7 +16,7 @@ import threading
 from collections import deque
 
 from .. import signals
-from ..clocks import LONGEST_WAIT
+from ..clocks import LONGEST_WAIT, Bell
 from ..depth import STACK_SIZE
 from ..errors import NoStack, Terminated
 from ..images import in_forked_child
@@ -125,6 +125,8 @@ class ThreadBackend:
     """See the interface in `backends`."""
 
     name = "threads"
+    bell = Bell
+    breathe = None
     calls_back = False  # a task that is outside comes back when its call has returned, not before
 
     def __init__(self):

@@ -17,11 +17,11 @@ import { Stage } from "./stage.js";
 import { StatusView } from "./status.js";
 import { offerThemes } from "./theme.js";
 import { Timeline } from "./timeline.js";
+import { make, ready, token, url } from "./transport.js";
 import { TreeView } from "./tree.js";
 import { WorldView } from "./world.js";
 
 const PANEL_PAUSE = 100; // ms between two looks at a panel
-const token = new URLSearchParams(location.hash.slice(1)).get("token") ?? location.hash.slice(1);
 const STANDS = "Virtual time stands still while the prompt waits. Step lets some of it pass.";
 const PAGE = /^http:\/\/127\.0\.0\.1:\d+\/#[\w-]+$/; // the address of a session's page
 const IS_PAST = "This is a recording: what its turtles did is done, and they cannot be driven.";
@@ -48,7 +48,7 @@ async function start() {
   const status = new StatusView({ pill: byId("connection"), banner: byId("banner"), notice: byId("notice") });
   const failed = (error) => status.failed(error);
   const session = new Session({
-    url: `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/`, token, heard, anew, older, rosout, moved, failed,
+    url, token, make, heard, anew, older, rosout, moved, failed,
     connection: (...news) => status.connection(...news),
   });
   const world = new WorldView({
@@ -179,7 +179,7 @@ async function start() {
     waiting.render();
   }
 
-  if (token) session.connect();
+  if (token) ready.then(() => session.connect());
   else status.connection(STATES.REFUSED, "this address has no token");
   requestAnimationFrame(frame);
 }

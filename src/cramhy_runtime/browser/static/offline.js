@@ -1,0 +1,47 @@
+// The service worker: keeps all files of the site in the browser, so that it opens without a network, and fast. `cramhy browser` writes the
+// list. A file whose fingerprint has not changed is not fetched again when the site has.
+
+const FILES = {};
+const NAME = "cramhy-";
+const CACHE = NAME + Object.entries(FILES).join().split("").reduce((sum, each) => (Math.imul(sum, 31) + each.charCodeAt(0)) >>> 0, 7);
+
+const address = (path) => new URL(path, self.registration.scope).href;
+
+async function filled() {
+  const cache = await caches.open(CACHE);
+  const older = (await caches.keys()).filter((name) => name.startsWith(NAME) && name !== CACHE);
+  for (const [path, fingerprint] of Object.entries(FILES)) {
+    const kept = `${address(path)}?${fingerprint}`;
+    let answer = null;
+    for (const name of older) answer ??= (await (await caches.open(name)).match(kept)) ?? null;
+    answer ??= await fetch(address(path), { cache: "no-cache" });
+    if (!answer.ok) throw new Error(`${path}: ${answer.status}`);
+    await cache.put(kept, answer);
+  }
+}
+
+self.addEventListener("install", (event) => event.waitUntil(filled().then(() => self.skipWaiting())));
+
+self.addEventListener("activate", (event) =>
+  event.waitUntil(
+    caches
+      .keys()
+      .then((names) => Promise.all(names.filter((name) => name.startsWith(NAME) && name !== CACHE).map((name) => caches.delete(name))))
+      .then(() => self.clients.claim()),
+  ),
+);
+
+self.addEventListener("fetch", (event) => {
+  const url = new URL(event.request.url);
+  const scope = self.registration.scope;
+  if (event.request.method !== "GET" || !url.href.startsWith(scope)) return;
+  const path = url.origin + url.pathname === scope ? "index.html" : (url.origin + url.pathname).slice(scope.length);
+  const fingerprint = FILES[path];
+  if (!fingerprint) return;
+  event.respondWith(
+    caches
+      .open(CACHE)
+      .then((cache) => cache.match(`${address(path)}?${fingerprint}`))
+      .then((found) => found ?? fetch(event.request)),
+  );
+});

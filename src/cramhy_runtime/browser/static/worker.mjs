@@ -1,0 +1,130 @@
+// The worker of a tab: Python, a session in it, and its two connections with the page. By postMessage go the prompt's lines, what is
+// printed, and Ctrl-C; by a port of its own go the operations of rosbridge, for the views.
+
+import { loadPyodide } from "./pyodide/pyodide.mjs";
+import { host } from "./stacks.mjs";
+
+const HOME = "/home/pyodide"; // is kept in the browser, between visits and when the worker is ended
+const PACKAGES = "/lib/python3.14/site-packages";
+
+let page = null; // the port of the views
+let waiting = null; // resolves the promise that the prompt waits for
+const lines = []; // that were typed ahead
+
+const tell = (kind, value = null) => postMessage({ kind, value });
+
+// What jspi.py and tab.py use. Accessors must stay accessors, which Object.assign would not do.
+Object.defineProperties(
+  host,
+  Object.getOwnPropertyDescriptors({
+    receive: null, // set by Python: takes an operation of the page
+    interrupt: null, // set by Python: Ctrl-C
+    prompt: "",
+    say: (text) => page?.postMessage(text),
+    later: (milliseconds, call) => {
+      setTimeout(call, milliseconds);
+    },
+    ready: () => tell("ready"),
+    wake() {
+      waiting?.(null);
+    },
+    get line() {
+      if (lines.length) return Promise.resolve(lines.shift());
+      tell("prompt", host.prompt);
+      keep();
+      return new Promise((resolve) => {
+        waiting = (line) => {
+          waiting = null;
+          tell("busy");
+          resolve(line);
+        };
+      });
+    },
+  }),
+);
+
+const requests = {
+  port: (_, [port]) => {
+    page = port;
+    page.onmessage = ({ data }) => host.receive?.(data);
+  },
+  lines: (texts) => {
+    lines.push(...texts);
+    if (waiting && lines.length) waiting(lines.shift());
+  },
+  interrupt: () => {
+    lines.length = 0;
+    host.interrupt?.();
+  },
+};
+onmessage = ({ data: { kind, value }, ports }) => requests[kind]?.(value, ports);
+
+let python = null;
+let keeping = false;
+
+// Write the user's files into the browser's storage. Without it (a private window) the session goes on.
+function keep() {
+  if (keeping) return;
+  keeping = true;
+  python.FS.syncfs(false, (problem) => {
+    keeping = false;
+    if (problem) tell("unkept", String(problem.message ?? problem));
+  });
+}
+
+function restored() {
+  return new Promise((resolve) => {
+    try {
+      python.FS.mount(python.FS.filesystems.IDBFS, {}, HOME);
+      python.FS.syncfs(true, (problem) => {
+        if (problem) tell("unkept", String(problem.message ?? problem));
+        resolve();
+      });
+    } catch (problem) {
+      tell("unkept", String(problem.message ?? problem));
+      resolve();
+    }
+  });
+}
+
+async function unpacked(path) {
+  const answer = await fetch(path);
+  if (!answer.ok) throw new Error(`${path} cannot be fetched (${answer.status})`);
+  const bytes = new Uint8Array(await answer.arrayBuffer());
+  if (bytes[0] !== 0x1f || bytes[1] !== 0x8b) return bytes; // a host has said that gzip is its encoding, and the browser has unpacked it
+  return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer());
+}
+
+async function begin() {
+  const packages = unpacked("./cramhy.tar.gz");
+  python = await loadPyodide({ env: { HOME, PYTHONHASHSEED: "0", ROS_PACKAGE_PATH: `${PACKAGES}/cramhy_runtime/tutorials` } });
+  tell("python");
+  const decoder = new TextDecoder();
+  const out = {
+    isatty: false,
+    write(bytes) {
+      tell("text", decoder.decode(bytes, { stream: true }));
+      return bytes.length;
+    },
+  };
+  python.setStdout(out);
+  python.setStderr(out);
+  python.registerJsModule("cramhy_host", { host });
+  python.FS.writeFile("/tmp/cramhy.tar", await packages);
+  await restored();
+  const speed = new URLSearchParams(location.search).get("speed");
+  const main = python.runPython(`
+import os, tarfile
+with tarfile.open("/tmp/cramhy.tar") as archive:  # by Python's own, which keeps the times: compiled Lisp is stamped with them
+    archive.extractall("${PACKAGES}", filter="fully_trusted")
+os.remove("/tmp/cramhy.tar")
+os.chdir("${HOME}")
+from cramhy_runtime.browser.tab import main
+main`);
+  tell("imported");
+  const status = await main.callPromising(speed === "unbounded" ? undefined : Number(speed ?? 1));
+  keep();
+  tell("ended", status);
+}
+
+begin().catch((problem) => tell("failed", String(problem?.message ?? problem).slice(-4000)));
