@@ -33,7 +33,7 @@ FLOORS = [
     ["languages"],
     ["session"],
     ["chronicle", "ros_tools", "testing", "robot"],
-    ["view", "repl", "swank", "jupyter", "lsp"],
+    ["view", "repl", "swank", "jupyter", "lsp", "grading"],
     ["cli", "pytest_plugin", "coverage_plugin", "__init__"],
 ]
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}

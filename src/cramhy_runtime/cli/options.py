@@ -159,6 +159,49 @@ def _add_jupyter(commands, of_session):
     )
 
 
+def _add_grading(commands):
+    """``cramhy grade`` and ``cramhy similar``."""
+    grade = commands.add_parser("grade", help="grade a submission: run it in a cage, and tell what failed and how many points it gets")
+    grade.add_argument("exercise", metavar="EXERCISE", help="the folder of an exercise, or the name of one of cramhy's, such as square")
+    grade.add_argument("submission", metavar="SUBMISSION", help="the file that a student hands in, or the folder with the files")
+    grade.add_argument("--seeds", type=_at_least_one, default=None, metavar="N", help="try checks with N seeds (as the exercise says)")
+    grade.add_argument("--json", default=None, metavar="FILE", help="write the result into FILE, too, as JSON (no file)")
+    grade.add_argument("--junit", default=None, metavar="FILE", help="write the result into FILE, too, in JUnit's XML (no file)")
+    grade.add_argument(
+        "--format",
+        choices=["text", "json", "github", "vpl", "coderunner"],
+        default="text",
+        help="what is printed: text for people, or what GitHub Classroom, Moodle's VPL or Moodle's CodeRunner reads (text)",
+    )
+    similar = commands.add_parser("similar", help="list pairs of submissions that are alike after renaming and reordering")
+    similar.add_argument("folder", metavar="FOLDER", help="a folder with a file or a folder for each submission")
+    similar.add_argument("--given", default=None, metavar="FOLDER", help="what all students were given, which does not count (nothing)")
+    similar.add_argument(
+        "--least", type=_percent, default=40, metavar="PERCENT", help="leave out pairs that have less in common than this (40)"
+    )
+    similar.add_argument("--json", default=None, metavar="FILE", help="write the pairs into FILE, too, as JSON (no file)")
+
+
+def _at_least_one(text):
+    number = int(text)
+    if not 1 <= number <= 1000:
+        raise ValueError
+    return number
+
+
+_at_least_one.__name__ = "number from 1 to 1000"  # what argparse calls it in its complaint
+
+
+def _percent(text):
+    number = float(text)
+    if not 0 <= number <= 100:
+        raise ValueError
+    return number
+
+
+_percent.__name__ = "percentage"
+
+
 class _Version(argparse.Action):
     """``--version`` prints the versions of cramhy, Python and Hy, which a report of a defect needs."""
 
@@ -218,6 +261,7 @@ def parser():
     test.add_argument("--only", action="append", default=None, metavar="TEST", help="a test by its name; may be repeated (all)")
     test.add_argument("--limit", type=float, default=60.0, metavar="SECONDS", help="end a test that takes longer (60)")
     test.add_argument("--junit", default=None, metavar="FILE", help="write the results into FILE, too, in JUnit's XML (no file)")
+    _add_grading(commands)
     simulator = commands.add_parser("turtlesim", help="the simulator alone, for other programs to drive")
     _add_view(simulator, "it", "no page", "on a desktop it opens with the turtle")
     simulator.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens (a free port)")
