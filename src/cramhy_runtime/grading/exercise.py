@@ -52,6 +52,7 @@ class Exercise(NamedTuple):
     submission: list[str]
     systems: list[str]
     package: str | None
+    prelude: list[str]
     before: list[str]
     limits: dict[str, float]
     checks: list[Check]
@@ -88,7 +89,7 @@ def whole(number):
 
 
 def _exercise(folder, table):
-    _known(table, {"title", "submission", "systems", "package", "before", "limits", "check"}, "the exercise")
+    _known(table, {"title", "submission", "systems", "package", "prelude", "before", "limits", "check"}, "the exercise")
     submission = _texts(table, "submission")
     if not submission:
         raise ExerciseError('it does not say what is handed in. Write submission = ["square.lisp"].')
@@ -112,6 +113,7 @@ def _exercise(folder, table):
         submission,
         _texts(table, "systems"),
         table.get("package"),
+        _texts(table, "prelude"),
         before,
         limits,
         checks,

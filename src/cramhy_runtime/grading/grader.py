@@ -130,6 +130,7 @@ def _unfinished(told, answer, exercise):
         "idle": "waited for something that never came, and was stopped. Wait with the plan's clock: (cpl:sleep 1).",
         "long": "took too long, and was stopped.",
         "output": f"printed more than {limits['output']:g} kB, and was stopped.",
+        "memory": f"used more than {limits['memory']:g} MB of memory, and was stopped.",
         "disk": "wrote too many files, and was stopped.",
     }
     if answer["ended"] in reasons:

@@ -35,7 +35,7 @@ def job(exercise: Exercise, check: Check, seed: int, submitted: dict[str, str]) 
         "package": exercise.package,
         "files": submitted,
         "load": [name for name in exercise.submission if name.endswith((".lisp", ".hy", ".py"))],
-        "before_loading": [],
+        "prelude": exercise.prelude,
         "before": [filled(form, values) for form in table.get("before", exercise.before)],
         "do": filled(table["do"], values) if "do" in table else None,
         "after": table.get("after", AFTER),

@@ -224,6 +224,8 @@ class _Watch:
             self.reason = "long"
         elif _size(self.folder) > MOST_ON_DISK:
             self.reason = "disk"
+        elif _memory(self.child) > self.job["megabytes"] << 20:
+            self.reason = "memory"
         else:
             self._look_for_idleness()
 
@@ -259,6 +261,14 @@ def _threads(process):
             continue
         found.append((state, int(fields[10]) + int(fields[11])))
     return found or None
+
+
+def _memory(process):
+    """The bytes of memory that a process uses; 0 if the system does not tell."""
+    try:
+        return int(Path(f"/proc/{process}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except (OSError, IndexError, ValueError):
+        return 0
 
 
 def _size(folder):

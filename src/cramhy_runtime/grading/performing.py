@@ -51,7 +51,7 @@ def _steps(job, folder, tell, made, recording):
         made.load(system)
     if job["package"]:
         made.package = job["package"].upper()
-    for form in job["before_loading"]:
+    for form in job["prelude"]:
         made.evaluate_text(form)
     guard = tests_inside.Guard() if job["tests"] else None
     for name in job["load"]:

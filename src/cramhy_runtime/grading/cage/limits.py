@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 MEGABYTE = 1024 * 1024
+FOR_STACKS = 64 * 64
+"""Megabytes of addresses beside the memory: each task of a plan has a stack, which takes 64 of them and hardly any memory. So that limit is
+a wide one, and the nursery looks at the memory that is really used."""
 LARGEST_FILE = 4 * MEGABYTE
 OPEN_FILES = 64
 
@@ -16,7 +19,7 @@ def set_limits(seconds, megabytes):
     held = []
     for name, limit, value in (
         ("time", "RLIMIT_CPU", seconds),
-        ("memory", "RLIMIT_AS", megabytes * MEGABYTE),
+        ("memory", "RLIMIT_AS", (megabytes + FOR_STACKS) * MEGABYTE),
         ("file size", "RLIMIT_FSIZE", LARGEST_FILE),
         ("open files", "RLIMIT_NOFILE", OPEN_FILES),
         ("core", "RLIMIT_CORE", 0),
