@@ -20,6 +20,8 @@ from .told import Told
 LARGEST = 200_000
 """Bytes of a file of a submission."""
 KEPT_OUTPUT = 2000
+NOISE = "[(ROSLISP TOP) INFO]"
+"""What roslisp prints when a node starts, which says nothing about a submission."""
 SIGNALS = {
     4: "illegal instruction",
     6: "abort",
@@ -102,7 +104,7 @@ class Grader:
         except Lost:
             return ["The program ended the process that grades it."], "", [], True
         told = Told(answer["reports"], work["nonce"])
-        output = answer["output"]
+        output = "".join(line for line in answer["output"].splitlines(True) if not line.startswith(NOISE))
         if told.error and told.doing in ("load", "before"):
             return [f"{told.what} cannot be used:\n{told.error['text']}"], output, told.held, told.doing == "load"
         if not told.done:
@@ -114,9 +116,9 @@ class Grader:
         return judging.of_run(check, work, values, told), output, told.held, False
 
     def _nursery(self, exercise: Exercise) -> Nursery:
-        key = tuple(exercise.systems)
+        key = (*exercise.systems, "lisp-unit", "fiveam")
         if key not in self.nurseries:
-            self.nurseries[key] = Nursery(exercise.systems)
+            self.nurseries[key] = Nursery(list(key))
         return self.nurseries[key]
 
 

@@ -13,6 +13,16 @@
  3 corner-generator
  "The corners of the world.")
 
+(defun corner-validator (designator solution)
+  (declare (ignore solution))
+  (with-desig-props (corner) designator
+    (when corner
+      :accept)))
+
+(register-location-validation-function
+ 3 corner-validator
+ "All corners are good.")
+
 (defun go-to-corner (?corner)
   (top-level
     (move-to (reference (desig:a location (corner ?corner))))))
