@@ -6,7 +6,6 @@ prints what differs.
 
 from __future__ import annotations
 
-import json
 import os
 from pathlib import Path
 from typing import NamedTuple
@@ -69,7 +68,8 @@ WRONG = [
 
 def python(text):
     """Lisp that runs Python."""
-    return f'(py:call "builtins.exec" {json.dumps(text)} (py:call "builtins.dict"))\n'
+    text = text.replace("\\", "\\\\").replace('"', '\\"')
+    return f'(py:call "builtins.exec" "{text}" (py:call "builtins.dict"))\n'
 
 
 FORGED = """
@@ -150,11 +150,11 @@ def malicious(exercises, submissions):
         ("empty", "square", "", 0, "DRAW-SQUARE"),
         ("no text", "square", b"\xff\xfe\x00\x01" * 30, 0, "not UTF-8"),
         ("broken", "square", "(in-package :tut)\n(defun draw-square (size)", 0, "cannot be used"),
-        ("loop when loaded", "square", "(loop)", 0, "processor time"),
-        ("loop in the plan", "square", "(in-package :tut)\n(defun draw-square (size) (loop))", 0, "processor time"),
+        ("loop when loaded", "square", "(loop)", 0, "was stopped"),
+        ("loop in the plan", "square", "(in-package :tut)\n(defun draw-square (size) (loop))", 0, "was stopped"),
         ("loop that waits", "square", "(in-package :tut)\n(defun draw-square (size) (loop (cpl:sleep 1)))", 0, "turtle's time"),
-        ("loop that ignores the limit", "square", python(SWALLOW_CPU_SIGNAL), 0, "processor time"),
-        ("read-time loop", "square", "#.(loop)", 0, "processor time"),
+        ("loop that ignores the limit", "square", python(SWALLOW_CPU_SIGNAL), 0, "was stopped"),
+        ("read-time loop", "square", "#.(loop)", 0, "was stopped"),
         ("quit when loaded", "square", "(quit)", 0, "ended the session"),
         ("quit in the plan", "square", "(in-package :tut)\n(defun draw-square (size) (cl-user::quit))", 0, "ended the session"),
         ("exit of the process", "square", python("import os\nos._exit(0)"), 0, "ended the process"),
@@ -172,7 +172,7 @@ def malicious(exercises, submissions):
         ("changed checks of the tests", "first-lisp", NO_LISP + CHANGED_CHECKS, 0, ""),
         ("changed runner of the tests", "first-lisp", NO_LISP + python(PATCH), 0, ""),
         ("changed equality", "first-lisp", NO_LISP + CHANGED_EQUALITY, 0, ""),
-        ("fork bomb", "square", python(FORK_BOMB), 0, "processor time"),
+        ("fork bomb", "square", python(FORK_BOMB), 0, "was stopped"),
         ("10 GB of output", "square", "(loop (write-line (make-string 100000 :initial-element #\\x)))", 0, "printed more than"),
         ("10 GB of output by Python", "square", python("import os\nwhile True:\n    os.write(1, b'x' * 1000000)"), 0, "printed more than"),
         ("kills the others", "square", python(KILL) + EMPTY_SQUARE, 0, ""),

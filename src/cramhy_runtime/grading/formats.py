@@ -47,10 +47,10 @@ def vpl(report: Report) -> str:
     """The lines that VPL takes for comments and for the grade. In VPL set the activity's highest grade to the points of the exercise."""
     lines = []
     for check in report.checks:
-        lines += ["<|--", f"-{check.title} ({check.points:g}/{check.most:g})"]
-        lines += [f"{'>' if line.startswith(' ') else ''}{line}" for sentence in check.wrong for line in sentence.splitlines()]
-        lines.append("--|>")
-    return "\n".join([*(_harmless(line) if line not in ("<|--", "--|>") else line for line in lines), f"Grade :=>> {report.points:g}", ""])
+        said = [f"-{check.title} ({check.points:g}/{check.most:g})"]
+        said += [f"{'>' if line.startswith(' ') else ''}{line}" for sentence in check.wrong for line in sentence.splitlines()]
+        lines += ["<|--", *map(_harmless, said), "--|>"]
+    return "\n".join([*lines, f"Grade :=>> {report.points:g}", ""])
 
 
 def _harmless(line):

@@ -106,6 +106,8 @@ class Grader:
         told = Told(answer["reports"], work["nonce"])
         output = "".join(line for line in answer["output"].splitlines(True) if not line.startswith(NOISE))
         if told.error and told.doing in ("load", "before"):
+            if "TIME-LIMIT" in told.error["types"]:
+                return [f"Loading {told.what} never ended, and was stopped."], output, told.held, told.doing == "load"
             return [f"{told.what} cannot be used:\n{told.error['text']}"], output, told.held, told.doing == "load"
         if not told.done:
             return [_unfinished(told, answer, exercise)], output, told.held, told.doing in ("begin", "load")

@@ -246,7 +246,8 @@ class _Watch:
                 end(self.child, signal.SIGKILL)
         _, status, usage = os.wait4(self.child, 0)
         used = usage.ru_utime + usage.ru_stime
-        if self.reason is None and os.WIFSIGNALED(status) and used > self.job["seconds"] - 0.2:
+        ended = os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
+        if self.reason is None and (ended == signal.SIGXCPU or (ended and used > self.job["seconds"] - 0.2)):
             self.reason = "time"
         return status, used
 

@@ -17,9 +17,13 @@ from ..forms import Group, Text, forms_of, words_of
 LEAST = 6
 """Words that a list must have to be compared: all short ones are alike."""
 _NUMBER = re.compile(r"[-+]?\.?\d[\d./eds+-]*$")
-_DEFINES = re.compile(
-    r"def|let$|let\*$|flet|labels|lambda|fn$|do(list|times)?$|for$|setv|destructuring|with-fields|multiple-value-bind|arg|name"
-)
+_FUNCTIONS = {"defun", "defn", "defmacro", "defmethod", "defgeneric", "def-process-module", "def-cram-function", "functiondef", "classdef"}
+_NAMES_FIRST = {"defvar", "defparameter", "defconstant", "setv", "assign", "annassign", "def-fact-group", "define-condition", "defstruct"}
+_LAMBDAS = {"lambda", "fn", "arguments"}
+_LETS = {"let", "let*", "prog", "prog*", "do", "do*"}
+_LOCAL_FUNCTIONS = {"flet", "labels", "macrolet"}
+_ONE_VARIABLE = {"dolist", "dotimes", "for", "lazy-dolist"}
+_SEVERAL_VARIABLES = {"with-fields", "multiple-value-bind", "destructuring-bind", "with-desig-props", "with-slots"}
 _UNORDERED = {"+", "*", "and", "or", "par", "pursue", "try-all", "max", "min", "=", "eql", "equal"}
 _QUOTING = {"declare", "in-package", "require", "export", "import"}
 
@@ -47,28 +51,50 @@ def _own_names(form, own=None):
     """The names that a program defines or binds anywhere."""
     own = set() if own is None else own
     if isinstance(form, Group):
-        if form and isinstance(form[0], str) and not isinstance(form[0], Text) and _DEFINES.match(form[0].rpartition(":")[2]):
-            own.update(_bound(form[1:3]))
+        if form and isinstance(form[0], str):
+            own.update(_bound(form[0].rpartition(":")[2], list(form[1:])))
         for part in form:
             _own_names(part, own)
     return own
 
 
-def _bound(parts):
-    """The names in the first two places of a defining form: the name itself, arguments, variables of ``let``."""
-    for place, part in enumerate(parts):
-        if isinstance(part, Group):
-            for each in part:
-                if isinstance(each, Group):
-                    yield from (word for word in list(each)[:1] if isinstance(word, str))
-                elif not isinstance(each, Text):
-                    yield each
-        elif place == 0 and not isinstance(part, Text):
-            yield part
+def _bound(head, parts):
+    """The names that a form defines or binds."""
+    first = parts[0] if parts else ""
+    if head in _FUNCTIONS or head in _NAMES_FIRST:
+        yield from _words([first])
+        if head in _FUNCTIONS and len(parts) > 1 and isinstance(parts[1], Group):
+            yield from _variables(parts[1])
+    elif head in _LAMBDAS:
+        yield from _variables(first if isinstance(first, Group) else parts)
+    elif head in _LETS and isinstance(first, Group):
+        yield from _variables(first)
+    elif head in _LOCAL_FUNCTIONS and isinstance(first, Group):
+        for entry in first:
+            if isinstance(entry, Group):
+                yield from _bound("defun", list(entry))
+    elif head in _ONE_VARIABLE:
+        yield from _words(first[:1] if isinstance(first, Group) else [first])
+    elif head in _SEVERAL_VARIABLES and isinstance(first, Group):
+        yield from words_of(first)
+    elif head == "loop":
+        for before, word in zip(parts, parts[1:]):
+            if before in ("for", "as", "with"):
+                yield from words_of(word)
+
+
+def _variables(group):
+    """The names in a lambda list, or of the bindings of ``let``."""
+    for part in group:
+        yield from _words(part[:1] if isinstance(part, Group) else [part])
+
+
+def _words(parts):
+    return [part.rpartition(":")[2] for part in parts if not isinstance(part, (Group, Text)) and not part.startswith("&")]
 
 
 def _visit(form, own, found):
-    if not isinstance(form, Group) or (form and form[0] in _QUOTING):
+    if not isinstance(form, Group) or (form and isinstance(form[0], str) and form[0] in _QUOTING):
         return
     size = sum(1 for _ in words_of(form))
     if size >= LEAST:
@@ -89,18 +115,18 @@ def _shape(form, own, places):
         if word in own or form in own or (word.startswith("?") and len(word) > 1):
             return f"#{places.setdefault(word, len(places) + 1)}"
         return "number" if _NUMBER.match(word) else word
-    if form and form[0] in _UNORDERED:
-        # sorted by what they look like without places, so that the same arguments get the same places in any order
-        rest = sorted(form[1:], key=lambda part: _shape(part, own, _Everywhere()))
+    if form and isinstance(form[0], str) and form[0] in _UNORDERED:
+        # sorted by what they look like without new places, so that the same arguments get the same places in any order
+        rest = sorted(form[1:], key=lambda part: (_shape(part, own, _Known({})), _shape(part, own, _Known(places))))
         return f"({form[0]} {' '.join(_shape(part, own, places) for part in rest)})"
     parts = form[:]
-    if len(parts) > 3 and parts[0] in ("defun", "defn") and isinstance(parts[3], Text):
+    if len(parts) > 3 and isinstance(parts[0], str) and parts[0] in ("defun", "defn") and isinstance(parts[3], Text):
         del parts[3]  # documentation is words
     return f"({' '.join(_shape(part, own, places) for part in parts)})"
 
 
-class _Everywhere(dict):
-    """Places that are all one."""
+class _Known(dict):
+    """Places that are known already; all others are one."""
 
     def setdefault(self, word, place):
-        return 0
+        return self.get(word, 0)
