@@ -47,22 +47,22 @@ STARTS = {
 
 WRONG = [
     # the exercise, what stands in the solution, what stands there instead, points, words of the report
-    ("square", "(move-to (make-3d-vector x y 0))", "nil", 0, "2.0 m of the drawing are missing"),
+    ("square", "(move-to (make-3d-vector x y 0))", "nil", 0, "m of the drawing are missing"),
     ("square", "(+ y size)", "(+ y 2)", 3, "With seed"),
-    ("square", "(defun draw-square (size)", "(defun draw-sqare (size)", 0, "draw-sqare"),
+    ("square", "(defun draw-square (size)", "(defun draw-sqare (size)", 0, "is undefined"),
     ("polygon", "(dotimes (corner corners)", "(dotimes (corner 3)", 2, "missing"),
     ("polygon", "(/ (* 2 pi) corners)", "(- (/ (* 2 pi) corners))", 0, "should not be there"),
     ("dashes", "(call-set-pen 255 255 255 3 1)", "nil", 0, "should not be there"),
     ("first-drive", "metres 0)", "(abs metres) 0)", 5, "The turtle ends at"),
-    ("first-lisp", "(- y2 y1)", "(+ y2 y1)", 0, "should give"),
-    ("stop-line", "(> x line)", "(< x line)", 1, "The turtle ends at"),
+    ("first-lisp", "(- y2 y1)", "(+ y2 y1)", 1, "should give"),
+    ("stop-line", "(> x line)", "(< x line)", 0, "The turtle ends at"),
     ("watchdog", ":too-late", ":late", 2, "should give :TOO-LATE"),
-    ("wall-ahead", "(< 1 x 10)", "(< 0.5 x 10.5)", 0, ""),
+    ("wall-ahead", "(< 1 x 10)", "(< 0.5 x 10.5)", 3, "The turtle ends at"),
     ("dry-pen", "(again 3)", "(again 1)", 3, "ended with an error"),
     ("circling", "(<- (cpm:matching-process-module ?desig turtlesim-circling)", "(<- (nothing ?desig)", 5, ""),
     ("rooms", "(door ?other ?one))", "(door ?one ?other))", 0, "should give T, and gave NIL"),
     ("race", "(shortest begin points)", "points", 0, "did not come to place"),
-    ("maze", "(middle room)", "(middle to)", 2, "did not come to place 1"),
+    ("maze", "(middle room)", "(middle to)", 5, "did not come to place 1"),
 ]
 
 
@@ -151,11 +151,11 @@ def malicious(exercises, submissions):
         ("no text", "square", b"\xff\xfe\x00\x01" * 30, 0, "not UTF-8"),
         ("broken", "square", "(in-package :tut)\n(defun draw-square (size)", 0, "cannot be used"),
         ("loop when loaded", "square", "(loop)", 0, "was stopped"),
-        ("loop in the plan", "square", "(in-package :tut)\n(defun draw-square (size) (loop))", 0, "was stopped"),
+        ("loop in the plan", "square", "(in-package :tut)\n(defun draw-square (size) (loop))", 0, "(draw-square 2)"),
         ("loop that waits", "square", "(in-package :tut)\n(defun draw-square (size) (loop (cpl:sleep 1)))", 0, "turtle's time"),
         ("loop that ignores the limit", "square", python(SWALLOW_CPU_SIGNAL), 0, "was stopped"),
         ("read-time loop", "square", "#.(loop)", 0, "was stopped"),
-        ("quit when loaded", "square", "(quit)", 0, "ended the session"),
+        ("quit when loaded", "square", "(cl-user::quit)", 0, "ended the session"),
         ("quit in the plan", "square", "(in-package :tut)\n(defun draw-square (size) (cl-user::quit))", 0, "ended the session"),
         ("exit of the process", "square", python("import os\nos._exit(0)"), 0, "ended the process"),
         ("sleep on the wall clock", "square", python("import time\ntime.sleep(1000)"), 0, "waited for something"),

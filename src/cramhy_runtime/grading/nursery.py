@@ -145,6 +145,7 @@ def _prepare_to_tell(job, folder, telling, printing):
     os.chdir(folder)
     os.environ.clear()
     os.environ.update(HOME=folder, TMPDIR=folder, PATH="/usr/bin:/bin", LANG="C.UTF-8", CRAMHY_TIME="virtual")
+    tempfile.tempdir = folder
     signal.signal(signal.SIGXCPU, signal.SIG_DFL)
     for name, text in job["files"].items():
         place = Path(folder, name)

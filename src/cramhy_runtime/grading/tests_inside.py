@@ -46,7 +46,7 @@ class Guard:
         for package in map(find_package, ("LISP-UNIT", "FIVEAM")):
             for symbol in (*package.internal.values(), *package.external.values()):
                 if symbol.package is package:
-                    found[f"{package.name}::{symbol.name}"] = symbol.function
+                    found[f"{package.name}::{symbol.name}"] = symbol.macro or symbol.function
         for module in (unit_tests, loader):
             found |= {f"{module.__name__}.{name}": value for name, value in vars(module).items() if callable(value)}
         for kind in (unit_tests.LispTest, unit_tests.Outcome):
@@ -79,7 +79,7 @@ def _is_canary(result, canary):
 
 CANARIES = {
     "lisp-unit": """
-(lisp-unit:define-test good-{0} (lisp-unit:assert-equal 1 1) (lisp-unit:assert-true t) (lisp-unit:assert-eql 2 2))
+(lisp-unit:define-test good-{0} (lisp-unit:assert-equal 1 1) (lisp-unit:assert-true t) (lisp-unit:assert-number-equal 2 2))
 (lisp-unit:define-test bad-{0} (lisp-unit:assert-equal 1 2))
 """,
     "fiveam": """
@@ -141,6 +141,8 @@ class _Collector:
 
 
 def _run_pytest(tests, folder, canary):
+    from cramhy_runtime import kernel
+
     try:
         import pytest
     except ImportError:
@@ -155,7 +157,11 @@ def _run_pytest(tests, folder, canary):
     settings.write_text("[pytest]\n", encoding="utf-8")
     collector = _Collector()
     words = [str(file), str(other), "-q", "-c", str(settings), "--rootdir", str(place), "-p", "no:cacheprovider", "--import-mode=importlib"]
-    pytest.main([*words, "-p", "no:faulthandler", "-s"], plugins=[collector])
+    try:
+        pytest.main([*words, "-p", "no:faulthandler", "-s"], plugins=[collector])
+    finally:
+        if kernel.active() is None:  # our plugin has given each test one, and stopped it
+            kernel.start()
     wanted = tests["only"]
     results = list(collector.results.values())
     return [result for result in results if wanted is None or result["name"] in wanted or _is_canary(result, canary)]

@@ -12,6 +12,17 @@
 
 (define-condition blown-away (simple-plan-failure) ())
 
+(defun back-to (place)
+  "Drive to the place, until the turtle stands still there: the command to stop may be lost, too."
+  (loop
+    (move-to (make-3d-vector (first place) (second place) 0) 0.08)
+    (wait-duration 0.1)
+    (with-fields (x y linear_velocity) (value *turtle-pose*)
+      (when (and (< (abs (- x (first place))) 0.12)
+                 (< (abs (- y (second place))) 0.12)
+                 (= 0 linear_velocity))
+        (return)))))
+
 (defun draw-side (begin end)
   "Draw from where the turtle is to end. Blown off the line, come back without the pen and go on."
   (let ((last-place begin))
@@ -19,7 +30,7 @@
         ((blown-away (failure)
            (declare (ignore failure))
            (pen 1)
-           (move-to (make-3d-vector (first last-place) (second last-place) 0) 0.08)
+           (back-to last-place)
            (pen 0)
            (retry)))
       (rotate-to (make-3d-vector (first end) (second end) 0))
