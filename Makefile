@@ -65,14 +65,14 @@ $(LIGHT): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "cramhy needs Python 3.11 or later; try make PYTHON=python3.11")'
 	@echo "Making the environment in .venv (once) ..."
 	@$(PYTHON) -m venv .venv
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable '.[repl,web]'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable '.[repl,web,fast]'
 	@$(BIN)/python -m pip uninstall -qq --disable-pip-version-check --yes setuptools # which Python 3.11 adds: 10 MB, not needed
 	@touch $(LIGHT)
 
 # The robot of the kitchen needs MuJoCo and numpy.
 $(ROBOT): $(LIGHT)
 	@echo "Adding what the kitchen needs to .venv (once) ..."
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable '.[repl,web,robot]'
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable '.[repl,web,fast,robot]'
 	@touch $(ROBOT)
 
 # The rest: what tests, pages and wheels are made with.

@@ -71,7 +71,7 @@ def main():
     session.package = "CRAM-USER"
     streams.STANDARD_OUTPUT.value = streams.BroadcastStream()
     session.evaluate_text(PLANS)
-    table = Table("Looking on", "threads", "")
+    table = Table("Looking on", kernel.active().backend.name, "")
     rows(table, session, "unseen")
     chronicle.start()
     rows(table, session, "on a page")

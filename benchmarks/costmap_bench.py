@@ -15,6 +15,7 @@ from time import process_time
 
 from measuring import Table, repeat, rounds
 
+from cramhy_runtime import kernel
 from cramhy_runtime.ground.data import one
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.languages.commonlisp.evaluation.evaluator import evaluate
@@ -60,7 +61,7 @@ def main():
     lisp("(in-package #:costmap)")
     sym("*PACKAGE*").value = sym("COSTMAP::*Z-PADDING*").package
     lisp(PROGRAM)
-    table = Table("location costmaps", "threads")
+    table = Table("location costmaps", kernel.active().backend.name)
 
     def row(name, work, count, goal=None):
         """What the processor spent: the rounds are long, and others' turns fall into them."""

@@ -180,6 +180,19 @@ def wide(branches):
     return work
 
 
+def sleeping(branches):
+    """A ``par`` of so many branches that sleep a second, as often as there are ``count`` branches in all."""
+
+    def work(count):
+        def body():
+            for _ in range(count // branches):
+                cpl.par(*[lambda: cpl.sleep(1)] * branches)
+
+        cpl.top_level(body)
+
+    return work
+
+
 def wake_ups(count):
     """The times in microseconds from an assignment in one branch until ``wait-for`` returns in another."""
     here, there = cpl.make_fluent(), cpl.make_fluent()
@@ -277,6 +290,8 @@ class Bench:
         )
         for branches, cram in ((10, "102"), (100, "81"), (1000, "102")):
             self.row(f"par of {branches}, per branch", wide(branches), max(100, branches), goal=(30, 10), cram=cram)
+        for branches in (100, 1000, 10_000):
+            self.row(f"par of {branches} that sleep, per branch", sleeping(branches), branches)
 
     def losers(self):
         for loser, work, count, goal, cram in (

@@ -10,14 +10,16 @@ now, if SWI-Prolog is installed. Queries are asked as users ask them: ``(prolog 
 
 from __future__ import annotations
 
+import gc
 import statistics
 import time
 
 from measuring import Table, repeat, rounds
-from prolog_programs import GOALS, LISTS, ZEBRA, edges, swi_figures
+from prolog_programs import GOALS, LISTS, ZEBRA, edges, poses, swi_figures
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
+from cramhy_runtime.ground.data import list_from
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import make_package, sym
 from cramhy_runtime.languages.commonlisp.reader.reader import read_from_string
@@ -25,9 +27,11 @@ from cramhy_runtime.repl.session import quiet_collector
 
 boot()
 
+from cramhy_runtime.prolog.engine import database  # noqa: E402
 from cramhy_runtime.prolog.engine import fact_groups as facts  # noqa: E402
 from cramhy_runtime.prolog import query  # noqa: E402
 from cramhy_runtime.prolog.terms.terms import Var  # noqa: E402
+from cramhy_runtime.utilities import patterns  # noqa: E402
 from cramhy_runtime.utilities.lazy_lists import force_ll  # noqa: E402
 
 HERE = make_package("PROLOG-BENCH", use=["COMMON-LISP", "CRAM-PROLOG"])
@@ -67,7 +71,7 @@ class PrologTable(Table):
     """A table whose last column is SWI-Prolog: the recorded figure, and the live one."""
 
     def __init__(self, title):
-        super().__init__(title, "threads", last="SWI-Prolog recorded, here")
+        super().__init__(title, kernel.active().backend.name, last="SWI-Prolog recorded, here")
         self.swi = swi_figures(read)
 
     def rate(self, title, name, work, count, goal, cram, swi, units=1):
@@ -90,6 +94,53 @@ def inferences(length):
     return (length + 1) * (length + 2) // 2
 
 
+def measured(table, title, work, count, goal, cram="-"):
+    """A row in microseconds."""
+    times = rounds(repeat(work), count, time.process_time)
+    table.line(title, min(times), statistics.median(times), goal, cram)
+
+
+def with_compound_arguments(table):
+    for count in (100, 10_000):
+        define(f"poses-{count}", poses(f"seen-{count}", count))
+        for title, pose in (("all of it known", "p77 (at 77 0)"), ("half of it known", "p77 ?where")):
+            goal = read(f"(seen-{count} (pose {pose}) ?n)")
+            measured(table, f"a pose among {count:,}, {title}, us", lambda goal=goal: query.prolog(goal), 50, 40)
+
+
+def with_many_facts(table):
+    """What the first query costs, which makes tables of the facts."""
+    many, symbols = read("many"), [read(f"s{i}") for i in range(1000)]
+    facts.define_fact_group(read("many-facts"), None, [list_from([list_from([many, i, symbols[i % 1000]])]) for i in range(100_000)])
+    for title, text, wanted in (
+        ("the first query after 100,000 facts, ms", "(many ?x ?y)", 100),
+        ("the same, two arguments known, ms", "(many 5 s5)", 200),
+    ):
+        goal, times = read(text), []
+        for _ in range(5):
+            database.changed(many)  # the tables are made anew
+            gc.collect()
+            start = time.process_time()
+            assert query.prolog(goal) is not None
+            times.append((time.process_time() - start) * 1e3)
+        table.line(title, min(times), statistics.median(times), wanted)
+    facts.remove_fact_group(read("many-facts"))
+
+
+def with_patterns(table):
+    for title, pattern, thing in (
+        ("six elements, three variables", "(a ?x b ?y c ?z)", "(a 1 b 2 c 3)"),
+        (
+            "six pairs, no variables",
+            "((a . 1) (b . 2) (c . 3) (d . 4) (e . 5) (f . 6))",
+            "((a . 1) (b . 2) (c . 3) (d . 4) (e . 5) (f . 6))",
+        ),
+        ("six pairs, six variables", "((a . ?a) (b . ?b) (c . ?c) (d . ?d) (e . ?e) (f . ?f))", "((a) (b) (c) (d) (e) (f))"),
+    ):
+        constant, data = read(pattern), read(thing)
+        measured(table, f"a pattern matched, {title}, us", lambda p=constant, d=data: patterns.pat_match(p, d), 500, 1, "0.35")
+
+
 def main():
     kernel.start(clock="virtual")
     quiet_collector()
@@ -100,6 +151,7 @@ def main():
     table.rate("naive reverse of 30, inferences", "nrev 30", first("nrev 30"), 2, 1e6, "4,064", "42 M", inferences(30))
     table.rate("naive reverse of 300, inferences", "nrev 300", first("nrev 300"), 1, 1e6, "-", "42 M", inferences(300))
     table.rate("append 20+1, inferences", "append", first("append"), 40, 1e6, "116,000", "37 M", 21)
+    table.rate("append 10,000+1, inferences", "append 10000", first("append 10000"), 1, 1.2e6, "-", "37 M", 10_001)
     table.rate("findall over member of 1000", "member 1000", collected("member 1000"), 1, 800, "0.85", "8,350")
     table.rate("findall over own member of 100", "own member 100", collected("own member 100"), 10, 10e3, "177", "63 k")
     table.rate("findall over own member of 1000", "own member 1000", collected("own member 1000"), 1, 1e3, "1.1", "6.7 k")
@@ -122,6 +174,9 @@ def main():
     motion, designator = read("motion-like"), read("d1")
     times = rounds(repeat(lambda: next(query.ask(motion, designator, Var()))), 50, time.process_time)
     table.line("a grounding clause of 3 properties, us", min(times), statistics.median(times), 15, "193")
+    with_compound_arguments(table)
+    with_many_facts(table)
+    with_patterns(table)
     table.end()
 
 

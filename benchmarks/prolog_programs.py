@@ -52,6 +52,11 @@ def edges():
     return [f"((edge n{a} n{b}))" for a, b in sorted(found)]
 
 
+def poses(name, count):
+    """The text of ``count`` facts with a pose as the first argument."""
+    return [f"(({name} (pose p{i} (at {i} {i % 7})) {i}))" for i in range(count)]
+
+
 def numbers(count):
     """The text of a list of ``count`` numbers."""
     return f"({' '.join(map(str, range(count)))})"
@@ -62,8 +67,8 @@ CYCLE = "(and (edge ?x ?y) (edge ?y ?z) (edge ?z ?x))"
 GOALS = {  # name → the goal, and what stands for its solutions when all are wanted
     "nrev 30": (f"(nrev {numbers(30)} ?r)", None),
     "nrev 300": (f"(nrev {numbers(300)} ?r)", None),
-    "append 10000": (f"(app {numbers(10_000)} (1) ?c)", None),
     "append": (f"(app {numbers(20)} (1) ?c)", None),
+    "append 10000": (f"(app {numbers(10_000)} (1) ?c)", None),
     "member 1000": (f"(member ?x {numbers(1000)})", "?x"),
     "own member 100": (f"(mem ?x {numbers(100)})", "?x"),
     "own member 1000": (f"(mem ?x {numbers(1000)})", "?x"),

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-LIGHT, ROBOT, REST = "[repl,web]", "[repl,web,robot]", "[dev]"
+LIGHT, ROBOT, REST = "[repl,web,fast]", "[repl,web,fast,robot]", "[dev]"
 SMALL = {"tutorial": [LIGHT], "view": [LIGHT], "kitchen": [LIGHT, ROBOT]}
 TARGETS = re.search(r"^\.PHONY: (.*)$", (ROOT / "Makefile").read_text(), re.M)[1].split()
 

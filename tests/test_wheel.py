@@ -123,6 +123,58 @@ def test_an_editable_installation_has_no_copies(tmp_path):
     assert {name.rpartition(".data/data/")[2] for name in names} == {"_cramhy.pth", KERNEL}
 
 
+FIRST_START = """
+import importlib, pathlib, sys
+from cramhy_runtime.repl.session import Session
+from cramhy_runtime.languages.commonlisp.systems import loader
+session = Session(time="virtual")
+session.load("cram-my-beginner-tutorial")
+print([str(why) for why in loader._not_used.values()], "hy" in sys.modules)
+import hy.importer
+compiled = []
+compile = hy.importer.hy_compile
+hy.importer.hy_compile = lambda tree, name, *more, **others: (compiled.append(str(name)), compile(tree, name, *more, **others))[1]
+import cramhy
+for source in pathlib.Path(cramhy.__file__).parent.glob("*.hy"):
+    importlib.import_module(f"cramhy.{source.stem}")
+print(compiled)
+"""
+
+
+@pytest.fixture
+def unpacked(wheel, tmp_path):
+    """The wheel as pip lays it out, with the date of now; what it prints when it is started."""
+    pytest.importorskip("hy")
+    for name in wheel.namelist():
+        if name.startswith(("cramhy/", "cramhy_runtime/")):
+            target = tmp_path / "site" / name
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(wheel.read(name))
+
+    def started():
+        environment = {**os.environ, "PYTHONPATH": str(tmp_path / "site"), "HOME": str(tmp_path)}
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)
+        done = subprocess.run([sys.executable, "-c", FIRST_START], cwd=tmp_path, env=environment, capture_output=True, text=True)
+        assert (done.returncode, done.stderr) == (0, "")
+        return done.stdout.splitlines()
+
+    return tmp_path / "site", started
+
+
+def test_the_first_start_of_the_wheel_compiles_no_macros_and_no_course_unless_they_were_changed(unpacked):
+    site, started = unpacked
+    assert started() == ["[] False", "[]"]
+    folder = site / "cramhy_runtime" / "tutorials" / "cram_my_beginner_tutorial" / "src"
+    cut = folder / "__pycache__" / f"package.hy.{sys.implementation.cache_tag}.cramhy"
+    cut.write_bytes(cut.read_bytes()[:-10])
+    (folder / "conditions.hy").write_bytes((folder / "conditions.hy").read_bytes() + b";; mine\n")
+    (site / "cramhy" / "cpm.hy").write_bytes((site / "cramhy" / "cpm.hy").read_bytes() + b";; mine\n")
+    first = started()
+    assert "False" not in first[0] and "is damaged" in first[0] and "was made from something else" in first[0]
+    assert first[1] == "[]", "what was changed was compiled for the course, and kept"
+    assert started() == ["[] False", "[]"]
+
+
 def test_the_wheel_tells_jupyter_of_the_kernel(wheel):
     description = json.loads(file_called(wheel, f".data/data/{KERNEL}"))
     assert description["argv"][:5] == ["python", "-m", "cramhy_runtime.cli", "jupyter", "kernel"]

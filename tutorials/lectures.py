@@ -103,7 +103,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--png", type=Path, default=Path("turtle.png"), help="where the turtle's paper is written")
     parser.add_argument("--seed", type=int, default=None, help="shuffle the order of tasks, reproducibly")
-    parser.add_argument("--backend", choices=["threads", "greenlet"], default="threads")
+    parser.add_argument("--backend", choices=["auto", "threads", "greenlet"], default="auto")
     options = parser.parse_args()
     from cramhy_runtime.cli import program
     from cramhy_runtime.repl.console import Console

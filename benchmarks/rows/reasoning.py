@@ -41,12 +41,17 @@ def define(name, clauses):
     fact_groups.define_fact_group(read(name), None, [read(clause) for clause in clauses])
 
 
-def first(name, clauses, goal):
-    """Work that asks for the first answer to ``goal``."""
+def define_lists():
+    define("lists", LISTS)
+
+
+def first(name, clauses, goal, before=lambda: None):
+    """Work that asks for the first answer to ``goal``. ``before`` defines what the clauses call."""
 
     def prepare(session):
         from cramhy_runtime.prolog import query
 
+        before()
         define(name, clauses)
         asked = read(goal)
 
@@ -120,6 +125,7 @@ def first_query(arguments):
                 begin = time.process_time()
                 query.prolog(asked)
                 spent += time.process_time() - begin
+                fact_groups.remove_fact_group(read(f"group-{name}"))
             return spent
 
         return work
@@ -152,7 +158,7 @@ ROWS = [
     Row("the same, with a pair of bound arguments", first_query("n700 m3 ?i"), 1, 210, "ms", slow=True),
     Row("findall over own member of 100", collected("lists", LISTS, *GOALS["own member 100"]), 20, 83, others=peers.swi("own member 100")),
     Row("append of 10,000 to a list", first("lists", LISTS, f"(app {LONG} (1) ?c)"), 1, 7.7, "ms", others=peers.swi("append 10000")),
-    Row("the zebra puzzle", first("zebra-puzzle", [*LISTS, *ZEBRA], GOALS["zebra"][0]), 1, 10.9, "ms", others=peers.swi("zebra")),
+    Row("the zebra puzzle", first("zebra-puzzle", ZEBRA, GOALS["zebra"][0], define_lists), 1, 10.9, "ms", others=peers.swi("zebra")),
     Row("naive reverse of 30", first("lists", LISTS, GOALS["nrev 30"][0]), 3, others=peers.swi("nrev 30")),
     Row("three-way join of 200 facts", collected("edges", edges(), *GOALS["join"]), 1, unit="ms", others=peers.swi("join")),
     Row("a fact by its first argument", collected("edges", edges(), *GOALS["edges of"]), 100, others=peers.swi("edges of")),

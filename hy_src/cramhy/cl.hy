@@ -2,9 +2,7 @@
 
 Each is what the standard says that it expands into; see the section of ANSI in its comment where that is not plain."
 
-(eval-when-compile
-  (require cramhy.operators [defoperator])
-  (require hyrule [ncut unless]))
+(eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *
         cramhy_runtime.languages.commonlisp.compiler.compilation_unit [duplicate-keys mention-type])
 
@@ -264,7 +262,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 ;; ---------------------------------------------------------------------------------------------------------- definitions
 
 (defn check-name [name operator valid kind]
-  (unless valid
+  (when (not valid)
     (error "The NAME argument to ~A, ~S, is not a ~A." operator name kind)))
 
 (defn function-name? [name]
@@ -423,7 +421,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 
 (defoperator with-input-from-string [spec #* body]
   (setv #(variable string #* options) spec)
-  (setv options (dict (zip (lfor option (ncut options ::2) option.name) (ncut options 1::2))))
+  (setv options (dict (zip (lfor option (cut options None None 2) option.name) (cut options 1 None 2))))
   (setv index (.get options "INDEX"))
   (setv stream `(make-string-input-stream ~string ~(.get options "START" 0) ~(.get options "END")))
   (if (is index None)

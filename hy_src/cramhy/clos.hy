@@ -1,8 +1,6 @@
 "The macros of CLOS, conditions and structures: they take definitions apart and hand them to the runtime."
 
-(eval-when-compile
-  (require cramhy.operators [defoperator])
-  (require hyrule [ncut unless]))
+(eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *)
 (import cramhy_runtime.languages.commonlisp.syntax.macros [mentions])
 
@@ -13,7 +11,7 @@
   (setv items (list items))
   (when (% (len items) 2)
     (raise (ValueError "an option has no value.")))
-  (lfor #(key value) (zip (ncut items ::2) (ncut items 1::2)) [(symbol-name key) value]))
+  (lfor #(key value) (zip (cut items None None 2) (cut items 1 None 2)) [(symbol-name key) value]))
 
 (defn quoted-list [items]
   `(quote ~(list-from items)))
@@ -46,7 +44,7 @@
      :documentation ~(only "DOCUMENTATION")))
 
 (defn initargs-form [arguments]
-  `(list ~@(lfor #(key value) (zip (ncut arguments ::2) (ncut arguments 1::2))
+  `(list ~@(lfor #(key value) (zip (cut arguments None None 2) (cut arguments 1 None 2))
              `(list (quote ~key) (lambda [] ~value) (quote ~value)))))
 
 (defn function-form [form]
@@ -87,7 +85,7 @@
   (setv forms (list forms) qualifiers [])
   (while (and forms (not (listp (get forms 0))) (is-not (get forms 0) None))
     (.append qualifiers (.pop forms 0)))
-  (unless forms
+  (when (not forms)
     (raise (ValueError "the lambda list is missing.")))
   #(qualifiers (get forms 0) (cut forms 1 None)))
 
@@ -130,16 +128,27 @@
   (setv block (if (listp name) name.cdr.car name) #(plain _) (plain-parameters lambda-list))
   (setv #(_ declarations forms) (body-parts body))
   (.append declarations `(declare (ignorable ~@(required-names plain))))  ; their classes choose the method, which is a use
-  (if (mentions (list-from body) #{(sym "CALL-NEXT-METHOD") (sym "NEXT-METHOD-P")})
+  (setv required (required-names plain) all-required (= (list (elements plain)) required))
+  (when (not (mentions (list-from body) #{(sym "CALL-NEXT-METHOD") (sym "NEXT-METHOD-P")}))
+    (return #(`(lambda ~plain ~@declarations (block ~block ~@forms)) None)))
+  (setv next (gensym "NEXT") rest (gensym "ARGUMENTS"))
+  (if (and all-required (= (len (set required)) (len required)))  ; the next method gets what this one got, which nobody changes
       (do
-        (setv next (gensym "NEXT") rest (gensym "ARGUMENTS"))
+        (setv given (lfor variable required (gensym (symbol-name variable))))
+        #(`(lambda [~next ~@given]
+             (flet [[call-next-method [&rest ~rest] (%next-values ~next ~rest ~@given)]
+                    [next-method-p [] (%next-method-exists ~next)]]
+               (let [~@(lfor #(variable value) (zip required given) (list-from [variable value]))]
+                 ~@declarations
+                 (block ~block ~@forms))))
+          :directly))
+      (do
         #(`(lambda [~next ~@(elements plain)]
              ~@declarations
              (flet [[call-next-method [&rest ~rest] (apply ~next ~rest)]
                     [next-method-p [] (%next-method-exists ~next)]]
                (block ~block ~@forms)))
-          True))
-      #(`(lambda ~plain ~@declarations (block ~block ~@forms)) None)))
+          True))))
 
 (defoperator defmethod [name #* forms]
   (setv #(qualifiers lambda-list body) (method-parts forms))
@@ -250,11 +259,11 @@
 
 (defn structure-slot [slot]
   (setv #(name #* rest) (if (listp slot) slot [slot]))
-  (unless (is-symbol name)
+  (when (not (is-symbol name))
     (program-error "in DEFSTRUCT, ~S is not a legal slot description: a slot is written NAME or (NAME INITFORM :TYPE TYPE :READ-ONLY T)." slot))
   (setv initform (if rest [(get rest 0)] []) options (dict (options-of (cut rest 1 None))))
   (for [option options]
-    (unless (in option ["TYPE" "READ-ONLY"])
+    (when (not (in option ["TYPE" "READ-ONLY"]))
       (error "~S: unknown slot option :~A of the slot ~S; it may have :type and :read-only." (sym "DEFSTRUCT") option name)))
   `(%structure-slot (quote ~name)
      :initform ~(if initform `(lambda [] ~(get initform 0)) None)
@@ -288,7 +297,7 @@
 
 (defoperator defstruct [head #* slots]
   (setv #(name #* options) (if (listp head) head [head]) slots (list slots))
-  (unless (is-symbol name)
+  (when (not (is-symbol name))
     (error "~S: ~S is not a symbol." (sym "DEFSTRUCT") name))
   (setv documentation (if (and slots (isinstance (get slots 0) str)) (.pop slots 0) None))
   (check-structure-options name (lfor option options (symbol-name (if (listp option) option.car option))))

@@ -4,9 +4,7 @@ functions and of goals are in `plans.hy`.
 A branch becomes a function of no arguments, and the operator a call of a function of `cramhy_runtime.cpl` with the branches.
 What the operators mean stands there, and in the sections of cpl.md that the comments name."
 
-(eval-when-compile
-  (require cramhy.operators [defoperator])
-  (require hyrule [unless]))
+(eval-when-compile (require cramhy.operators [defoperator]))
 (import itertools
         cramhy.operators *
         cramhy_runtime.cpl.logging [check-constant-tags]
@@ -90,12 +88,12 @@ What the operators mean stands there, and in the sections of cpl.md that the com
   (defn no-clause [why]
     (wrong "A clause is written (plan-failure (failure) form*) or ((or type*) (failure) form*)."
            "WITH-FAILURE-HANDLING" clause why))
-  (unless (and (listp clause) (listp clause.cdr) (or (is clause.cdr.car None) (listp clause.cdr.car)))
+  (when (not (and (listp clause) (listp clause.cdr) (or (is clause.cdr.car None) (listp clause.cdr.car))))
     (no-clause "a clause is a list of a type, a parameter list and forms."))
   (setv named clause.car parameters (elements clause.cdr.car) unions (and (listp named) (is named.car (sym "OR"))))
   (setv types (if unions (elements named.cdr) [named]))
   (for [each types]
-    (unless (or (is-symbol each) (is-code each))
+    (when (not (or (is-symbol each) (is-code each)))
       (no-clause (if unions "OR takes names of condition types." "its type must be a name or (OR name*).")))
     (when (is-symbol each) (mention-type each)))
   (setv required (list (itertools.takewhile (fn [name] (not (.startswith (symbol-name name) "&"))) parameters)))
@@ -104,12 +102,12 @@ What the operators mean stands there, and in the sections of cpl.md that the com
   types)
 
 (defn handlers [clauses again]
-  "(list (list type function) ...) for the clauses: one for each type of an (or ...), and one for types named twice, the last."
+  "type function ... for the clauses: one pair for each type of an (or ...), and one for types named twice, the last."
   (setv found {})
   (for [clause (elements clauses)]
     (setv types (failure-types clause) #(_ variables #* body) clause)
     (setv #(declarations forms) (split-declarations body))
-    (setv body `(~@declarations (flet [[retry [] (funcall ~again)]] ~@forms)))
+    (setv body `(~@declarations (flet [[retry [] (%retry ~again)]] ~@forms)))
     (setv condition (gensym "CONDITION"))
     (for [each types]
       (when (in each found)
@@ -119,22 +117,22 @@ What the operators mean stands there, and in the sections of cpl.md that the com
             (if (and (is variables.cdr None) (not (.startswith (symbol-name variables.car) "&")))
                 `(lambda [~variables.car ~again] ~@body)
                 `(lambda [~condition ~again] (funcall (lambda ~variables ~@body) ~condition))))))
-  (lfor #(each function) (.items found) `(list ~(if (is-code each) each `(quote ~each)) ~function)))
+  (lfor #(each function) (.items found) part [(if (is-code each) each `(quote ~each)) function] part))
 
 (defoperator with-failure-handling [clauses #* body]
   (setv again (gensym "RETRY"))
-  (unless (or (is clauses None) (listp clauses))
+  (when (not (or (is clauses None) (listp clauses)))
     (wrong "It is written (with-failure-handling ((plan-failure (failure) form*)) form*)." "WITH-FAILURE-HANDLING" clauses
            "the first part is a list of clauses."))
   `(block nil
      (%with-failure-handling
-       (list ~@(handlers clauses again))
-       (lambda [~again] (flet [[retry [] (funcall ~again)]] ~@body)))))
+       (lambda [~again] (flet [[retry [] (%retry ~again)]] ~@body))
+       ~@(handlers clauses again))))
 
 (defoperator with-retry-counters [counters #* body]
   (setv names [])
   (for [counter (elements counters)]
-    (unless (and (listp counter) (is-symbol counter.car) (listp counter.cdr) (is counter.cdr.cdr None))
+    (when (not (and (listp counter) (is-symbol counter.car) (listp counter.cdr) (is counter.cdr.cdr None)))
       (wrong "It is written (with-retry-counters ((counter 2)) form*)." "WITH-RETRY-COUNTERS" counter
              "a counter is a list of a name and a form that gives its first value."))
     (when (in counter.car names)
@@ -158,7 +156,7 @@ What the operators mean stands there, and in the sections of cpl.md that the com
            operator part why))
   (when (or (not (is-symbol name)) (is name None))
     (no-policy name "its name must be a symbol."))
-  (unless (or (is parameters None) (listp parameters))
+  (when (not (or (is parameters None) (listp parameters)))
     (no-policy parameters "after the name comes the list of its parameters."))
   (setv documentation None clauses {} store (gensym "STORE"))
   (setv variables (lfor part (elements parameters) (if (listp part) part.car part)))
@@ -191,7 +189,7 @@ What the operators mean stands there, and in the sections of cpl.md that the com
      (%define-policy (quote ~name) (quote ~parameters) ~documentation ~clauses)))
 
 (defn under-policy [operator policy parameters body]
-  (unless (or (is parameters None) (listp parameters))
+  (when (not (or (is parameters None) (listp parameters)))
     (wrong (+ "It is written (" (.lower operator) " policy (parameter*) form*).") operator parameters
            "after the policy comes the list of its parameters."))
   `(%with-policy ~policy (lambda [] (list ~@(elements parameters))) (quote ~parameters) (lambda [] ~@body)))
@@ -205,7 +203,7 @@ What the operators mean stands there, and in the sections of cpl.md that the com
 (defn nested [operator inner policies body]
   (setv form `(progn ~@body))
   (for [part (reversed (elements policies))]
-    (unless (and (listp part) (listp part.cdr) (is part.cdr.cdr None))
+    (when (not (and (listp part) (listp part.cdr) (is part.cdr.cdr None)))
       (wrong (+ "It is written (" (.lower operator) " ((policy (parameter*))*) form*).") operator part
              "each policy is a list of it and the list of its parameters."))
     (setv form `(~inner ~part.car ~part.cdr.car ~form)))
@@ -222,11 +220,11 @@ What the operators mean stands there, and in the sections of cpl.md that the com
 (defoperator log-event [#* clauses]
   (setv parts {})
   (for [clause clauses]
-    (unless (and (listp clause) (in clause.car (map sym [":CONTEXT" ":DISPLAY" ":TAGS"])) (not-in clause.car.name parts))
+    (when (not (and (listp clause) (in clause.car (map sym [":CONTEXT" ":DISPLAY" ":TAGS"])) (not-in clause.car.name parts)))
       (wrong "It is written (log-event (:context control argument*) (:display control argument*) (:tags tag*))." "LOG-EVENT" clause
              "it is none of the clauses :CONTEXT, :DISPLAY and :TAGS, or the second of its name."))
     (setv (get parts clause.car.name) (elements clause.cdr)))
-  (unless (.get parts "TAGS")
+  (when (not (.get parts "TAGS"))
     (error (CompileError "Missing (:TAGS ...) clause.")))
   (check-constant-tags (get parts "TAGS"))
   (defn formatted [part]

@@ -1,8 +1,6 @@
 "The macros of CRAM-UTILITIES: lazy lists and pattern variables (cpl.md 13)."
 
-(eval-when-compile
-  (require cramhy.operators [defoperator])
-  (require hyrule [ncut]))
+(eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *
         cramhy_runtime.ground.packages [keyword]
         cramhy-runtime.utilities.patterns [var-name])
@@ -110,7 +108,7 @@
 
 (defoperator choose [tag #* options]
   "`(choose tag :parameters (x y) :generators (form-x form-y) :body form)`: a tag that computes each parameter by its generator."
-  (setv options (dict (zip (lfor key (ncut options ::2) key.name) (ncut options 1::2))))
+  (setv options (dict (zip (lfor key (cut options None None 2) key.name) (cut options 1 None 2))))
   (setv parameters (elements (.get options "PARAMETERS")) generators (elements (.get options "GENERATORS")))
   (when (!= (len parameters) (len generators))
     (error "~S has ~D parameters and ~D generators; each parameter needs one." tag (len parameters) (len generators)))

@@ -4,10 +4,10 @@ An operator gets the forms of its call as they were read, and returns a form mad
 are those of Common Lisp or else of the Lisp package named by the file's `package`; `%name` belongs to CRAMHY, where the
 runtime's helpers are, and `pkg::name` to that package. Lists in brackets are lists. `(gensym \"X\")` makes a fresh variable.
 
-A file requires `defoperator`, and the macros of `hyrule`, within `eval-when-compile`. When a compiled file requires something, Hy looks
-at the source of every frame of the stack, which takes 5 ms, and the prompt loads a dozen of these files."
+A file requires `defoperator` within `eval-when-compile`. When a compiled file requires something, Hy looks at the source of every frame of
+the stack, which takes 5 ms, and the prompt loads a dozen of these files. They use no macro of `hyrule`: Python would compile all of it at
+the first start, which takes seconds."
 
-(eval-when-compile (require hyrule [ncut]))
 (import cramhy_runtime.languages.commonlisp.syntax.body_parts [body-parts]
         cramhy_runtime.languages.commonlisp.syntax.operator_macros [define-operator malformed]
         cramhy_runtime.ground.data [Cons Keyword Symbol :as LispSymbol list-from lisp-list]
@@ -48,7 +48,7 @@ at the source of every frame of the stack, which takes 5 ms, and the prompt load
   "The options `:key form ...` of an operator as a dictionary of forms by the names of the keys."
   (when (% (len options) 2)
     (raise (ValueError "each of its options is a keyword and a value.")))
-  (setv table (dict (zip (ncut options ::2) (ncut options 1::2))))
+  (setv table (dict (zip (cut options None None 2) (cut options 1 None 2))))
   (for [key table]
     (when (or (not (isinstance key Keyword)) (not-in key.name known))
       (error (CompileError "~A has no option ~S: it has ~{~S~^, ~}." operator key (list-from (lfor name known (sym (+ ":" name))))))))

@@ -1,8 +1,6 @@
 "The macros of PYTHON (nickname PY): importing modules, chains of attributes and methods, Python's `for` and `with`."
 
-(eval-when-compile
-  (require cramhy.operators [defoperator])
-  (require hyrule [ncut]))
+(eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *
         cramhy_runtime.ground.conditions [program-error])
 
@@ -11,7 +9,7 @@
 (defoperator import [module #* options]
   "`(py:import numpy :as np)`: the module's package, with a nickname."
   (setv options (list options))
-  (when (or (% (len options) 2) (any (gfor option (ncut options ::2) (is-not option (sym ":AS")))))
+  (when (or (% (len options) 2) (any (gfor option (cut options None None 2) (is-not option (sym ":AS")))))
     (program-error "PY:IMPORT takes a module and :AS with a name, not ~S." (list-from options)))
   `(import-module (quote ~module) (quote ~(if options (get options 1) None))))
 

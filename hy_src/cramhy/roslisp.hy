@@ -3,9 +3,7 @@
 Topics of log lines and field paths are not evaluated, so they become constants here; what they mean stands in
 `cramhy_runtime.ros`."
 
-(eval-when-compile
-  (require cramhy.operators [defoperator])
-  (require hyrule [ncut unless]))
+(eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *
         cramhy_runtime.ground.condition_types [shown])
 
@@ -16,12 +14,12 @@ Topics of log lines and field paths are not evaluated, so they become constants 
 (defn fields-and-values [arguments]
   "(list of the field specs, list of the value forms); a last spec without a value gets nil."
   (setv arguments (if (% (len arguments) 2) [#* arguments None] (list arguments)))
-  #((list-from (ncut arguments ::2)) (ncut arguments 1::2)))
+  #((list-from (cut arguments None None 2)) (cut arguments 1 None 2)))
 
 (defn check-path [path]
   "Complain of a field path that is none, where it is written."
-  (unless (or (isinstance path LispSymbol)
-              (and (listp path) (all (gfor name path (isinstance name LispSymbol)))))
+  (when (not (or (isinstance path LispSymbol)
+                  (and (listp path) (all (gfor name path (isinstance name LispSymbol))))))
     (raise (ValueError (+ "a field is named by a symbol, such as :x, or from the inside out by a list of them, such as (:x :position), "
                           f"but not by {(shown path)}.")))))
 
@@ -73,7 +71,7 @@ Topics of log lines and field paths are not evaluated, so they become constants 
 (defn log-form [level arguments]
   "A log line: topic, perhaps a condition, format control, arguments. Arguments are evaluated only if it is printed."
   (setv #(topic first #* rest) arguments)
-  (unless (or (isinstance first str) rest)
+  (when (not (or (isinstance first str) rest))
     (raise (ValueError (+ "what stands between the topic and a literal text is a condition, and here no text follows. "
                           f"A text that is computed is an argument: (ros-... topic \"~a\" {(shown first)})."))))
   (setv condition (if (isinstance first str) True first))
@@ -99,7 +97,7 @@ Topics of log lines and field paths are not evaluated, so they become constants 
   (when (or (not (listp options)) (= (% (len (elements options)) 2) 0))
     (raise (ValueError "its first part is a list: the name of the node, then keywords and values in turn.")))
   (setv #(name #* keywords) options spin None rest [])
-  (for [#(key value) (zip (ncut keywords ::2) (ncut keywords 1::2))]
+  (for [#(key value) (zip (cut keywords None None 2) (cut keywords 1 None 2))]
     (if (is key (sym ":SPIN")) (setv spin value) (.extend rest [key value])))
   `(%with-ros-node (list ~name ~@rest) ~spin (lambda [] ~@body)))
 

@@ -10,7 +10,6 @@ This module stands below all rooms, because each of them may miss an extra.
 
 from __future__ import annotations
 
-import json
 import os
 import shlex
 import sys
@@ -54,6 +53,7 @@ def _requirement(extra):
 
 def _direct_url():
     """What pip noted of where cramhy came from; empty for an index. Code that runs out of a clone without pip counts as editable."""
+    import json
     from importlib import metadata
 
     try:

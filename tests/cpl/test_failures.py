@@ -220,6 +220,52 @@ def test_hooks_of_failure_handling_begin_and_end_once():
     assert events == [["PLAN-FAILURE", "ERROR"], ["PLAN-FAILURE"], "id", "id"]  # top-level is such a form too
 
 
+@pytest.mark.parametrize("begins", [True, False])
+def test_hooks_of_a_handler_get_the_id_of_the_form_and_nil_where_no_hook_gave_one(begins):
+    events = []
+    if begins:
+        hooks.on_with_failure_handling_begin.add(lambda names: "id", "test")
+    hooks.on_with_failure_handling_handled.add(lambda run: events.append(("handled", run)), "test")
+    hooks.on_with_failure_handling_rethrown.add(lambda run: events.append(("rethrown", run)), "test")
+
+    def body():
+        handling((cpl.SimplePlanFailure, lambda failure, retry: None), body=lambda: cpl.fail("no"))
+
+    try:
+        assert plan(lambda: handling((cpl.SimplePlanFailure, give("done")), body=body)) == "done"
+    finally:
+        for hook in (hooks.on_with_failure_handling_begin, hooks.on_with_failure_handling_handled, hooks.on_with_failure_handling_rethrown):
+            hook.remove("test")
+    run = "id" if begins else None
+    assert events == [("handled", run), ("rethrown", run), ("handled", run)]
+
+
+def test_a_form_that_is_left_from_within_a_handler_of_another_tries_again_afresh():
+    """Its exit is one object for all its attempts: nothing of an earlier one is left in it."""
+    attempts = []
+
+    def body(retry):
+        attempts.append(len(attempts))
+        if len(attempts) < 3:
+            try:
+                retry()
+            finally:
+                assert handling((cpl.SimplePlanFailure, give("cleaned")), body=lambda: cpl.fail("in cleanup")) == "cleaned"
+        return "third"
+
+    form = []
+
+    def outer():
+        def inner(retry):
+            form.append(retry)
+            return body(retry)
+
+        return cpl.with_failure_handling([(cpl.SimplePlanFailure, give("wrong"))], inner)
+
+    assert plan(outer) == "third"
+    assert len(set(map(id, form))) == 1 and form[0].__traceback__ is None and form[0].__context__ is None
+
+
 def test_a_counter_allows_exactly_so_many_retries_and_can_be_reset():
     counter = cpl.RetryCounter(lambda: 2)
     left = []

@@ -7,7 +7,7 @@ import operator
 import pytest
 
 from cramhy_runtime import cpl
-from cramhy_runtime.cpl.fluents.fluents import CachedNet
+from cramhy_runtime.cpl.fluents.nets import CachedNet
 
 
 @pytest.mark.parametrize(

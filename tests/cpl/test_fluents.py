@@ -6,7 +6,8 @@ import pytest
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl.fluents import operators as op
-from cramhy_runtime.cpl.fluents.fluents import CachedNet, get_update_callback
+from cramhy_runtime.cpl.fluents.fluents import get_update_callback
+from cramhy_runtime.cpl.fluents.nets import CachedNet
 from cramhy_runtime.ground.conditions import Error
 from cramhy_runtime.ground.data import lisp_list
 from cramhy_runtime.ground.packages import keyword

@@ -404,7 +404,7 @@ def test_task_variables_are_inherited_and_ordinary_ones_are_not():
             plan(lambda: (cpl.par(branch, branch), seen.append((ordinary.value, inherited.value))))
             assert (ordinary.value, inherited.value) == ("bound", "bound")
     finally:
-        task_variables._declared.pop(inherited)
+        task_variables.declared.pop(inherited)
     assert seen == [("global", "bound")] * 3 and inherited.value == "global"
 
 
@@ -414,7 +414,7 @@ def test_an_init_function_computes_a_task_variable_from_the_parents_value():
     try:
         assert plan(lambda: cpl.par(lambda: cpl.par(lambda: depth.value))) == 3
     finally:
-        task_variables._declared.pop(depth)
+        task_variables.declared.pop(depth)
 
 
 def test_outside_of_plans_there_is_no_current_task_but_a_dummy_can_be_had():

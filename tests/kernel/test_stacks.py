@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.kernel.backends import threads
+from cramhy_runtime.kernel.backends import futexes, threads
 from cramhy_runtime.kernel.errors import NoStack
 
 
@@ -138,3 +138,50 @@ def test_where_processors_cannot_be_chosen_everything_goes_on_without(start, mon
     monkeypatch.setattr(threads, "_affinity", None)
     start()
     assert kernel.spawn(lambda: kernel.sleep(1) or "woken").join() == "woken"
+
+
+def test_many_threads_ask_once_for_a_wide_table_of_those_that_wait(start, backend, monkeypatch):
+    if backend != "threads":
+        pytest.skip("greenlets wait nowhere")
+    asked = []
+
+    class Table(futexes.Table):
+        def widen(self):
+            asked.append(threads._thread._count())
+            return super().widen()
+
+    start()
+    monkeypatch.setattr(threads, "_idle", type(threads._idle)())
+    monkeypatch.setattr(threads, "_table", Table())
+    monkeypatch.setattr(threads, "MANY", threads._thread._count() + 5)
+    tasks = [kernel.spawn(kernel.park, "the end") for _ in range(20)]
+    kernel.settle()
+    assert asked == [threads.MANY]
+    for task in tasks:
+        kernel.unpark(task)
+        task.join()
+    assert all(task.dead and task.exception is None for task in tasks)
+
+
+@pytest.mark.parametrize("system", ["win32", "darwin"])
+def test_other_systems_have_no_table_to_widen(monkeypatch, system):
+    monkeypatch.setattr(futexes.sys, "platform", system)
+    table = futexes.Table()
+    assert table.widen() is False and table.wide
+
+
+def test_the_pool_keeps_few_threads_when_the_kernel_has_stopped(start, backend, monkeypatch):
+    if backend != "threads":
+        pytest.skip("each kernel has greenlets of its own")
+    monkeypatch.setattr(threads, "_idle", type(threads._idle)())
+    monkeypatch.setattr(threads, "KEEP_AFTERWARDS", 3)
+    for _ in range(2):
+        start()
+        tasks = [kernel.spawn(kernel.park, "the end") for _ in range(12)]
+        kernel.settle()
+        for task in tasks:
+            kernel.unpark(task)
+            task.join()
+        assert len(threads._idle) == 12
+        kernel.stop()
+        assert len(threads._idle) == 3

@@ -214,9 +214,32 @@ kernel.yield_()
 
 
 def test_loading_the_kernel_does_not_load_greenlet():
-    script = "import sys; from cramhy_runtime import kernel; kernel.start(); print('greenlet' in sys.modules)"
+    script = "import sys; from cramhy_runtime import kernel; kernel.start(backend='threads'); print('greenlet' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
     assert done.stdout == "False\n"
+
+
+@pytest.mark.parametrize("installed", [True, False])
+def test_greenlets_are_the_back_end_where_they_are_installed(installed):
+    """Of a kernel, a session, a plan in Python and a test of a plan, if nothing else is said."""
+    pytest.importorskip("greenlet")
+    script = f"""
+import sys
+if not {installed}:
+    sys.modules["greenlet"] = None
+from cramhy_runtime import cpl, kernel, testing
+from cramhy_runtime.repl.session import Session
+def told():
+    print(type(kernel.active().backend).__name__)
+kernel.start()
+told()
+cpl.run(told, clock="virtual")
+testing.run(told)
+Session()
+told()
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+    assert (done.stdout.split(), done.stderr) == (["GreenletBackend" if installed else "ThreadBackend"] * 4, "")
 
 
 def test_without_greenlet_the_back_end_says_what_to_install():

@@ -160,5 +160,5 @@ def test_every_clock_knows_the_moment_of_its_zero(start):
 def test_an_unknown_clock_or_back_end_is_refused():
     with pytest.raises(ValueError, match='There is no clock "sundial". Choose "virtual" or "wall".'):
         kernel.Kernel(clock="sundial")
-    with pytest.raises(ValueError, match='There is no back end "steam". Choose "threads" or "greenlet".'):
+    with pytest.raises(ValueError, match='There is no back end "steam". Choose "auto", "threads" or "greenlet".'):
         kernel.Kernel(backend="steam")

@@ -196,5 +196,5 @@ def test_a_file_keeps_its_lambda_expressions(lisp, tmp_path):
     lisp("(function-lambda-expression #'lambda-file::from-file)")
     assert lisp.values[0].replace("LAMBDA-FILE::", "").split() == "(LAMBDA (A &KEY B) (BLOCK FROM-FILE (LIST A B)))".split()
     assert f"Source file: {path}:4\n" in lisp("(describe 'lambda-file::from-file)")
-    assert "def from_file(a, *Lkeys, **Lpython):" in lisp("(disassemble 'lambda-file::from-file)")
+    assert "def from_file(a, *Lgiven, b=None, **Lpython):" in lisp("(disassemble 'lambda-file::from-file)")
     lisp("(delete-package :lambda-file)")

@@ -66,7 +66,7 @@ class RegisteredWarnings:
     """``with RegisteredWarnings() as given:`` collects the texts of warnings and muffles them."""
 
     def __enter__(self):
-        from cramhy_runtime.ground.conditions import Warning_, _handlers, muffle_warning
+        from cramhy_runtime.ground.conditions import HANDLERS, Warning_, muffle_warning
 
         texts = []
 
@@ -74,7 +74,7 @@ class RegisteredWarnings:
             texts.append(condition.report())
             muffle_warning(condition)
 
-        self.binding = binding(_handlers, ([(Warning_, note)], _handlers.value))
+        self.binding = binding(HANDLERS, ([(Warning_, note)], HANDLERS.value))
         self.binding.__enter__()
         return texts
 

@@ -89,3 +89,22 @@ def test_a_preferred_system_comes_from_the_path(tmp_path, monkeypatch, capsys):
             assert cli.main(["run", *words, str(tmp_path / "f.lisp")]) == status
         out, err = capsys.readouterr()
         assert shown in out + err
+
+
+@pytest.mark.parametrize("command", ["repl", "eval", "swank", "run", "test"])
+def test_each_command_takes_greenlets_where_they_are_installed(command):
+    words = [command, *{"run": ["f.lisp"], "test": ["f.lisp"]}.get(command, [])]
+    assert options.parser(words).parse_args(words).backend == "auto"
+    assert options.parser(words).parse_args([*words, "--backend", "greenlet"]).backend == "greenlet"
+
+
+def test_a_kernel_for_notebooks_runs_its_plans_on_threads(capsys):
+    words = ["jupyter", "kernel", "--backend", "greenlet"]
+    with pytest.raises(SystemExit):
+        options.parser(words).parse_args(words)
+    assert "argument --backend: invalid choice: 'greenlet' (choose from" in capsys.readouterr().err
+
+
+def test_a_parser_of_one_command_reads_it_as_the_parser_of_all_does():
+    for words in (["repl", "--hy"], ["eval", "--eval", "1"], ["view", "--port", "8"], ["ros-shims", "--shell", "fish"], ["test", "a"]):
+        assert vars(options.parser(words).parse_args(words)) == vars(options.parser().parse_args(words))

@@ -91,6 +91,84 @@ def test_code_of_another_text_is_not_read(session, kept, read):
     assert not read and loaded(session) == [8]
 
 
+def test_code_is_used_where_its_source_was_moved_to_and_knows_where_that_is(session, kept, read):
+    kept[0].write_text("(defparameter cl-user::*loaded* 7)\n\n(defun cl-user::fails (x)\n  (mapcar (lambda (y) (+ y :a)) x))")
+    loader.load_file(kept[0])
+    read.clear()
+    there = kept[0].parent / "moved"
+    kept[0].parent.rename(there.parent.with_name("another"))
+    source = there.parent.with_name("another") / "x.lisp"
+    for _ in range(2):
+        loader.load_file(source)
+        assert loader.why_not_kept(source) is None and loaded(session) == [7]
+        with pytest.raises(conditions.Condition) as caught:
+            session.evaluate_text("(cl-user::fails '(1))")
+        assert caught.value.position[:2] == (str(source), 4)
+    assert len(read) == 2
+    made_in, _ = marshal.loads(unsealed(loader.kept_path(source), loader.FIRST_LINE, loader._fingerprint(source, source.read_text())))
+    assert made_in == str(source), "so that the next load has nothing to change"
+
+
+def test_what_the_wheel_brings_is_used_where_the_user_cannot_write(session, kept, read, monkeypatch, tmp_path):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    access = os.access
+    monkeypatch.setattr(os, "access", lambda path, mode: access(path, mode) and not (mode == os.W_OK and "cache" not in Path(path).parts))
+    assert loader.kept_path(kept[0]).parent == tmp_path / "cache" / "cramhy"
+    loader.load_file(kept[0])
+    assert len(read) == 1 and loader.why_not_kept(kept[0]) is None and loaded(session) == [7]
+    kept[1].write_bytes(kept[1].read_bytes()[:-3])  # the folder cannot be written to, so that stays
+    for reads in (1, 2):
+        loader.load_file(kept[0])
+        assert len(read) == reads and loaded(session) == [7]
+    assert loader.kept_path(kept[0]).is_file()
+
+
+@pytest.fixture
+def compiling(tmp_path, monkeypatch):
+    """A folder that stands for what compiles; `stamp` of it."""
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
+    (tmp_path / "compiler").mkdir()
+    (tmp_path / "compiler").chmod(0o755)
+    (tmp_path / "compiler" / "a.py").write_text("1")
+    monkeypatch.setattr(loader, "_compiling_folders", lambda: [tmp_path / "compiler"])
+    monkeypatch.setattr(loader, "__file__", str(tmp_path / "compiler" / "loader.py"))
+    return tmp_path / "compiler", loader.stamp.__wrapped__
+
+
+def test_the_fingerprint_covers_all_folders_of_the_compiler():
+    """A folder in the compiler's folder, too, in whichever depth."""
+    compiler = Path(loader.__file__).parents[1] / "compiler"
+    assert {path.parent for path in compiler.rglob("*.py")} <= set(loader._compiling_folders())
+
+
+def test_the_fingerprint_of_cramhy_is_that_of_its_content(compiling, tmp_path, monkeypatch):
+    folder, stamp = compiling
+    first = stamp()
+    os.utime(folder / "a.py", (1e9, 1e9))
+    assert stamp() == first
+    (folder / "a.py").write_text("2")
+    changed = stamp()
+    assert changed != first
+    (folder / "b.hy").write_text("2")
+    assert stamp() not in (first, changed)
+    (folder / "b.hy").unlink()
+    (folder / "notes.txt").write_text("this compiles nothing")
+    assert stamp() == changed
+    (tmp_path / "elsewhere").mkdir()
+    folder.rename(tmp_path / "elsewhere" / "compiler")
+    monkeypatch.setattr(loader, "_compiling_folders", lambda: [tmp_path / "elsewhere" / "compiler"])
+    assert stamp() == changed
+
+
+@pytest.mark.parametrize("spoil", [lambda data: data[:40], lambda data: b"", lambda data: b"# something else\n" + data])
+def test_a_fingerprint_that_was_kept_and_is_damaged_is_made_anew(compiling, spoil):
+    folder, stamp = compiling
+    first, place = stamp(), loader.kept_path(folder / "stamp")
+    good = place.read_bytes()
+    place.write_bytes(spoil(good))
+    assert stamp() == first and place.read_bytes() == good
+
+
 def evil(path):
     """A file of code that would be valid, but for its owner."""
     path.write_bytes(sealed(loader.FIRST_LINE, LABEL, marshal.dumps([compile("1/0", "evil", "exec")])))

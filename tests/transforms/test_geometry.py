@@ -195,7 +195,7 @@ def test_rotations_that_are_not_unit_length():
         warnings.append(condition.report())
         conditions.muffle_warning(condition)
 
-    with binding(conditions._handlers, ([(conditions.Warning_, note)], conditions._handlers.value)):
+    with binding(conditions.HANDLERS, ([(conditions.Warning_, note)], conditions.HANDLERS.value)):
         assert poses.make_pose(X, double).orientation.components == (0, 0, 0, 1) and warnings == []
         assert poses.make_transform(X, double).rotation.components == (0, 0, 0, 1)
         assert len(warnings) == 1 and warnings[0].startswith("Normalized rotation component to #<")

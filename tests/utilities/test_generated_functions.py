@@ -11,6 +11,7 @@ import traceback
 
 import pytest
 
+from cramhy_runtime.kernel.reports import of_the_library
 from cramhy_runtime.ros import messages
 from cramhy_runtime.utilities.generated_functions import define_functions, generated_function
 
@@ -50,6 +51,12 @@ def test_functions_that_are_defined_together_call_each_other():
     odd = ("odd", ["n"], ["return n != 0 and even(n - 1)"])
     define_functions("parity", [even, odd], scope)
     assert scope["even"](10) and not scope["odd"](10)
+
+
+def test_reports_to_the_user_leave_generated_code_out():
+    add = generated_function("adding", "add", ["x"], ["return x + 1"], {})
+    assert of_the_library(add.__code__.co_filename)
+    assert not any(map(of_the_library, ["<repl 1>", "<stdin>", "<string>", "", "plans/first, text 1.py"]))
 
 
 def test_a_traceback_shows_the_generated_line():

@@ -11,7 +11,8 @@ import math
 import re
 from weakref import ref
 
-from cramhy_runtime.cpl.fluents.fluents import Fluent, Net, peek_value
+from cramhy_runtime.cpl.fluents.fluents import Fluent, peek_value
+from cramhy_runtime.cpl.fluents.nets import Net
 from ..cpl.hooks import on_make_fluent_hook
 from ..cpl.statuses import ALL
 from ..process_modules.modules import own_fluents

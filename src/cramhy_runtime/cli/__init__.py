@@ -2,7 +2,8 @@
 ros-shims | ros``, ``roslisp_repl``.
 
 `options` says which words there are, `servers` what a session opens to the outside, `standalone_commands` has the commands that are no
-session of Lisp's, `shims` the ROS commands, which `workspace`, `programs`, `launch`, `keyboard` and the room ``ros_tools`` carry out.
+session of Lisp's, `start_modules` the bytecode of the modules that a session starts with, `shims` the ROS commands, which `workspace`,
+`programs`, `launch`, `keyboard` and the room ``ros_tools`` carry out.
 Each command imports what it needs when it runs, so that the quick ones are quick.
 """
 
@@ -13,6 +14,7 @@ import os
 import sys
 from contextlib import ExitStack, contextmanager
 
+from . import start_modules
 from .process_environment import check_for_session, ends_if_missing, in_any_surroundings
 
 
@@ -34,12 +36,13 @@ def session(options, closings, opened=True):
     made = Session(
         time=time_setting.decide(options.time, DEFAULT_TIMES[options.command], robot=bool(getattr(options, "ros", None))),
         seed=options.seed,
-        backend=options.backend,
+        backend="threads" if options.command == "jupyter" else options.backend,
         time_limit=options.time_limit,
         turtlesim=not (options.no_turtlesim or getattr(options, "ros", None)),
         cleanup_limit=options.cleanup_limit,
     )
     gc.enable()
+    start_modules.note()
     if options.features:
         from cramhy_runtime.languages.commonlisp.reader.dispatch_macros import add_features
 
@@ -140,11 +143,13 @@ def _main(arguments):
                 return 2
         from .options import DEFAULT_TIMES, parser
 
-        options = parser().parse_args(arguments or ["repl"])  # what Emacs types for a Lisp: its name alone
+        words = arguments or ["repl"]  # what Emacs types for a Lisp: its name alone
+        options = parser(words).parse_args(words)
         if hasattr(options, "time") and (complaint := _wrong_time()):
             print(f"cramhy: {complaint}", file=sys.stderr)
             return 2
         if options.command in DEFAULT_TIMES:
+            start_modules.install()
             gc.disable()  # looking for garbage takes a twelfth of the time that a session takes to start, and there is none
         return globals()[f"_{options.command.replace('-', '_')}"](options) or 0
     except Terminated as ended:
@@ -153,6 +158,7 @@ def _main(arguments):
         return 130
     finally:
         gc.enable()
+        start_modules.keep()
 
 
 def _wrong_time():

@@ -7,6 +7,9 @@ outside of it is off unless an option asks for it (law 9).
 from __future__ import annotations
 
 import argparse
+import functools
+import os
+import sys
 
 
 def _seconds(text):
@@ -29,6 +32,26 @@ def _features(text):
 _features.__name__ = "list of features"  # what argparse calls it in its complaint
 
 
+class _Parser(argparse.ArgumentParser):
+    """A parser that asks once how wide the terminal is. `argparse` would ask for each option, by a module that takes 5 ms to import."""
+
+    def __init__(self, **options):
+        super().__init__(**{"formatter_class": functools.partial(argparse.HelpFormatter, width=_columns() - 2), **options})
+
+
+@functools.cache
+def _columns():
+    """The width of the terminal, as `shutil.get_terminal_size` tells it."""
+    try:
+        columns = int(os.environ["COLUMNS"])
+    except (KeyError, ValueError):
+        columns = 0
+    try:
+        return columns if columns > 0 else os.get_terminal_size(sys.__stdout__.fileno()).columns or 80
+    except (AttributeError, ValueError, OSError):
+        return 80
+
+
 DEFAULT_TIMES = {"repl": "wall", "swank": "wall", "jupyter": "virtual", "run": "virtual", "eval": "virtual", "test": "virtual"}
 """The commands with a session, and the time in which it lives when nothing else is said (see ``session/time_setting.py``)."""
 
@@ -44,10 +67,16 @@ def _add_time(options, default):
 
 
 def _session_options(command):
-    options = argparse.ArgumentParser(add_help=False)
+    options = _Parser(add_help=False)
     _add_time(options, DEFAULT_TIMES[command])
     options.add_argument("--seed", type=int, default=None, help="shuffle the order of tasks, reproducibly (first come, first served)")
-    options.add_argument("--backend", choices=["threads", "greenlet"], default="threads", help="how tasks get their stacks (threads)")
+    auto = "as threads, since Jupyter's loop has the main thread" if command == "jupyter" else "as greenlets where they are installed"
+    options.add_argument(
+        "--backend",
+        choices=["auto", "threads"] if command == "jupyter" else ["auto", "threads", "greenlet"],
+        default="auto",
+        help=f"how tasks get their stacks; auto: {auto} (auto)",
+    )
     options.add_argument("--time-limit", type=float, default=None, metavar="SECONDS", help="end a form after so much plan time (no limit)")
     options.add_argument(
         "--cleanup-limit",
@@ -113,7 +142,7 @@ def _add_view(options, what, default, by_itself=None):
 
 def _opening_options(by_itself=None):
     """What lets others see the session, or the session see others. by_itself: when its page opens in a browser though nobody asked."""
-    options = argparse.ArgumentParser(add_help=False)
+    options = _Parser(add_help=False)
     options.add_argument(
         "--serve", action="store_true", help="let rostopic, rosservice ... and other programs of this user connect (nobody)"
     )
@@ -144,9 +173,40 @@ def _opening_options(by_itself=None):
     return options
 
 
-def _add_jupyter(commands, of_session):
+def _session(commands, name, help, openings=None):
+    """Add a command with a session; ``openings``: what it can open, as from `_opening_options`."""
+    return commands.add_parser(name, parents=[_session_options(name), *([openings] if openings else [])], help=help)
+
+
+def _add_repl(commands):
+    repl = _session(commands, "repl", "the REPL (also called roslisp_repl)", _opening_options("on a desktop it opens with the turtle"))
+    repl.add_argument(
+        "--hy",
+        action="store_true",
+        help="begin in plain Hy, after (require cramhy *), where (in-package ...) leads to Lisp (begin in Lisp)",
+    )
+    repl.add_argument("--quiet", action="store_true", help="begin without a banner (two lines, where somebody sits at a terminal)")
+    repl.add_argument(
+        "--swank",
+        nargs="?",
+        type=_port,
+        const=0,
+        default=None,
+        metavar="PORT",
+        help="let Emacs connect, too: M-x slime-connect. Without PORT at a free one (nobody)",
+    )
+
+
+def _add_swank(commands):
+    swank = _session(commands, "swank", "a session for Emacs: M-x slime-connect")
+    swank.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens on loopback (4005)")
+    swank.add_argument("--socket", default=None, metavar="FILE", help="listen at this Unix socket instead (at a port)")
+    swank.add_argument("--port-file", default=None, metavar="FILE", help="write the port into FILE when it listens (no file)")
+
+
+def _add_jupyter(commands):
     """``cramhy jupyter``, whose options of a session are those of its kernel."""
-    jupyter = commands.add_parser("jupyter", parents=[of_session], help="the kernel for notebooks: install it, remove it, run it")
+    jupyter = _session(commands, "jupyter", "the kernel for notebooks: install it, remove it, run it")
     jupyter.add_argument(
         "action", choices=["install", "uninstall", "kernel"], help="install: tell Jupyter of it; kernel: run it, as Jupyter does"
     )
@@ -159,8 +219,7 @@ def _add_jupyter(commands, of_session):
     )
 
 
-def _add_grading(commands):
-    """``cramhy grade`` and ``cramhy similar``."""
+def _add_grade(commands):
     grade = commands.add_parser("grade", help="grade a submission: run it in a cage, and tell what failed and how many points it gets")
     grade.add_argument("exercise", metavar="EXERCISE", help="the folder of an exercise, or the name of one of cramhy's, such as square")
     grade.add_argument("submission", metavar="SUBMISSION", help="the file that a student hands in, or the folder with the files")
@@ -173,6 +232,9 @@ def _add_grading(commands):
         default="text",
         help="what is printed: text for people, or what GitHub Classroom, Moodle's VPL or Moodle's CodeRunner reads (text)",
     )
+
+
+def _add_similar(commands):
     similar = commands.add_parser("similar", help="list pairs of submissions that are alike after renaming and reordering")
     similar.add_argument("folder", metavar="FOLDER", help="a folder with a file or a folder for each submission")
     similar.add_argument("--given", default=None, metavar="FOLDER", help="what all students were given, which does not count (nothing)")
@@ -202,6 +264,97 @@ def _percent(text):
 _percent.__name__ = "percentage"
 
 
+def _add_lsp(commands):
+    commands.add_parser("lsp", help="a language server for editors, at standard input and output")
+
+
+def _add_run(commands):
+    run = _session(commands, "run", "load a .lisp, .hy or .asd file and run it", _opening_options())
+    run.add_argument("file", help="a .lisp, .hy or .asd file")
+    run.add_argument(
+        "--picture",
+        default=None,
+        metavar="FILE",
+        help="write the turtle's paper at the end: .png or .svg; .gif or .replay.svg: the whole way (no file)",
+    )
+
+
+def _add_eval(commands):
+    _session(commands, "eval", "evaluate forms given as JSON lines", _opening_options())
+
+
+def _add_test(commands):
+    test = _session(commands, "test", "run the lisp-unit and FiveAM tests of a system, file or folder")
+    test.add_argument("path", help="a system by its name, an .asd, .lisp or .hy file, or a folder")
+    test.add_argument("--only", action="append", default=None, metavar="TEST", help="a test by its name; may be repeated (all)")
+    test.add_argument("--limit", type=float, default=60.0, metavar="SECONDS", help="end a test that takes longer (60)")
+    test.add_argument("--junit", default=None, metavar="FILE", help="write the results into FILE, too, in JUnit's XML (no file)")
+
+
+def _add_turtlesim(commands):
+    simulator = commands.add_parser("turtlesim", help="the simulator alone, for other programs to drive")
+    _add_view(simulator, "it", "no page", "on a desktop it opens with the turtle")
+    simulator.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens (a free port)")
+    _add_time(simulator, "wall")
+
+
+def _add_teleop(commands):
+    teleop = commands.add_parser("teleop", help="drive the turtle of a running session with the arrow keys")
+    teleop.add_argument("turtle", nargs="?", default="turtle1", help="which one (turtle1)")
+
+
+def _add_page(commands):
+    view = commands.add_parser("view", help="open the live page of a running session, or of a simulator of its own")
+    view.add_argument("--port", type=_port, default=None, metavar="N", help="where a simulator of its own listens (a free port)")
+    _add_time(view, "wall")
+
+
+def _add_replay(commands):
+    replay = commands.add_parser("replay", help="show a recording in the page")
+    replay.add_argument("file", metavar="FILE.mcap", help="the recording, which --record has written")
+    replay.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens (a free port)")
+
+
+def _add_shims(commands):
+    shims = commands.add_parser("ros-shims", help="roscore, rosrun, catkin_make ... as shell functions, or installed in a folder")
+    shims.add_argument("--install", metavar="FOLDER", help="write them as programs into FOLDER (print functions)")
+    shims.add_argument(
+        "--shell",
+        choices=["sh", "fish", "powershell"],
+        default=None,
+        help="whose functions; sh is for bash, zsh and dash, too (sh; on Windows powershell)",
+    )
+
+
+def _add_ros(commands):
+    ros = commands.add_parser("ros", usage="cramhy ros COMMAND [WORD ...]", help="a command of ROS: cramhy ros rostopic list")
+    ros.add_argument(
+        "ros_command",
+        metavar="COMMAND",
+        help="rostopic, rosservice, roscore, rosrun, catkin_make ..., with the words of ROS. rosrun turtlesim turtlesim_node opens the "
+        "page on a desktop, unless the variable CRAMHY_VIEW says no",
+    )
+
+
+_COMMANDS = {
+    "repl": _add_repl,
+    "swank": _add_swank,
+    "jupyter": _add_jupyter,
+    "lsp": _add_lsp,
+    "run": _add_run,
+    "eval": _add_eval,
+    "test": _add_test,
+    "grade": _add_grade,
+    "similar": _add_similar,
+    "turtlesim": _add_turtlesim,
+    "teleop": _add_teleop,
+    "view": _add_page,
+    "replay": _add_replay,
+    "ros-shims": _add_shims,
+    "ros": _add_ros,
+}
+
+
 class _Version(argparse.Action):
     """``--version`` prints the versions of cramhy, Python and Hy, which a report of a defect needs."""
 
@@ -218,75 +371,15 @@ class _Version(argparse.Action):
         parser.exit()
 
 
-def parser():
-    """The `argparse.ArgumentParser` of ``cramhy``."""
-    common, openings = {command: _session_options(command) for command in DEFAULT_TIMES}, _opening_options()
-    of_prompt = _opening_options("on a desktop it opens with the turtle")
-    main_parser = argparse.ArgumentParser(prog="cramhy", description="CRAM's robot plan language on Hy and Python.")
+def parser(words=()):
+    """The `argparse.ArgumentParser` of ``cramhy``. words: what it will parse; if they begin with a command, it knows no other one.
+
+    A prompt is there 10 ms sooner without the options of the other commands.
+    """
+    main_parser = _Parser(prog="cramhy", description="CRAM's robot plan language on Hy and Python.")
     main_parser.add_argument("--version", action=_Version)
-    commands = main_parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    repl = commands.add_parser("repl", parents=[common["repl"], of_prompt], help="the REPL (also called roslisp_repl)")
-    repl.add_argument(
-        "--hy",
-        action="store_true",
-        help="begin in plain Hy, after (require cramhy *), where (in-package ...) leads to Lisp (begin in Lisp)",
-    )
-    repl.add_argument("--quiet", action="store_true", help="begin without a banner (two lines, where somebody sits at a terminal)")
-    repl.add_argument(
-        "--swank",
-        nargs="?",
-        type=_port,
-        const=0,
-        default=None,
-        metavar="PORT",
-        help="let Emacs connect, too: M-x slime-connect. Without PORT at a free one (nobody)",
-    )
-    swank = commands.add_parser("swank", parents=[common["swank"]], help="a session for Emacs: M-x slime-connect")
-    swank.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens on loopback (4005)")
-    swank.add_argument("--socket", default=None, metavar="FILE", help="listen at this Unix socket instead (at a port)")
-    swank.add_argument("--port-file", default=None, metavar="FILE", help="write the port into FILE when it listens (no file)")
-    _add_jupyter(commands, common["jupyter"])
-    commands.add_parser("lsp", help="a language server for editors, at standard input and output")
-    run = commands.add_parser("run", parents=[common["run"], openings], help="load a .lisp, .hy or .asd file and run it")
-    run.add_argument("file", help="a .lisp, .hy or .asd file")
-    run.add_argument(
-        "--picture",
-        default=None,
-        metavar="FILE",
-        help="write the turtle's paper at the end: .png or .svg; .gif or .replay.svg: the whole way (no file)",
-    )
-    commands.add_parser("eval", parents=[common["eval"], openings], help="evaluate forms given as JSON lines")
-    test = commands.add_parser("test", parents=[common["test"]], help="run the lisp-unit and FiveAM tests of a system, file or folder")
-    test.add_argument("path", help="a system by its name, an .asd, .lisp or .hy file, or a folder")
-    test.add_argument("--only", action="append", default=None, metavar="TEST", help="a test by its name; may be repeated (all)")
-    test.add_argument("--limit", type=float, default=60.0, metavar="SECONDS", help="end a test that takes longer (60)")
-    test.add_argument("--junit", default=None, metavar="FILE", help="write the results into FILE, too, in JUnit's XML (no file)")
-    _add_grading(commands)
-    simulator = commands.add_parser("turtlesim", help="the simulator alone, for other programs to drive")
-    _add_view(simulator, "it", "no page", "on a desktop it opens with the turtle")
-    simulator.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens (a free port)")
-    _add_time(simulator, "wall")
-    teleop = commands.add_parser("teleop", help="drive the turtle of a running session with the arrow keys")
-    teleop.add_argument("turtle", nargs="?", default="turtle1", help="which one (turtle1)")
-    view = commands.add_parser("view", help="open the live page of a running session, or of a simulator of its own")
-    view.add_argument("--port", type=_port, default=None, metavar="N", help="where a simulator of its own listens (a free port)")
-    _add_time(view, "wall")
-    replay = commands.add_parser("replay", help="show a recording in the page")
-    replay.add_argument("file", metavar="FILE.mcap", help="the recording, which --record has written")
-    replay.add_argument("--port", type=_port, default=None, metavar="N", help="where it listens (a free port)")
-    shims = commands.add_parser("ros-shims", help="roscore, rosrun, catkin_make ... as shell functions, or installed in a folder")
-    shims.add_argument("--install", metavar="FOLDER", help="write them as programs into FOLDER (print functions)")
-    shims.add_argument(
-        "--shell",
-        choices=["sh", "fish", "powershell"],
-        default=None,
-        help="whose functions; sh is for bash, zsh and dash, too (sh; on Windows powershell)",
-    )
-    ros = commands.add_parser("ros", usage="cramhy ros COMMAND [WORD ...]", help="a command of ROS: cramhy ros rostopic list")
-    ros.add_argument(
-        "ros_command",
-        metavar="COMMAND",
-        help="rostopic, rosservice, roscore, rosrun, catkin_make ..., with the words of ROS. rosrun turtlesim turtlesim_node opens the "
-        "page on a desktop, unless the variable CRAMHY_VIEW says no",
-    )
+    commands = main_parser.add_subparsers(dest="command", metavar="COMMAND", required=True, prog="cramhy")
+    named = [name for name in words[:1] if name in _COMMANDS]
+    for name in named or _COMMANDS:
+        _COMMANDS[name](commands)
     return main_parser

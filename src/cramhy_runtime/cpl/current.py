@@ -5,6 +5,7 @@ from __future__ import annotations
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.active import ACTIVE
 
 from cramhy_runtime.ground import condition_types as types
 from cramhy_runtime.ground.conditions import error
@@ -16,12 +17,13 @@ if TYPE_CHECKING:
 
 def current_task() -> AbstractTask[object] | None:
     """The plan task that runs, or ``None`` outside of plans."""
-    return kernel.current().owner  # type: ignore[no-any-return]  # the kernel does not know whose its tasks are
+    running = ACTIVE.value
+    return (kernel.current() if running is None else running.current).owner  # type: ignore[no-any-return]  # the kernel knows no owners
 
 
 def inside_plan(form: object) -> AbstractTask[object]:
     """The current task. Outside of a plan it signals the error that ``form``, a name, must stand inside a plan."""
-    active = kernel.active()
+    active = ACTIVE.value
     task = None if active is None else active.current.owner
     if task is None:
         outside = types.SimpleError("'~a' form not inside a plan.", form)

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from typing import Any, Literal, Protocol, TypeVar, overload
 
 from cramhy_runtime.ground.data import Symbol
-from .fluents.fluents import Fluent, Net, ValueFluent
+from .fluents.fluents import Fluent, ValueFluent
+from .fluents.nets import Net
 from .fluents.pulse_fluents import PulseFluent
 from .tasks.tasks import AbstractTask, Task
 from .forms.named_steps import Tag

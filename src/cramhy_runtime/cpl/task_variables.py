@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _inherited: set[Symbol] = set()  # the language's own: inherited when bound
 _within_plans: set[Symbol] = set()  # those of them that a new top-level does not inherit
-_declared: dict[Symbol, Callable[..., Any] | None] = per_image({})  # the user's: init function or None; bound in every task
+declared: dict[Symbol, Callable[..., Any] | None] = per_image({})  # the user's: init function or None; bound in every task
 
 
 class TaskStateSymbol(Symbol):
@@ -82,7 +82,7 @@ def define_task_variable(
     symbol.special = True
     if symbol.value is UNBOUND:
         symbol.value = global_value
-    _declared[symbol] = None if init_function is None else function_of(init_function)
+    declared[symbol] = None if init_function is None else function_of(init_function)
     return symbol
 
 
@@ -90,14 +90,14 @@ def inherited_bindings(here, task, parent):
     """The bindings that the new ``task`` starts with, or ``None``. ``here`` is the task of the kernel that starts it, in which they are
     computed."""
     current = here.dynamic
-    if current is None and not _declared:
+    if current is None and not declared:
         return None
     stack = []
     if current is not None:
         for symbol in dict.fromkeys(entry[0] for entry in current.stack):
             if symbol in _inherited and (parent is not None or symbol not in _within_plans):
                 stack.append([symbol, symbol.value])
-    for symbol, init_function in _declared.items():
+    for symbol, init_function in declared.items():
         stack.append([symbol, symbol.value if init_function is None else init_function(task, parent, symbol.value)])
     return bindings_of(stack) if stack else None
 

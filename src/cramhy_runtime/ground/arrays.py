@@ -82,9 +82,17 @@ class LispArray:
 
 
 class SimpleArray(LispArray):
-    """An array of any rank but one that is neither adjustable nor displaced: a class of its own, since methods are found by class."""
+    """An array of any rank but one that is neither adjustable nor displaced: a class of its own, since methods are found by class.
 
-    __slots__ = ()
+    Its dimensions and its storage stay what they are. ``rows`` and ``columns`` are the dimensions of an array with two axes, 0 in others:
+    compiled code finds an element by them.
+    """
+
+    __slots__ = ("rows", "columns")
+
+    def __init__(self, dimensions, storage, element_type=True, adjustable=False):
+        super().__init__(dimensions, storage, element_type, adjustable)
+        self.rows, self.columns = self.dimensions if len(self.dimensions) == 2 else (0, 0)
 
 
 class Vector(LispArray):

@@ -51,7 +51,8 @@ def make_instance(cls: Any, *initargs: Any, **slots: Any) -> Any:
 
 def is_of_type(thing: Any, specifier: Any) -> bool:
     """Whether ``thing`` is of the type ``specifier``; false for what is no type."""
-    return PORTS.types.known(specifier) and bool(PORTS.types.predicate(specifier)(thing))
+    test = PORTS.types.test(specifier)
+    return test is not None and bool(test(thing))
 
 
 _watchers: list = []

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.images import part
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 from .data import UNBOUND, Cons
 from .dynamic import binding
-from .classes import class_name
+from .classes import class_name, find_class, when_classes_change
 from .ports import PORTS
 from .packages import Package, find_package, is_symbol, printed, sym, symbol_name
 
@@ -66,6 +67,7 @@ __all__ = [
     "UnboundVariable",
     "UndefinedFunction",
     "Warning_",
+    "matches",
 ]
 
 
@@ -86,6 +88,51 @@ def shown_with(obj, package):
     """``obj`` as ``prin1`` prints it while ``package`` is current."""
     with binding(sym("*PACKAGE*"), find_package(package)):
         return shown(obj)
+
+
+DECIDED: dict[tuple[Any, type], bool] = {}
+"""For the name of a condition class and the class of a condition whether this is of that type: it depends on nothing else."""
+
+
+def matches(condition: Condition, specifier: Any) -> bool:
+    """Whether ``condition`` is of the type ``specifier``: a Python class, a class name, or any Lisp type specifier."""
+    if isinstance(specifier, type):
+        return isinstance(condition, specifier)
+    if specifier is True:
+        return True
+    if specifier is None:
+        return False
+
+    # what names no type fits nothing: an error about it here would come to the same handler again, without end
+    test = PORTS.types.test(specifier)
+    fits = test is not None and bool(test(condition))
+    if is_symbol(specifier):
+        cls = find_class(specifier)
+        if isinstance(cls, type) and issubclass(cls, Condition):
+            DECIDED[specifier, type(condition)] = fits
+    return fits
+
+
+@when_classes_change
+def _forget_decided() -> None:
+    DECIDED.clear()
+
+
+@part
+class _OfImage:
+    """What names of classes mean differs from image to image."""
+
+    @staticmethod
+    def take() -> None:
+        return None
+
+    @staticmethod
+    def put(state: None) -> None:
+        DECIDED.clear()
+
+    @staticmethod
+    def copy(state: None) -> None:
+        return None
 
 
 class Condition(BaseException):
@@ -143,7 +190,10 @@ class SimpleCondition(Condition):
     format_arguments = None
 
     def __init__(self, format_control: object = UNBOUND, *arguments: object, **slots: object) -> None:
-        super().__init__(**slots)
+        if slots:
+            super().__init__(**slots)
+        else:
+            self.args = ()
         self.format_control = format_control
         self.format_arguments = arguments
 

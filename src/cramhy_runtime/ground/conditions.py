@@ -21,6 +21,7 @@ from cramhy_runtime.kernel.images import Cell
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, NoReturn
 from . import condition_types as types
 from .condition_types import *  # noqa: F403  the classes are this module's interface too
+from .condition_types import matches
 from .data import LispString, MultipleValues, Symbol, UNBOUND, UndefinedFunction, all_values, truth, values
 from .dynamic import bind, binding, special, unbind
 from . import plain_answers  # noqa: F401  the ports have answers from here on
@@ -33,7 +34,8 @@ from .restarts import compute_restarts, innermost_restarts, restart_case, with_c
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-_handlers = special(Symbol("*HANDLER-CLUSTERS*"), None)
+HANDLERS = special(Symbol("*HANDLER-CLUSTERS*"), None)
+"""The handlers in force: ``None``, or a pair of the innermost, a list of (type specifier, function) or a `Cluster`, and those around."""
 
 DEBUGGER_HOOK = special("*DEBUGGER-HOOK*")
 SBCL_HOOK = special(ensure_package("SB-EXT").intern("*INVOKE-DEBUGGER-HOOK*"))
@@ -71,28 +73,18 @@ def install_root(handler):
 # ---------------------------------------------------------------------------------------------------------------- handlers
 
 
-def matches(condition, specifier):
-    """Whether ``condition`` is of the type ``specifier``: a Python class, a class name, or any Lisp type specifier."""
-    if isinstance(specifier, type):
-        return isinstance(condition, specifier)
-    if specifier is True:
-        return True
-    if specifier is None:
-        return False
-
-    # what names no type fits nothing: an error about it here would come to the same handler again, without end
-    return PORTS.types.known(specifier) and PORTS.types.predicate(specifier)(condition)
-
-
 def signal_condition(condition):
     """Offer ``condition`` to the handlers, innermost first. Returns when all have declined."""
-    if truth(BREAK_ON_SIGNALS.value):
+    if BREAK_ON_SIGNALS.value is not None and truth(BREAK_ON_SIGNALS.value):
         _break_on_signal(condition)
     condition.signalled = True
-    clusters = _handlers.value
+    clusters = HANDLERS.value
     while clusters is not None:
         cluster, outer = clusters
-        _offer(condition, cluster, outer)
+        if isinstance(cluster, Cluster):
+            cluster.offer(condition, outer)
+        else:
+            _offer(condition, cluster, outer)
         clusters = outer
 
 
@@ -128,26 +120,26 @@ def _break_on_signal(condition):
 
 def _offer(condition, cluster, outer):
     # A handler runs with only the handlers outside its own cluster in force (ANSI 9.1.4).
-    if cluster.__class__ is Case:
-        cluster.offer(condition)
+    if isinstance(cluster, Cluster):
+        cluster.offer(condition, outer)
         return
     for specifier, handler in cluster:
         if matches(condition, specifier):
-            with binding(_handlers, outer):
+            with binding(HANDLERS, outer):
                 try:
                     handler(condition)
                 except (types.Condition, Exception) as raised:
-                    _raised_by_handler(raised)
+                    raised_by_handler(raised)
                     raise
 
 
-def _raised_by_handler(exception):
+def raised_by_handler(exception):
     """Ask the handlers outside now; those inside, which it passes on its way out, are not to be asked (ANSI 9.1.4)."""
     if isinstance(exception, types.Condition):
         if not exception.signalled:
             signal_condition(exception)
     elif getattr(exception, "__lisp_asked__", None) is not EVERYBODY:
-        if not _were_asked(exception, _handlers.value):
+        if not _were_asked(exception, HANDLERS.value):
             signal_condition(from_python(exception))
         try:
             exception.__lisp_asked__ = EVERYBODY
@@ -157,21 +149,46 @@ def _raised_by_handler(exception):
 
 def handler_bind(clauses, thunk):
     """Call ``thunk`` with ``clauses`` in force, a list of (type specifier, function); returns its values."""
-    outer = _handlers.value
-    cluster = (clauses, outer)
-    bind(_handlers, cluster)
+    bind(HANDLERS, (clauses, HANDLERS.value))
     try:
         return thunk()
-    except types.Condition as condition:
-        if not condition.signalled:  # Python code raised it without signalling
-            _offer(condition, clauses, outer)
-        raise
-    except Exception as exception:  # foreign: its frames are gone, now this cluster gets its turn
-        if not _were_asked(exception, cluster):
-            _offer(from_python(exception), clauses, outer)
+    except (types.Condition, Exception) as exception:
+        offer_late(exception)
         raise
     finally:
         unbind()
+
+
+def offer_late(exception):
+    """Offer ``exception``, which is about to leave the extent of the innermost handlers, to these, unless they were asked before.
+
+    Python code raised it without signalling, or it is foreign: its frames are gone, and now the handlers get their turn.
+    """
+    clusters = HANDLERS.value
+    if isinstance(exception, types.Condition):
+        if not exception.signalled:
+            _offer(exception, *clusters)
+    elif not _were_asked(exception, clusters):
+        _offer(from_python(exception), *clusters)
+
+
+class Cluster:
+    """Handlers of one form that are more than a list of (type specifier, function). `enter` puts them in force; `dynamic.unbind` ends that.
+
+    A form that is written for Python's ``try`` need not make a function of its body. It calls `offer_late` for what passes it.
+    """
+
+    __slots__ = ()
+
+    def enter(self):
+        """Put the handlers in force, inside of those that are."""
+        bind(HANDLERS, (self, HANDLERS.value))
+
+    def offer(self, condition, outer):
+        """Handle ``condition`` and leave by an exit, or return: that declines.
+
+        Code of users runs while `HANDLERS` is bound to ``outer`` (ANSI 9.1.4), and `raised_by_handler` is told what it raises.
+        """
 
 
 class HandlerExit(BaseException):
@@ -179,49 +196,6 @@ class HandlerExit(BaseException):
 
     def __init__(self, token, index, condition):
         self.token, self.index, self.condition = token, index, condition
-
-
-class Case:
-    """The handlers of a ``handler-case`` that was compiled in place, for one run of it; the token of its exit.
-
-    ``specifiers``: the list of its clauses' types. ``index``: which clause was chosen.
-    """
-
-    __slots__ = ("specifiers", "index")
-
-    def __init__(self, specifiers):
-        self.specifiers = specifiers
-
-    def offer(self, condition):
-        """Leave the form if ``condition`` is of the type of a clause."""
-        index, cell = 0, self.specifiers
-        while cell is not None:
-            if matches(condition, cell.car):
-                self.index = index
-                raise HandlerExit(self, index, condition)
-            index, cell = index + 1, cell.cdr
-
-
-def enter_case(specifiers):
-    """Put the handlers of a ``handler-case`` in force; they are undone by `dynamic.unbind`."""
-    case = Case(specifiers)
-    bind(_handlers, (case, _handlers.value))
-    return case
-
-
-def foreign_case(exception, case):
-    """Offer an exception of foreign code to the ``case`` that it passes, and let it go on."""
-    asked = exception.signalled if isinstance(exception, types.Condition) else getattr(exception, "__lisp_asked__", None) is EVERYBODY
-    if not asked:
-        _offer(from_python(exception), case, _handlers.value[1])
-    raise exception
-
-
-def caught(exit_, case):
-    """The condition for which ``case`` was left; any other exit goes on."""
-    if exit_.token is not case:
-        raise exit_
-    return exit_.condition
 
 
 def handler_case(clauses, thunk, no_error=None):
@@ -243,7 +217,7 @@ def handler_case(clauses, thunk, no_error=None):
     except HandlerExit as exit_:
         if exit_.token is not token:
             raise
-        chosen = exit_
+        chosen, exit_.__traceback__ = exit_, None  # that leads to this very frame: a circle
     else:
         if no_error is None:
             return result
@@ -261,6 +235,12 @@ def ignore_errors(thunk):
 
 def make_condition(datum, arguments=(), default=types.SimpleError):
     """The condition that the designator ``datum`` with ``arguments`` stands for (ANSI 9.1.2.1)."""
+    if datum.__class__ is str:
+        return default(datum, *arguments)
+    if datum.__class__ is Symbol:
+        cls = PORTS.classes.find(datum, False)
+        if isinstance(cls, type) and issubclass(cls, types.Condition):
+            return PORTS.classes.make(cls, *arguments)
     if isinstance(datum, types.Condition):
         return datum
     if isinstance(datum, type) and issubclass(datum, types.Condition):
@@ -283,7 +263,13 @@ def _instance(cls, arguments):
 
 def designated(datum):
     """``datum``, a designator for ``signal`` or ``warn``, which have a text of their own for others."""
-    if isinstance(datum, (str, types.Condition)) or is_symbol(datum) or callable(datum) or isinstance(datum, LispString):
+    if (
+        datum.__class__ is Symbol
+        or isinstance(datum, (str, types.Condition))
+        or is_symbol(datum)
+        or callable(datum)
+        or isinstance(datum, LispString)
+    ):
         return datum
     return error(types.SimpleTypeError("~S does not designate a condition class.", datum, datum=datum, expected_type=sym("SYMBOL")))
 
@@ -301,6 +287,11 @@ def error(datum: object, *arguments: object, hint: str | Callable[[], str] | Non
     condition = make_condition(datum, arguments)
     if hint is not None:
         condition.hint = hint
+    signal_error(condition)
+
+
+def signal_error(condition: types.Condition) -> NoReturn:
+    """What `error` does with its condition."""
     signal_condition(condition)
     if _root.value is not None:
         _root.value(condition)
@@ -489,7 +480,7 @@ def signal_exception(exception):
     Returns when nobody wanted it: then the exception is to be raised again, so that Python code above sees its own. On its way up
     it may come into Lisp again; handlers that were asked are not asked once more.
     """
-    if _were_asked(exception, _handlers.value):
+    if _were_asked(exception, HANDLERS.value):
         return
     condition = from_python(exception)
     signal_condition(condition)
@@ -503,7 +494,7 @@ def signal_exception(exception):
 def note_asked(exception):
     """The handlers in force have heard of ``exception``: it may be raised, and they are not asked as it passes them."""
     try:
-        exception.__lisp_asked__ = (_handlers.value,)
+        exception.__lisp_asked__ = (HANDLERS.value,)
     except AttributeError:
         pass
 

@@ -81,6 +81,11 @@ class SlotClasses(dict):
                 self[attribute].add(cls)
 
 
+def _effective_functions(function, count):
+    """What a call of ``function`` with ``count`` arguments calls, by the class of the first, as far as that is known and decides."""
+    return dict(function.cache) if getattr(function, "by_first_of", None) == count else {}
+
+
 def _accesses(function):
     """The pairs (class, attribute) for which ``function`` just reads or writes that attribute of an object of that class."""
     known = getattr(function, "__dict__", None)
@@ -95,7 +100,9 @@ class Symbol:
 
     ``value`` is the current dynamic value: see ``ground/dynamic.py`` for how tasks keep theirs apart.
     ``function`` is always callable; that of an undefined function signals ``undefined-function``.
-    ``reads`` and ``writes`` tell from which objects ``function`` and ``setf_function`` just read or write an attribute (`SlotClasses`).
+    ``reads`` and ``writes`` tell from which objects ``function`` and ``setf_function`` just read or write an attribute (`SlotClasses`),
+    ``keyed`` are the ways in which compiled code calls ``function`` with keywords (`ground.keyword_calls`). ``unary`` and ``binary`` are
+    tables for calls with one and two arguments, if ``function`` is generic: the function to call, by the class of the first argument.
     """
 
     __slots__ = (
@@ -111,6 +118,9 @@ class Symbol:
         "compiler_data",
         "_reads",
         "_writes",
+        "keyed",
+        "_unary",
+        "_binary",
         "__weakref__",
     )
 
@@ -125,14 +135,25 @@ class Symbol:
         self.special = False
         self.constant = False
         self.compiler_data = None
-        self._reads = self._writes = None
+        self._reads = self._writes = self.keyed = self._unary = self._binary = None
 
     def function_changed(self):
         """To be called after ``function`` or ``setf_function`` got another value."""
+        self.more_known()
+        if self.keyed is not None:
+            for calls in self.keyed.values():
+                calls.refresh()
+
+    def more_known(self):
+        """To be called after ``function`` or ``setf_function``, which is generic, found the methods for a call."""
         if self._reads is not None:
             self._reads.refresh()
         if self._writes is not None:
             self._writes.refresh()
+        for count, table in ((1, self._unary), (2, self._binary)):
+            if table is not None:
+                table.clear()
+                table.update(_effective_functions(self.function, count))
 
     @property
     def reads(self) -> SlotClasses:
@@ -145,6 +166,18 @@ class Symbol:
         if self._writes is None:
             self._writes = SlotClasses(self, "setf_function")
         return self._writes
+
+    @property
+    def unary(self) -> dict[type, Callable[..., Any]]:
+        if self._unary is None:
+            self._unary = _effective_functions(self.function, 1)
+        return self._unary
+
+    @property
+    def binary(self) -> dict[type, Callable[..., Any]]:
+        if self._binary is None:
+            self._binary = _effective_functions(self.function, 2)
+        return self._binary
 
     def __repr__(self) -> str:
         return f"{self.package.name}::{self.name}" if self.package else f"#:{self.name}"

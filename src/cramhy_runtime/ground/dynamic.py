@@ -11,6 +11,7 @@ A new task starts with the global values. Ordinary specials are not inherited (c
 from __future__ import annotations
 
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.active import ACTIVE
 from cramhy_runtime.kernel.images import copied, part
 from cramhy_runtime.kernel.typing_names import Any
 
@@ -73,7 +74,8 @@ class Bindings:
 
 def bind(symbol, value):
     """Bind ``symbol`` dynamically in the current task; undone by `unbind`."""
-    task = kernel.current()
+    running = ACTIVE.value
+    task = kernel.current() if running is None else running.current
     bindings = task.dynamic
     if bindings is None:
         bindings = task.dynamic = Bindings()
@@ -83,10 +85,11 @@ def bind(symbol, value):
 
 def unbind(count=1):
     """Undo the last ``count`` bindings of the current task."""
-    stack = kernel.current().dynamic.stack
-    for _ in range(count):
+    stack = ACTIVE.value.current.dynamic.stack
+    while count:
         symbol, old = stack.pop()
         symbol.value = old
+        count -= 1
 
 
 class binding:

@@ -156,12 +156,31 @@ def _special_text(x):
     return f"#.SB-EXT:{kind}-FLOAT-{'POSITIVE' if x > 0 else 'NEGATIVE'}-INFINITY"
 
 
+def _rounded(x, count):
+    """The text of `fixed_text` with ``count`` digits after the point, by Python's formatting; ``None`` where `digits` decides.
+
+    It decides where the float has not so many digits, and where its value is halfway between two texts, or nearly so.
+    """
+    single = _is_single(x)
+    if single:
+        x = to_single(x)
+    units = x * 10.0**count
+    if not 0.0 < units < (1 << 22 if single else 1 << 50) or abs(units % 1.0 - 0.5) < 1e-3:
+        return None
+    text = f"{x:.{count}f}"
+    return text[1:] if text[0] == "0" else text
+
+
 def fixed_text(x, width=None, fraction_digits=None, scale=None, least=None):
     """The decimal text of ``x`` >= 0 with a point and no exponent, and perhaps nothing before or after the point.
 
     ``width``: how many characters are wanted, ``fraction_digits``: how many digits after the point, ``scale``: a
     power of ten to multiply with, ``least``: least number of digits after the point. Source: SBCL's FLONUM-TO-STRING.
     """
+    if fraction_digits is not None and scale is None is least and 0 < fraction_digits < 16:
+        quick = _rounded(x, fraction_digits)
+        if quick is not None:
+            return quick
     if fraction_digits is not None:
         figures, e = digits(x, min(-(fraction_digits + (scale or 0)), -(least or 0)))
     elif width is not None and width > 1:

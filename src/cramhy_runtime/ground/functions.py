@@ -60,6 +60,12 @@ def key_of(key):
 
 def primary(function):
     """``function``, made to return its first value only."""
+    if (
+        function.__class__ is FunctionType
+        and function.__dict__
+        and ("single_valued" in function.__dict__ or "slot_of" in function.__dict__)
+    ):
+        return function
 
     def first_value(*arguments):
         value = function(*arguments)

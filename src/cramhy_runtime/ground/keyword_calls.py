@@ -1,8 +1,14 @@
-"""Python functions with keyword-only parameters, as Lisp calls them: keyword objects among the arguments become Python keywords."""
+"""Calls with keywords, between Lisp, where keyword objects stand among the arguments, and Python.
+
+`lispify` makes of a Python function with keyword-only parameters one that Lisp calls. A compiled Lisp function with ``&key`` takes
+keywords both ways (`takes_keywords`). So compiled code that names the keywords of a call gives them as Python's; `KeywordCalls` knows
+for each symbol whether its function takes them so, and stands in between if it does not.
+"""
 
 from __future__ import annotations
 
 import functools
+from types import FunctionType
 
 from .conditions import program_error, unknown_key
 from .data import Keyword, Symbol
@@ -51,6 +57,72 @@ def lispify(function):
 
     lisp_function.python, lisp_function.python_keywords = function, known
     return lisp_function
+
+
+GIVEN = "Lgiven"
+"""How the rest parameter of a compiled function begins whose keyword-only parameters are those of its ``&key``."""
+
+
+def name_of_key(key):
+    """The Python name of the keyword ``key``; ``None`` if the way back does not lead to it, as from other symbols."""
+    if key.__class__ is not Keyword:
+        return None
+    name = python_name(key.name)
+    return name if name.isidentifier() and not name.startswith("_") and keyword(name.upper().replace("_", "-")) is key else None
+
+
+def takes_keywords(function, count, names):
+    """Whether the compiled ``function`` takes the keywords ``names`` as Python's, behind ``count`` other arguments.
+
+    One that is not compiled may have ``python_keys``, the set of the names that the function which ``written()`` returns takes.
+    """
+    if function.__class__ is not FunctionType or "traced" in function.__dict__:
+        return False
+    if "python_keys" in function.__dict__:
+        return not count and function.python_keys.issuperset(names)
+    code = function.__code__
+    positional, keys = code.co_argcount, code.co_kwonlyargcount
+    if code.co_flags & 0x0C != 0x0C or not code.co_varnames[positional + keys].startswith(GIVEN):
+        return False
+    least = positional - len(function.__defaults__ or ())
+    return least <= count <= positional and set(names) <= set(code.co_varnames[positional : positional + keys])
+
+
+class KeywordCalls:
+    """Calls of the function of ``symbol`` with ``count`` arguments and then the keywords ``keys``: ``call`` takes these as Python's."""
+
+    __slots__ = ("symbol", "count", "keys", "call")
+
+    def __init__(self, symbol, count, keys):
+        self.symbol, self.count, self.keys = symbol, count, keys
+        self.refresh()
+
+    def refresh(self):
+        """Find out anew what the function takes."""
+        function = self.symbol.function
+        if takes_keywords(function, self.count, map(name_of_key, self.keys)):
+            self.call = self._write if "python_keys" in function.__dict__ else function
+        else:
+            self.call = self._as_lisp_calls
+
+    def _write(self, **keywords):
+        self.call = self.symbol.function.written()
+        return self.call(**keywords)
+
+    def _as_lisp_calls(self, *arguments, **keywords):
+        for key, value in zip(self.keys, keywords.values(), strict=True):
+            arguments += key, value
+        return self.symbol.function(*arguments)
+
+
+def keyword_calls(symbol, count, *keys):
+    """The `KeywordCalls` of ``symbol`` with so many arguments and then these keywords, one for all calls."""
+    if symbol.keyed is None:
+        symbol.keyed = {}
+    found = symbol.keyed.get((count, keys))
+    if found is None:
+        found = symbol.keyed[count, keys] = KeywordCalls(symbol, count, keys)
+    return found
 
 
 def _keyword_name(name):

@@ -137,15 +137,20 @@ class Package:
         """Inherit the external symbols of ``other``; a clash of names is an error unless shadowed here."""
         if other is self or other in self.use:
             return
+        visible = (self.external, self.internal, *(used.external for used in self.use))
+        if shared := set().union(*(other.external.keys() & names.keys() for names in visible)):  # few, of thousands
+            self._check_clashes(other, shared)
+        self.use.append(other)
+
+    def _check_clashes(self, other, shared):
         for name, symbol in other.external.items():
-            found, status = self.lookup(name)
-            if status and found is not symbol and name not in self.shadowing:
+            found = self.lookup(name)[0] if name in shared else symbol
+            if found is not symbol and name not in self.shadowing:
                 PORTS.signals.package_error(
                     self,
                     f"{self.name} cannot use {other.name}: both {printed(symbol)} and {printed(found)} would be "
                     f"called {name} in it. Shadow one of them with (:shadowing-import-from PACKAGE #:{name}).",
                 )
-        self.use.append(other)
 
     def unuse_package(self, other):
         if other in self.use:

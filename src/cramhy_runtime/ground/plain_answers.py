@@ -336,6 +336,9 @@ class PlainTypes:
             return symbol_name(specifier.car) in ("AND", "OR", "NOT", "MEMBER", "EQL", "SATISFIES")
         return specifier is True or specifier is None or self._class(specifier) is not None
 
+    def test(self, specifier: Any) -> Any:
+        return self.predicate(specifier) if self.known(specifier) else None
+
     def predicate(self, specifier: Any) -> Any:
         if isinstance(specifier, Cons):
             return self._compound(symbol_name(specifier.car), python_list(specifier.cdr))

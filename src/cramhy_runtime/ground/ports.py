@@ -106,6 +106,10 @@ class Types(Protocol):
         """Whether ``specifier`` is a type by now."""
         ...
 
+    def test(self, specifier: Any) -> Callable[[Any], bool] | None:
+        """As `predicate`, but ``None`` for what is no type by now."""
+        ...
+
     def predicate(self, specifier: Any) -> Callable[[Any], bool]:
         """The function that tells whether its argument is of the type; an unknown type is an error."""
         ...

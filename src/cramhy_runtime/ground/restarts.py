@@ -83,7 +83,7 @@ def restart_case(clauses, thunk):
     except RestartExit as exit_:
         if exit_.token is not token:
             raise
-        chosen = exit_
+        chosen, exit_.__traceback__ = exit_, None  # that leads to this very frame: a circle
     return clauses[chosen.index][1](*chosen.arguments)
 
 

@@ -29,6 +29,7 @@ def keep_text(filename, text, file=None):
     linecache.cache[filename] = (len(text), None, text.splitlines(True), filename)
     if file is not None:
         _called[filename] = file
+        _of_users.pop(filename, None)
 
 
 def file_of_text(filename):
@@ -38,13 +39,19 @@ def file_of_text(filename):
 
 def is_user_file(filename):
     """Whether code of this file name was written by the user: Lisp, Hy, or typed at a prompt, or piped into it."""
-    filename = _called.get(filename, filename)
-    return (
-        filename.endswith((".lisp", ".hy", ".asd"))
-        and "hy_src" not in filename
-        and not filename.startswith(_LIBRARIES)
-        or filename.startswith(("<repl", "<stdin>", "stdin-"))  # the last one is Hy 1.2's
-    )
+    known = _of_users.get(filename)
+    if known is None:
+        file = _called.get(filename, filename)
+        known = _of_users[filename] = (
+            file.endswith((".lisp", ".hy", ".asd"))
+            and "hy_src" not in file
+            and not file.startswith(_LIBRARIES)
+            or file.startswith(("<repl", "<stdin>", "stdin-"))  # the last one is Hy 1.2's
+        )
+    return known
+
+
+_of_users: dict[str, bool] = {}  # names of files → what `is_user_file` found: it is asked for each frame that a failure passes
 
 
 def is_lisp_text(filename):
@@ -59,6 +66,22 @@ def frame_position(frame, lasti=None):
 
 def code_position(code, lasti, line=None):
     """(file, line, column) of the instruction ``lasti`` of a code object; ``line`` if the code does not tell."""
+    known = _places.get((id(code), lasti))
+    if known is not None:
+        return known[1]
+    found = _code_position(code, lasti, line)
+    if len(_places) > 5000:
+        _places.clear()
+    _places[id(code), lasti] = code, found
+    return found
+
+
+_places: dict = {}
+"""(id of a code object, instruction) → the object, which so stays alive, and the place. Python unpacks a table to find it, and plans that
+try again fail at the same places."""
+
+
+def _code_position(code, lasti, line):
     column = None
     position = next(islice(code.co_positions(), lasti // 2, None), None) if lasti >= 0 else None
     if position is not None:
@@ -85,25 +108,28 @@ def user_position(frame=None):
 
 def exception_position(exception):
     """The place of the innermost user frame that ``exception`` passed, or ``None``; of macros' own code as in `user_position`."""
-    found, made_by_macro, traceback = None, None, exception.__traceback__
-    while traceback is not None:
-        if is_user_file(traceback.tb_frame.f_code.co_filename):
-            position = frame_position(traceback.tb_frame, traceback.tb_lasti)
+    return _innermost_place(_passed(exception))
+
+
+def _innermost_place(frames):
+    made_by_macro = None
+    for frame, lasti in frames:
+        if is_user_file(frame.f_code.co_filename):
+            position = frame_position(frame, lasti)
             if position[2] != 0:
-                found = position
-            else:
-                made_by_macro = position
-        traceback = traceback.tb_next
-    return found or made_by_macro
+                return position
+            made_by_macro = made_by_macro or position
+    return made_by_macro
 
 
 def locate(condition, exception):
     """Note on ``condition`` the innermost place of the user's text that ``exception`` passed, if no better one is known."""
+    frames = _passed(exception)
     if getattr(condition, "position", None) is None:
-        position = exception_position(exception)
+        position = _innermost_place(frames)
         if position is not None:
             condition.position = position
-    circumstance.note(condition, exception)
+    circumstance.note_in(condition, frames)
 
 
 class Circumstances:
@@ -121,6 +147,7 @@ class Circumstances:
 
     def __init__(self):
         self._tellers = {}
+        self._files = set()  # where the functions that are marked stand: to look for a code object takes longer than for its file
         self._beginnings = set()
 
     def begins_with(self, function):
@@ -139,6 +166,7 @@ class Circumstances:
     def __call__(self, tell):
         def mark(function):
             self._tellers[function.__code__] = tell
+            self._files.add(function.__code__.co_filename)
             return function
 
         return mark
@@ -153,8 +181,13 @@ class Circumstances:
 
     def note(self, condition, exception=None):
         """Add the lines for the frames that ``exception`` passed, or for the running ones, to ``condition``, innermost first."""
-        frames = _passed(exception) if exception is not None else self.running(sys._getframe(1))
+        self.note_in(condition, _passed(exception) if exception is not None else self.running(sys._getframe(1)))
+
+    def note_in(self, condition, frames):
+        """Add the lines for ``frames``, pairs of a frame and an instruction, to ``condition``."""
         for index, (frame, _) in enumerate(frames):
+            if frame.f_code.co_filename not in self._files:
+                continue
             tell = self._tellers.get(frame.f_code)
             line = tell and guarded(lambda: tell(frame.f_locals), lambda problem: None)
             if line and not _told(condition, line):
@@ -170,6 +203,7 @@ def _told(condition, line):
 
 
 def _passed(exception):
+    """(frame, instruction) of the frames that ``exception`` passed, innermost first."""
     frames, traceback = [], exception.__traceback__
     while traceback is not None:
         frames.append((traceback.tb_frame, traceback.tb_lasti))

@@ -11,7 +11,8 @@ import math
 from html import escape
 
 from cramhy_runtime import kernel
-from cramhy_runtime.cpl.fluents.fluents import Fluent, Net, peek_value
+from cramhy_runtime.cpl.fluents.fluents import Fluent, peek_value
+from cramhy_runtime.cpl.fluents.nets import Net
 from cramhy_runtime.cpl.tree.tree_report import short
 from cramhy_runtime.ground.data import one
 from cramhy_runtime.ground.numbers import is_real

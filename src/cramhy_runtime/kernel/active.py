@@ -32,12 +32,13 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 K = TypeVar("K", bound=Kernel, default=Kernel)
 Arguments = TypeVarTuple("Arguments")
-_active: Cell[Kernel | None] = Cell(None, fresh=True)
+ACTIVE: Cell[Kernel | None] = Cell(None, fresh=True)
+"""The active kernel. Code that asks at each binding of a variable looks here; a call of `active` would double its time."""
 
 
 def start(
     clock: ClockName | Clock = "virtual",
-    backend: BackendName | Backend = "threads",
+    backend: BackendName | Backend = "auto",
     seed: Seed | None = None,
     time_limit: float | None = None,
     kind: type[K] = Kernel,  # type: ignore[assignment]  # which is what K is then
@@ -48,39 +49,40 @@ def start(
     In the main thread the kernel handles SIGINT and the signals that end a process from now on, unless other code handles them
     (`signals`).
 
-    CLOCK: "virtual", "wall", or a clock object. BACKEND: "threads", "greenlet", or a back end. SEED: None for first
-    come, first served; a number shuffles the order, reproducibly; a function of the queue gives the place in it of the
-    task that goes next. TIME_LIMIT: seconds of the kernel's clock after which the main task gets `TimeLimit`, or None.
+    CLOCK: "virtual", "wall", or a clock object. BACKEND: "threads", "greenlet", "auto" (greenlets where they are installed),
+    or a back end. SEED: None for first come, first served; a number shuffles the order, reproducibly; a function of the
+    queue gives the place in it of the task that goes next. TIME_LIMIT: seconds of the kernel's clock after which the main
+    task gets `TimeLimit`, or None.
     KIND: a subclass of `Kernel`, for tests. CLEANUP_LIMIT: seconds that plans get for their cleanup when the process is
     asked to end, by the kernel's clock and by the wall clock, or None. Another word for CLOCK or BACKEND is a ValueError.
     """
-    before = _active.value
+    before = ACTIVE.value
     if before is not None and before.main.carrier.ident == get_ident():
         before.stop()
-    _active.value = None
+    ACTIVE.value = None
     kernel = kind(clock, backend, seed, time_limit)
     kernel.cleanup_limit = cleanup_limit
     kernel.when_stopped = lambda: _forget(kernel)
-    _active.value = kernel
+    ACTIVE.value = kernel
     signals.listen(kernel)
     return kernel
 
 
 def stop() -> None:
     """Stop the active kernel (see `Kernel.stop`). Afterwards no kernel is active."""
-    if _active.value is not None:
-        _active.value.stop()
+    if ACTIVE.value is not None:
+        ACTIVE.value.stop()
 
 
 @contextmanager
 def aside() -> Iterator[None]:
     """Put the active kernel aside during the block, in which others may be started and stopped. Then it is active again."""
-    before, _active.value = _active.value, None
+    before, ACTIVE.value = ACTIVE.value, None
     try:
         yield
     finally:
         stop()
-        _active.value = before
+        ACTIVE.value = before
         budget.renew()
 
 
@@ -93,13 +95,13 @@ def at_hand() -> Iterator[None]:
 
     It is for functions that work outside of plans. A temporary kernel is kept for the next use if nothing has happened in it.
     """
-    if _active.value is not None:
+    if ACTIVE.value is not None:
         yield
         return
     kernel, _idle.value = _idle.value, None
     if kernel is None or kernel.main.carrier.ident != get_ident():
         kernel = Kernel()
-    _active.value = kernel
+    ACTIVE.value = kernel
     unused = False
     try:
         yield
@@ -107,8 +109,8 @@ def at_hand() -> Iterator[None]:
     finally:
         if not (unused or kernel.stopped):
             kernel.stop()
-        if _active.value is kernel:
-            _active.value = None
+        if ACTIVE.value is kernel:
+            ACTIVE.value = None
         if unused:
             _idle.value = kernel
         budget.renew()
@@ -116,8 +118,8 @@ def at_hand() -> Iterator[None]:
 
 def _forget(kernel: Kernel) -> None:
     signals.forget(kernel)
-    if _active.value is kernel:
-        _active.value = None
+    if ACTIVE.value is kernel:
+        ACTIVE.value = None
 
 
 @atexit.register
@@ -133,7 +135,7 @@ def _stop_at_exit() -> None:
 
 
 def _stop_active_at_exit() -> None:
-    kernel = _active.value
+    kernel = ACTIVE.value
     if kernel is not None:
         asked_before = kernel.ended_by
         try:
@@ -148,7 +150,7 @@ def _stop_active_at_exit() -> None:
 
 def active() -> Kernel | None:
     """The active kernel, or None."""
-    return _active.value
+    return ACTIVE.value
 
 
 def _none() -> NoReturn:
@@ -164,10 +166,10 @@ def checkpoint() -> None:
 
 def slice_over() -> None:
     """End the slice: all its checkpoints are used up."""
-    if _active.value is None:
+    if ACTIVE.value is None:
         budget.renew()
     else:
-        _active.value.end_slice()
+        ACTIVE.value.end_slice()
 
 
 def refill() -> None:
@@ -178,22 +180,22 @@ def refill() -> None:
 
 def current() -> Task[object]:
     """The task that runs. While timers fire and messages are read it is a stand-in, which cannot park. Without a kernel: KernelError."""
-    return (_active.value or _none()).current
+    return (ACTIVE.value or _none()).current
 
 
 def now() -> float:
     """Seconds of the kernel's clock since `start`. Without a kernel: KernelError."""
-    return (_active.value or _none()).clock.now()
+    return (ACTIVE.value or _none()).clock.now()
 
 
 def spawn(fn: Callable[[*Arguments], T], *args: *Arguments, name: Name | None = None, parent: Task[object] | None = None) -> Task[T]:
     """See `Kernel.spawn`."""
-    return (_active.value or _none()).spawn(fn, *args, name=name, parent=parent)
+    return (ACTIVE.value or _none()).spawn(fn, *args, name=name, parent=parent)
 
 
 def park(why: Why = "", until: float | None = None) -> bool:
     """See `Kernel.park`."""
-    return (_active.value or _none()).park(why, until)
+    return (ACTIVE.value or _none()).park(why, until)
 
 
 def unpark(task: Task[object]) -> bool:
@@ -203,62 +205,62 @@ def unpark(task: Task[object]) -> bool:
 
 def sleep(seconds: float) -> None:
     """See `Kernel.sleep`."""
-    (_active.value or _none()).sleep(seconds)
+    (ACTIVE.value or _none()).sleep(seconds)
 
 
 def yield_() -> None:
     """See `Kernel.yield_`."""
-    (_active.value or _none()).yield_()
+    (ACTIVE.value or _none()).yield_()
 
 
 def choice_point(why: Why) -> None:
     """See `Kernel.choice_point`."""
-    (_active.value or _none()).choice_point(why)
+    (ACTIVE.value or _none()).choice_point(why)
 
 
 def settle() -> None:
     """See `Kernel.settle`."""
-    (_active.value or _none()).settle()
+    (ACTIVE.value or _none()).settle()
 
 
 def shield() -> Shield:
     """See `Kernel.shield`."""
-    return (_active.value or _none()).shield()
+    return (ACTIVE.value or _none()).shield()
 
 
 def call_at(time: float, fn: Callback) -> Timer:
     """See `Kernel.call_at`."""
-    return (_active.value or _none()).call_at(time, fn)
+    return (ACTIVE.value or _none()).call_at(time, fn)
 
 
 def call_every(period: float, fn: Callback, first: float | None = None) -> Timer:
     """See `Kernel.call_every`."""
-    return (_active.value or _none()).call_every(period, fn, first)
+    return (ACTIVE.value or _none()).call_every(period, fn, first)
 
 
 def post(fn: Callback) -> None:
     """See `Kernel.post`."""
-    (_active.value or _none()).post(fn)
+    (ACTIVE.value or _none()).post(fn)
 
 
 def outside_source() -> OutsideSource:
     """See `Kernel.outside_source`."""
-    return (_active.value or _none()).outside_source()
+    return (ACTIVE.value or _none()).outside_source()
 
 
 def woken_by(wake: Callback) -> AbstractContextManager[None]:
     """See `Kernel.woken_by`."""
-    return (_active.value or _none()).woken_by(wake)
+    return (ACTIVE.value or _none()).woken_by(wake)
 
 
 def run_blocking(fn: Callable[[*Arguments], T], *args: *Arguments) -> T:
     """See `Kernel.run_blocking`."""
-    return (_active.value or _none()).run_blocking(fn, *args)
+    return (ACTIVE.value or _none()).run_blocking(fn, *args)
 
 
 def pace() -> Pace:
     """The `Pace` of the active kernel's time. At first time passes as fast as the machine computes."""
-    kernel = _active.value or _none()
+    kernel = ACTIVE.value or _none()
     if not kernel.clock.virtual:
         return Pace(kernel)
     if kernel.clock.pace is None:
@@ -271,7 +273,7 @@ def set_clock(kind: ClockName) -> None:
 
     Tasks keep the moments for which they wait. Another word is a ValueError.
     """
-    kernel = _active.value or _none()
+    kernel = ACTIVE.value or _none()
     before = kernel.clock
     clock = make_clock(kind, kernel.now())
     if clock.virtual == before.virtual:
@@ -284,19 +286,19 @@ def set_clock(kind: ClockName) -> None:
 
 def time_wanted() -> TimeWanted:
     """See `TimeWanted`."""
-    return TimeWanted(_active.value or _none())
+    return TimeWanted(ACTIVE.value or _none())
 
 
 def time_held() -> TimeHeld:
     """See `Kernel.time_held`."""
-    return (_active.value or _none()).time_held()
+    return (ACTIVE.value or _none()).time_held()
 
 
 def interrupt() -> None:
     """See `Kernel.interrupt`."""
-    (_active.value or _none()).interrupt()
+    (ACTIVE.value or _none()).interrupt()
 
 
 def interrupt_over() -> None:
     """See `Kernel.interrupt_over`."""
-    (_active.value or _none()).interrupt_over()
+    (ACTIVE.value or _none()).interrupt_over()

@@ -52,7 +52,7 @@ class Budget:
 budget = Budget()
 
 HEADROOM = 100  # levels that a hand-over and modest callbacks need
-STEPS = 40  # levels that a hand-over needs when there is nothing to call
+STEPS = 24  # levels that a hand-over needs when there is nothing to call
 
 
 def room(levels):

@@ -13,12 +13,13 @@ import signal
 class Cancelled(BaseException):
     """Raised once in a task that was asked to end. Its cleanup forms run while this unwinds the stack.
 
-    `reason` is the argument of `Task.cancel`.
+    Its argument is that of `Task.cancel`.
     """
 
-    def __init__(self, reason: object = None):
-        super().__init__(reason)
-        self.reason = reason
+    @property
+    def reason(self) -> object:
+        """The argument, or None."""
+        return self.args[0] if self.args else None
 
     def __str__(self) -> str:
         return "cancelled" if self.reason is None else f"cancelled: {self.reason}"

@@ -21,7 +21,12 @@ _TUTORIALS = _LIBRARY + "tutorials" + os.sep
 
 
 def of_the_library(file):
-    """Whether ``file``, a path, is code of this library, which reports do not show. Its tutorials count as the user's."""
+    """Whether ``file``, a path, is code of this library, which reports do not show. Its tutorials count as the user's.
+
+    The texts that it writes itself are called ``<..., text 7>`` (``utilities/generated_functions.py``).
+    """
+    if file.startswith("<"):
+        return ", text " in file
     return file.startswith(_LIBRARY) and not file.startswith(_TUTORIALS)
 
 

@@ -24,7 +24,7 @@ from collections import deque
 from . import images, reports
 from .backends import make_backend
 from .budget import SLICE, budget, need_headroom, need_steps
-from .clocks import Bell, make_clock
+from .clocks import Bell, VirtualClock, make_clock
 from .endings import CLEANUP_LIMIT, PATIENCE, Endings
 from .errors import Cancelled, Deadlock, Interrupted, KernelError, NoStack, Terminated, TimeLimit
 from .inbox import Outside
@@ -67,7 +67,7 @@ class Kernel(Endings, Outside):
     def __init__(
         self,
         clock: ClockName | Clock = "virtual",
-        backend: BackendName | Backend = "threads",
+        backend: BackendName | Backend = "auto",
         seed: Seed | None = None,
         time_limit: float | None = None,
     ):
@@ -82,7 +82,7 @@ class Kernel(Endings, Outside):
         self._inbox: deque[Callback] = deque()
         self._bell = Bell()
         self._tasks: dict[int, Task[object]] = {}
-        self._born = 0
+        self._born = 1  # the main task
         self._streak = 0  # slices that ended since a task was last made runnable
         self._steps = 0  # hand-overs at this instant
         self._urgent: Task[object] | None = None  # the main task, when an alarm wakes it ahead of the queue
@@ -105,8 +105,8 @@ class Kernel(Endings, Outside):
         self.when_stopped: Callback = lambda: None  # for `active`, which keeps track of the kernels
         self.interruptible = False  # the main task is in a blocking call that a signal handler may break off
         self._scheduler = SchedulerTask(self)
-        main: Task[object] = self._new_task(None, (), "main", None)
-        self.main = main
+        self.main: Task[object] = self._tasks.setdefault(0, Task(self, 0, None, (), "main", None))
+        main = self.main
         main.carrier = self.backend.adopt(self)
         main.state = RUNNING
         self.current: Task[object] = main
@@ -148,15 +148,12 @@ class Kernel(Endings, Outside):
             self._refuse("spawn a task")
         if parent is None:
             parent = self.main if me is self._scheduler else me
-        task = self._new_task(fn, args, name or getattr(fn, "__name__", "task"), parent)
-        self._queue.append(task)
-        self._streak = 0
-        return task
-
-    def _new_task(self, fn: Callable[..., T] | None, args: tuple[object, ...], name: Name, parent: Task[object] | None) -> Task[T]:
         number = self._born
         self._born = number + 1
-        task = self._tasks[number] = Task(self, number, fn, args, name, parent)
+        task: Task[T] = Task(self, number, fn, args, name or str(getattr(fn, "__name__", "task")), parent)
+        self._tasks[number] = task
+        self._queue.append(task)
+        self._streak = 0
         return task
 
     def _enqueue(self, task: Task[object]) -> None:
@@ -177,9 +174,11 @@ class Kernel(Endings, Outside):
         me = self.current
         if me.attention and me.deliver():
             return True
-        if self._timers.entries or self._inbox or self._unclaimed:
+        entries, clock = self._timers.entries, self.clock
+        next_waits = len(self._queue) > self._streak and type(clock) is VirtualClock and not (entries and entries[0][0] <= clock.time)
+        if self._inbox or self._unclaimed or entries and not next_waits:
             need_headroom()
-        else:
+        else:  # no timer fires before the next task runs
             need_steps()
         if me.carrier.ident != get_ident():
             self._refuse("wait")
@@ -415,7 +414,7 @@ class Kernel(Endings, Outside):
         while True:
             if self._inbox:
                 self._read_inbox()
-            if entries and entries[0][0] <= clock.now():
+            if entries and entries[0][0] <= (clock.time if type(clock) is VirtualClock else clock.now()):
                 self._fire(clock.now())
             if self._urgent is not None:
                 task, self._urgent = self._urgent, None

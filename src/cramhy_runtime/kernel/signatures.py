@@ -22,7 +22,7 @@ Reason = str | BaseException | Callable[[], BaseException] | None
 """Why a task is asked to end, or the exception to raise in it for that."""
 ClockName = Literal["virtual", "wall"]
 Clock = VirtualClock | WallClock
-BackendName = Literal["threads", "greenlet"]
+BackendName = Literal["auto", "threads", "greenlet"]
 Seed = int | float | str | Callable[[deque[Task[object]]], int]
 """The order of tasks: the seed of a shuffle, or a function of the queue that returns the place of the task that goes next."""
 

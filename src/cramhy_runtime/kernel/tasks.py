@@ -225,8 +225,7 @@ class Task(Generic[T]):
                     raise alarm.exception() if callable(alarm.exception) else alarm.exception
         if self.cancel_request is not None and not self.cancelled_delivered and not self.shielded:
             self.delivered = exception = self._cancellation()
-            self.cancelled_delivered = True
-            self._look_again()
+            self.cancelled_delivered = self.attention = True  # for code that swallows it
             raise exception
         if self.delivered is not None and not self.shielded and self.swallowed < HOPELESS and not _on_its_way(self.delivered):
             self.swallowed += 1

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from typing import Any as Any
     from typing import Generic as Generic
     from typing import Literal as Literal
+    from typing import NamedTuple as NamedTuple
     from typing import NoReturn as NoReturn
     from typing import ParamSpec as ParamSpec
     from typing import Protocol as Protocol
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
     subscripted: Any
 else:
+    from collections import namedtuple
     from types import GenericAlias
 
     subscripted = classmethod(GenericAlias)
@@ -53,6 +55,29 @@ else:
             self.__name__ = name
 
     ParamSpec = TypeVarTuple = TypeVar
+
+    class _OfFields(type):
+        """Makes what `collections.namedtuple` makes of the annotations of a class, with the methods of the class."""
+
+        def __new__(kind, name, bases, body):
+            fields = annotations_of_body(body)
+            made = namedtuple(name, fields, defaults=[body[field] for field in fields if field in body], module=body["__module__"])
+            for key, value in body.items():
+                if key not in fields and key not in _OF_A_BODY:
+                    setattr(made, key, value)
+            return made
+
+    class _NamedTuple:
+        """The base of a class of named tuples."""
+
+        def __mro_entries__(self, bases):
+            return (type.__new__(_OfFields, "NamedTuple", (), {}),)
+
+    NamedTuple = _NamedTuple()
+    _OF_A_BODY = frozenset(
+        """__module__ __qualname__ __annotations__ __annotate__ __annotate_func__ __firstlineno__ __static_attributes__
+        __classcell__ __conditional_annotations__ __orig_bases__""".split()
+    )
 
     def dataclass_transform(**options):
         """Marks a decorator or metaclass that makes an initializer of the annotations of classes."""

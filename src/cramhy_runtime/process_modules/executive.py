@@ -13,7 +13,8 @@ from cramhy_runtime.cpl.tree.task_tree import with_task_tree_node
 from ..designators.classes import ActionDesignator, DesignatorError, MotionDesignator, desig_prop_value
 from ..designators.resolution import reference
 from cramhy_runtime.ground.condition_types import Condition, SimpleWarning
-from cramhy_runtime.ground.conditions import Error, HandlerExit, caught, enter_case, foreign_case, handler_case, warn
+from cramhy_runtime.ground.catching import caught, enter_case, foreign_case
+from cramhy_runtime.ground.conditions import Error, HandlerExit, handler_case, warn
 from cramhy_runtime.ground.data import UNBOUND, Cons, Symbol, UndefinedFunction, lisp_list, one, truth
 from cramhy_runtime.ground.dynamic import unbind
 from cramhy_runtime.ground.list_shapes import check_shape

@@ -8,7 +8,6 @@ gets an error answer, and the next line is read. For the forms standard input is
 
 from __future__ import annotations
 
-import json
 import sys
 from contextlib import nullcontext
 
@@ -50,6 +49,8 @@ def _give(session, line, out):
         raise
     except (KeyboardInterrupt, kernel.Abandoned):  # after the form, while its values are printed
         found = _failure("", "CRAMHY::INTERRUPTED", "The form was interrupted.")
+    import json  # a process that is asked nothing does without it
+
     text = json.dumps(found) + "\n"
     with kernel.shield():
         out.write(text)
@@ -95,6 +96,8 @@ def _standard_input():
 
 def answer(session, line):
     """The answer to one line, a dict."""
+    import json
+
     try:
         request = json.loads(line)
         text = request["form"]

@@ -15,14 +15,13 @@ the same with the line and without it.
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 import time
 import unicodedata
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
 
+from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime import kernel
 from cramhy_runtime.cpl.tree.tree_report import waits_for
 from cramhy_runtime.kernel.terminals import draws
@@ -82,6 +81,8 @@ class Progress:
             self._due = None
 
     def _draw(self, text):
+        import shutil  # takes 3 ms, and most forms are done before there is a line
+
         size = shutil.get_terminal_size()
         if (size.lines, size.columns) < _LEAST or size.columns < _LEAST[1]:
             return

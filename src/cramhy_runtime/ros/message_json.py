@@ -20,7 +20,6 @@ import binascii
 import json
 import math
 import reprlib
-from typing import NamedTuple
 
 from cramhy_runtime.ground.data import DoubleFloat, LispString
 from cramhy_runtime.ground.numbers import is_real, single
@@ -29,7 +28,7 @@ from . import messages
 from .definition_text import INTEGERS
 from .messages import RosMessage
 from .wire import NONFINITE, lisp_float, ros_text
-from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Self, TypeVar
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NamedTuple, Self, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

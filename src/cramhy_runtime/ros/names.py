@@ -7,8 +7,6 @@ names of topics, services and parameters, as roscpp does. Source: roslisp.md 3, 
 
 from __future__ import annotations
 
-import string
-
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.ports import PORTS
@@ -18,8 +16,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
 
-_LETTERS = set(string.ascii_letters)
-_NAME_CHARACTERS = _LETTERS | set(string.digits) | {"/", "_"}
+_LETTERS = set("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ")
+_DIGITS = set("0123456789")
+_NAME_CHARACTERS = _LETTERS | _DIGITS | {"/", "_"}
 
 
 class Naming:
@@ -110,7 +109,7 @@ def allowed_name(name: str) -> str:
     name = first + "".join(character if character in _NAME_CHARACTERS else "_" for character in name[1:])
     if first in _LETTERS or first in "/~":
         return name
-    return f"n{name}" if first in string.digits + "_" else f"n_{name[1:]}"
+    return f"n{name}" if first in _DIGITS or first == "_" else f"n_{name[1:]}"
 
 
 def split_arguments(arguments: str | Iterable[object] | None) -> list[str]:

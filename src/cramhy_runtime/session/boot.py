@@ -101,7 +101,7 @@ def define_tf():
 
 def fresh_start(
     clock: ClockName | Clock | None = None,
-    backend: BackendName | Backend = "threads",
+    backend: BackendName | Backend = "auto",
     seed: int | None = None,
     time_limit: float | None = None,
     turtlesim: bool = True,

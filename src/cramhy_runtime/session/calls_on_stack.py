@@ -39,7 +39,8 @@ class Frame:
         code = self.frame.f_code
         if self.name == "the form":
             return self.name
-        count = code.co_argcount + code.co_kwonlyargcount
+        keywords = 0 if code.co_flags & 0x08 else code.co_kwonlyargcount
+        count = code.co_argcount + keywords
         values = [value for name, value in self._variables(code.co_varnames[:count])]
         return f"({' '.join([self.name, *(_short(value) for value in values)])})"
 

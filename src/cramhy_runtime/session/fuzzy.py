@@ -7,8 +7,8 @@ inside of it, and letters that follow one another count more than scattered ones
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
 
+from cramhy_runtime.kernel.typing_names import NamedTuple
 from cramhy_runtime.ground.data import UNBOUND, Symbol, UndefinedFunction
 from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
 from cramhy_runtime.ground.packages import KEYWORD, find_package, registered

@@ -88,16 +88,17 @@ def quiet_collector():
 class Session:
     """Evaluates forms in an image. The calling thread becomes the kernel's main task.
 
-    time: "virtual" or "wall". seed: of the scheduler's order, ``None`` for first come, first served. backend: "threads" or
-    "greenlet". time_limit: seconds of plan time after which a form is ended. turtlesim: whether the simulator starts with the
-    first node. cleanup_limit: seconds that plans get for their cleanup when the session ends, or ``None``. options: more of `kernel.start`.
+    time: "virtual" or "wall". seed: of the scheduler's order, ``None`` for first come, first served. backend: "auto",
+    "threads" or "greenlet" (see `kernel.start`). time_limit: seconds of plan time after which a form is ended. turtlesim: whether the
+    simulator starts with the first node. cleanup_limit: seconds that plans get for their cleanup when the session ends, or ``None``.
+    options: more of `kernel.start`.
     """
 
     def __init__(
         self,
         time: ClockName = "wall",
         seed: int | None = None,
-        backend: BackendName = "threads",
+        backend: BackendName = "auto",
         time_limit: float | None = None,
         turtlesim: bool = True,
         cleanup_limit: float | None = kernel.CLEANUP_LIMIT,

@@ -41,7 +41,7 @@ def sealed(line, label, content):
 
 def unsealed(path, line, label, in_folder=True):
     """The content of the file ``path``. in_folder: whether its folder must be safe, too. Errors: `Unusable`."""
-    data = _read(path, in_folder)
+    data = trusted_bytes(path, in_folder)
     start = len(line)
     if not data.startswith(line):
         raise Unusable("foreign", f"{path} is not a file of code, or one of another version of cramhy")
@@ -52,7 +52,8 @@ def unsealed(path, line, label, in_folder=True):
     return data[start + 32 + LABEL :]
 
 
-def _read(path, in_folder):
+def trusted_bytes(path, in_folder=True):
+    """What is in the file ``path``, which only this user or root can have written. in_folder: as for `unsealed`. Errors: `Unusable`."""
     path = os.fspath(path)
     try:
         if in_folder:

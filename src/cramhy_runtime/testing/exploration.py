@@ -67,7 +67,7 @@ def explore(
     schedules: int = 1000,
     check: Check[T] | None = None,
     *,
-    backend: BackendName | Backend = "threads",
+    backend: BackendName | Backend = "auto",
     replay: Sequence[int] | None = None,
     time_limit: float | None = TIME_LIMIT,
 ) -> Exploration[T]:
@@ -76,7 +76,7 @@ def explore(
     schedules: the number of runs, each in a fresh kernel. The first is first come, first served; the others use the seeds 1, 2, ...
     check: without it all runs must end alike (`Outcome.same`). ``check(value)`` gets the plan's first value; if the value is wrong, it
     raises an AssertionError or returns false (a Python function may return None for right). An error that leaves the plan counts as wrong.
-    A check with the attribute ``of_outcome = True`` gets the `Outcome` instead. backend: "threads" or "greenlet". replay: a schedule, to
+    A check with the attribute ``of_outcome = True`` gets the `Outcome` instead. backend: as for `kernel.start`. replay: a schedule, to
     run only that one. time_limit: seconds of virtual time for each run. Raises `DependsOnLuck`, and ValueError if ``replay`` does not fit.
     """
     function = plan_of(plan)

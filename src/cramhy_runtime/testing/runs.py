@@ -34,7 +34,7 @@ TIME_LIMIT = 3600.0  # s of virtual time after which a plan has lost its end
 
 @contextmanager
 def virtual_time(
-    backend: BackendName | Backend = "threads",
+    backend: BackendName | Backend = "auto",
     seed: int | None = None,
     *,
     schedule: Sequence[int] | Schedule | None = None,
@@ -43,7 +43,7 @@ def virtual_time(
 ) -> Iterator[WatchedKernel]:
     """``with virtual_time() as clock: ...; clock.now()`` gives the block a kernel of its own, in virtual time.
 
-    backend: ``"threads"`` or ``"greenlet"``. seed: a number that shuffles which of the runnable tasks goes on, as ``--seed`` does.
+    backend: as for `kernel.start`. seed: a number that shuffles which of the runnable tasks goes on, as ``--seed`` does.
     schedule: instead, a list of choices, or a `Schedule`; with both it is a ValueError. faults: see `faults.at`. time_limit: seconds of
     virtual time. The value is the kernel. Tasks that are left when the block ends are ended.
     """
@@ -134,7 +134,7 @@ def shown(value: object) -> str:
 def run(
     plan: Plan[T],
     *,
-    backend: BackendName | Backend = "threads",
+    backend: BackendName | Backend = "auto",
     seed: int | None = None,
     schedule: Sequence[int] | Schedule | None = None,
     faults: Sequence[Fault] = (),

@@ -39,7 +39,7 @@ class WatchedKernel(Kernel):
     def __init__(
         self,
         clock: ClockName | Clock = "virtual",
-        backend: BackendName | Backend = "threads",
+        backend: BackendName | Backend = "auto",
         seed: Seed | None = None,
         time_limit: float | None = None,
     ):

@@ -15,8 +15,8 @@ import linecache
 import weakref
 from itertools import count
 from keyword import iskeyword
-from typing import TYPE_CHECKING
 
+TYPE_CHECKING = False  # as type checkers read it; `typing` takes long to import
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 

@@ -250,11 +250,14 @@ def force_ll(ll):
     cell = ll
     while True:
         for _ in STRETCH:
-            if not isinstance(cell, Cons):
+            if cell.__class__ is not Cons and not isinstance(cell, Cons):
                 return ll
             rest = cell.cdr
             if rest.__class__ is not Cons and isinstance(rest, LazyTail):
+                drained = rest.drain is not None and rest.worker is None  # then all of it comes at once
                 rest = cell.cdr = rest.force(True)
+                if drained:
+                    return ll
             cell = rest
         kernel.checkpoint()
 

@@ -17,6 +17,7 @@ from cramhy_runtime.ground.conditions import error, type_error, warn
 from cramhy_runtime.ground.data import Cons, Keyword, LispString, MultipleValues, Symbol, conses, list_from, one, python_list, truth
 from cramhy_runtime.ground.functions import function_of
 
+from .compiled_patterns import LOOK_CLOSER, Matchers, unfit
 from .lazy_lists import LazyTail, lazy_cdr
 from .symbols import CUT
 
@@ -287,6 +288,8 @@ def with_pat_vars_bound(pat, seq, body):
 # ----------------------------------------------------------------------------------------------------------------- matching
 
 _FAIL = object()
+_matchers = Matchers(ANONYMOUS, {"equal": equal, "substitute_vars": substitute_vars})
+_functions = _matchers.functions
 
 
 def pat_match(pat, seq, *options):
@@ -294,6 +297,16 @@ def pat_match(pat, seq, *options):
 
     ``options``: bindings to extend, then keywords; ``:test`` compares atoms (default ``eql``).
     """
+    if not options and pat.__class__ is Cons:
+        function = _functions.get(pat)
+        if function is None:
+            _matchers.meet(pat)
+        else:
+            result = function(seq)
+            if result is not LOOK_CLOSER:
+                return result
+            if function is not unfit:
+                _functions.pop(pat, None)
     options, bdgs = list(options), None
     if options and not (isinstance(options[0], Keyword) and options[0].name == "TEST"):
         bdgs = options.pop(0)

@@ -11,13 +11,27 @@ first. Handlers established before a task was evaporated cannot bring it back: t
 from __future__ import annotations
 
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.active import ACTIVE
 
 from cramhy_runtime.ground import condition_types as types
-from cramhy_runtime.ground.conditions import HandlerExit, error, handler_bind, make_condition, matches, signal_condition, type_error
+from cramhy_runtime.ground.conditions import (
+    HANDLERS,
+    Cluster,
+    HandlerExit,
+    error,
+    make_condition,
+    matches,
+    offer_late,
+    raised_by_handler,
+    signal_condition,
+    type_error,
+)
 from cramhy_runtime.ground.data import lisp_list, list_from
+from cramhy_runtime.ground.dynamic import bind, unbind
 from cramhy_runtime.ground.source_places import locate
 from cramhy_runtime.ground.classes import class_name
 from cramhy_runtime.ground.packages import is_symbol, symbol_name
+from ..current import current_task
 from .debugging import BREAK_ON_PLAN_FAILURES, break_on
 from .failure_types import CommonLispErrorEnvelope, CompositeFailure, PlanFailure, SimplePlanFailure
 from ..hooks import (
@@ -37,6 +51,7 @@ if TYPE_CHECKING:
     Clause = tuple[object, Callable[[Any, "Handling"], object]]  # (type specifier, handler)
 
 T = TypeVar("T")
+_new = SimplePlanFailure.__new__
 
 
 def fail(*arguments: Any) -> NoReturn:
@@ -44,26 +59,39 @@ def fail(*arguments: Any) -> NoReturn:
 
     Handlers run now, on top of this stack. Without arguments the text is ``Plan failure.`` Source: cpl.md 4.2.
     """
-    fail_with_advice(None, *arguments)
+    if arguments and arguments[0].__class__ is str:
+        condition: Any = _new(SimplePlanFailure)
+        condition.format_control, condition.format_arguments = arguments[0], arguments[1:]
+    else:
+        condition = _designated(*arguments)
+    if active_tags or on_fail.methods or BREAK_ON_PLAN_FAILURES.value or current_task() is None or not isinstance(condition, PlanFailure):
+        _begin_to_fail(condition, arguments)
+    signal_condition(condition)
+    raise condition
 
 
 def fail_with_advice(advice: str | Callable[[], str] | None, *arguments: Any) -> NoReturn:
     """`fail` with a hint for the user: ``advice`` is a text, or a function that makes the text when the failure is shown."""
-    condition = _designated(*arguments) if arguments else SimplePlanFailure("Plan failure.")
+    condition = _designated(*arguments)
     if advice is not None:
         condition.hint = advice
-    if active_tags:
-        log("FAIL", "~s: ~_~a", condition, condition)
-    if on_fail:
-        on_fail(arguments[0] if arguments else None)
-    if kernel.current().owner is None or not isinstance(condition, PlanFailure):
-        error(condition)
-    if BREAK_ON_PLAN_FAILURES.value:
-        break_on(condition)
+    _begin_to_fail(condition, arguments)
     signal_failure(condition)
 
 
-def _designated(datum: Any, *arguments: object) -> Any:
+def _begin_to_fail(condition: Any, arguments: tuple[Any, ...]) -> None:
+    """What comes before the handlers: the log, the hook, the debugger. Outside of plans, and for other conditions, an error."""
+    if active_tags:
+        log("FAIL", "~s: ~_~a", condition, condition)
+    if on_fail.methods:
+        on_fail(arguments[0] if arguments else None)
+    if current_task() is None or not isinstance(condition, PlanFailure):
+        error(condition)
+    if BREAK_ON_PLAN_FAILURES.value:
+        break_on(condition)
+
+
+def _designated(datum: Any = "Plan failure.", *arguments: object) -> Any:
     """The condition that the arguments of ``fail`` stand for (cpl.md 4.2); Python code may give a class instead of its name."""
     if isinstance(datum, types.Condition):
         if arguments:
@@ -85,54 +113,82 @@ def signal_failure(condition: BaseException) -> NoReturn:
     raise condition
 
 
-class _Again(BaseException):
-    """Unwinds to a ``with-failure-handling`` form, which tries its body again or, with ``leave``, returns ``values``."""
-
-    def __init__(self, form: Handling, values: Any = None, leave: bool = False):
-        self.form, self.values, self.leave = form, values, leave
-
-
-class Handling:
+class Handling(Cluster, BaseException):
     """One execution of ``with-failure-handling``; its handlers and body get it as their ``retry``.
 
     ``retry()`` unwinds and tries the body again; ``retry.leave(value)`` unwinds and makes the form return ``value``, which in
-    Lisp is written ``(return value)`` and compiled to an exit of its own.
+    Lisp is written ``(return value)`` and compiled to an exit of its own. It is the exception that unwinds to its form.
     """
 
-    __slots__ = ("clauses", "task", "ending", "id")
+    __slots__ = ("clauses", "task", "ending", "observed", "id", "left", "values")
 
     def __init__(self, clauses: Sequence[Clause]):
+        running = ACTIVE.value
         self.clauses = clauses
-        self.task = kernel.current()
-        self.ending = self.task.cancelled_delivered
+        self.task = task = kernel.current() if running is None else running.current
+        self.ending = task.cancelled_delivered
+        self.observed = False  # the hook of its beginning has run, and returned
         self.id: object = None
+        self.left = False
+        self.values: object = None
 
     def __call__(self) -> NoReturn:
         """Unwind to the form, and try its body again."""
-        raise _Again(self)
+        raise self
 
     def leave(self, value: object = None) -> NoReturn:
         """Unwind to the form, which returns ``value``."""
-        raise _Again(self, value, True)
+        self.values, self.left = value, True
+        raise self
 
-    def handle(self, condition: types.Condition) -> None:
-        """The handler of the form: try its clauses in order (cpl.md 4.5, points 4 and 5). Returns if all of them decline."""
+    def offer(self, condition: types.Condition, outer: object) -> None:
+        """Try the clauses of the form in order (cpl.md 4.5, points 4 and 5). Returns if all of them decline."""
         if self.task.cancelled_delivered and not self.ending:
             return
         clauses = self.clauses
-        if condition.__class__ is CommonLispErrorEnvelope:
-            wrapped = condition.error
+        bind(HANDLERS, outer)
+        try:
+            if type(condition) is CommonLispErrorEnvelope:
+                wrapped = condition.error
+                for specifier, handler in clauses:
+                    if matches(wrapped, specifier):
+                        handler(wrapped, self)
+                        break
             for specifier, handler in clauses:
-                if matches(wrapped, specifier):
-                    handler(wrapped, self)
-                    break
-        for specifier, handler in clauses:
-            if matches(condition, specifier):
-                if on_with_failure_handling_handled:
-                    on_with_failure_handling_handled(self.id)
-                handler(condition, self)
-                if on_with_failure_handling_rethrown:
-                    on_with_failure_handling_rethrown(self.id)
+                if matches(condition, specifier):
+                    if on_with_failure_handling_handled.methods:
+                        on_with_failure_handling_handled(self.id)
+                    handler(condition, self)
+                    if on_with_failure_handling_rethrown.methods:
+                        on_with_failure_handling_rethrown(self.id)
+        except (types.Condition, Exception) as raised:
+            raised_by_handler(raised)
+            raise
+        finally:
+            unbind()
+
+    def run(self, body: Callable[[Handling], T]) -> T:
+        """Call ``body`` with the handlers in force, and again after each ``retry``. Returns its values, or what a handler left with."""
+        if not self.observed and (on_with_failure_handling_begin.methods or on_with_failure_handling_end.methods):
+            self.observed = True
+            return observed([_type_name(specifier) for specifier, _ in self.clauses], lambda: self.run(body), self)
+        while True:
+            bind(HANDLERS, (self, HANDLERS.value))  # as `enter` does
+            try:
+                try:
+                    return body(self)
+                except (types.Condition, Exception) as exception:
+                    offer_late(exception)
+                    raise
+                finally:
+                    unbind()
+            except Handling as again:
+                if again is not self:
+                    raise
+                self.__traceback__ = self.__context__ = None  # a circle with the frames that it passed
+                if self.left:
+                    return self.values  # type: ignore[return-value]  # what the handler says is what the form returns
+            kernel.checkpoint()
 
 
 def with_failure_handling(clauses: Sequence[Clause], body: Callable[[Handling], T]) -> T:
@@ -143,23 +199,7 @@ def with_failure_handling(clauses: Sequence[Clause], body: Callable[[Handling], 
     or outer form is asked. ``retry()`` tries the body again, and ``retry.leave(value)`` returns from the form. In Lisp, ``(return value)``
     leaves the compiler's block named nil. Source: cpl.md 4.5.
     """
-    handling = Handling(clauses)
-    if on_with_failure_handling_begin.methods or on_with_failure_handling_end.methods:
-        return observed([_type_name(specifier) for specifier, _ in clauses], lambda: _attempts(handling, body), handling)
-    return _attempts(handling, body)
-
-
-def _attempts(handling: Handling, body: Callable[[Handling], T]) -> T:
-    bound = [(True, handling.handle)]
-    while True:
-        try:
-            return handler_bind(bound, lambda: body(handling))
-        except _Again as again:
-            if again.form is not handling:
-                raise
-            if again.leave:
-                return again.values
-        kernel.checkpoint()
+    return Handling(clauses).run(body)
 
 
 def observed(types: list[str], thunk: Callable[[], T], handling: Handling | None = None) -> T:
@@ -183,32 +223,43 @@ def _type_name(specifier: Any) -> str:
 
 def attempt(thunk: Callable[[], T]) -> tuple[T | None, PlanFailure | None]:
     """Call ``thunk``. Returns (its values, ``None``), or (``None``, the plan failure that ended it), which outer handlers do not see."""
-    me = kernel.current()
-    ending = me.cancelled_delivered
-    failed = _Failed()
-    try:
-        return handler_bind([(PlanFailure, failed.take)], thunk), None
-    except _Failed as caught:
-        if caught is not failed:
-            raise
-        failure = failed.failure
-        locate(failure, failed)
-        failed.__traceback__ = failed.failure = None  # no circle of the failure and the frames that it passed
-    if me.cancelled_delivered and not ending:
-        raise failure
-    return None, failure
+    return Attempt().run(thunk)
 
 
-class _Failed(HandlerExit):
-    """Unwinds to the `attempt` that made it."""
+class Attempt(HandlerExit, Cluster):
+    """The handler of an `attempt`, and the exit that unwinds to it. It may `run` one thunk after the other."""
 
     def __init__(self) -> None:
-        super().__init__(None, 0, None)
-        self.failure: Any = None
+        self.task = kernel.current()
+        self.token = None  # it is no `handler-case` that this unwinds to
 
-    def take(self, failure: PlanFailure) -> NoReturn:
-        self.failure = failure
-        raise self
+    def run(self, thunk: Callable[[], T]) -> tuple[T | None, PlanFailure | None]:
+        """As `attempt`."""
+        ending = self.task.cancelled_delivered
+        self.enter()
+        try:
+            try:
+                return thunk(), None
+            except (types.Condition, Exception) as exception:
+                offer_late(exception)
+                raise
+            finally:
+                unbind()
+        except Attempt as caught:
+            if caught is not self:
+                raise
+            failure = self.condition
+            locate(failure, self)
+            self.__traceback__ = self.__context__ = self.condition = None  # no circle of the failure and the frames that it passed
+        if self.task.cancelled_delivered and not ending:
+            raise failure
+        return None, failure
+
+    def offer(self, condition: Any, outer: object) -> None:
+        """Leave the attempt if ``condition`` is a plan failure."""
+        if isinstance(condition, PlanFailure):
+            self.condition = condition
+            raise self
 
 
 def composite_failure(failures: Iterable[object]) -> NoReturn:

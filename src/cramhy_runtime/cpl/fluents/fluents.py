@@ -78,6 +78,7 @@ class Fluent(Notation[T_co]):
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
+        cls._fluent_value = _slots_read_by.get(cls.read, Fluent._fluent_value)  # type: ignore[method-assign]  # a slot is a property, too
         for watcher in _class_watchers:
             watcher(cls)
 
@@ -105,6 +106,11 @@ class Fluent(Notation[T_co]):
     if not TYPE_CHECKING:
         value = property(lambda self: self.read(), doc="The current value; reading may consume a pulse.")
 
+    @property
+    def _fluent_value(self) -> T_co:
+        """What `read` returns. Where `read` only returns a slot, this is that slot: to read it takes no call."""
+        return self.read()
+
     def pulse(self) -> None:
         """Tell the observers, without changing the value. Tasks go on waiting if the value is nil."""
         self.pulses += 1
@@ -113,7 +119,7 @@ class Fluent(Notation[T_co]):
 
     def _notify(self, value: Any) -> None:
         if not self.nets and not self.callbacks:  # as a rule only tasks wait
-            if truth(value):
+            if value is not None and value is not False:
                 for task in self.waiters:
                     task.kernel.unpark(task)
         elif self.callbacks or self.sheltered:
@@ -175,6 +181,15 @@ class Fluent(Notation[T_co]):
         return f"#<FLUENT {getattr(self.name, 'name', self.name)}>"
 
 
+_slots_read_by: dict[Callable[..., Any], Any] = {}
+"""A method `read` → the slot that it returns."""
+
+
+def reads_slot(cls: Any, name: str) -> None:
+    """Note that ``cls.read`` returns the slot ``name`` and does nothing else."""
+    _slots_read_by[cls.read] = cls._fluent_value = vars(cls)[name]
+
+
 @circumstance(lambda here: f"in the callback {princ_to_string(here['name'])} of {_shown(here['fluent'])}")
 def _call_back(function, value, name, fluent):
     function(value)
@@ -197,13 +212,6 @@ def _graver(first, second):
 
 def _shown(fluent):
     return f"the fluent {princ_to_string(fluent.name)}"
-
-
-def _shown_net(net):
-    """The name of a net and of what it is computed from, for the reports of errors."""
-    names = [princ_to_string(fluent.name) for fluent in net.inputs]
-    over = f" over the fluent{'s' * (len(names) > 1)} {' and '.join(names)}" if names else ""
-    return f"the net {princ_to_string(net.name)}{over}"
 
 
 class ValueFluent(Fluent[T]):
@@ -235,7 +243,11 @@ class ValueFluent(Fluent[T]):
             old = self.stored
             if old is new:
                 return new
-            if (old.__class__ is new.__class__ or old is False or new is False) and eql(old, new):  # of two classes only False is nil
+            kind = type(new)
+            if kind is type(old):
+                if old == new if kind is int else eql(old, new):
+                    return new
+            elif (old is False or new is False) and eql(old, new):  # of two classes only False is nil
                 return new
         elif self._same(new):
             return new
@@ -268,108 +280,7 @@ class ValueFluent(Fluent[T]):
         return f"#<FLUENT {getattr(self.name, 'name', self.name)} [{self.stored!r}]>"
 
 
-class Net(Fluent[T_co]):
-    """A fluent computed by ``formula()`` from ``inputs``, its fluents.
-
-    ``careful`` says that the formula calls a function of the user, which may let other tasks run. Then no request to end arrives
-    while the inputs tell this net of a pulse, and a value computed from old inputs is computed again.
-    """
-
-    __slots__ = ("formula", "inputs", "prefix", "careful")
-    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::FL-NET-FLUENT"
-
-    def __init__(self, operator: str, formula: Callable[[], T_co], inputs: tuple[Fluent[object], ...], careful: bool = False):
-        self.prefix = "FN-" + operator
-        self.formula = formula
-        self.inputs = inputs
-        self.careful = careful or any([fluent.foreign for fluent in inputs])
-        super().__init__()
-        self._begin()
-        for fluent in inputs:
-            fluent.attach(self)
-
-    foreign = property(lambda self: self.careful)
-
-    def _begin(self):
-        pass
-
-    @circumstance(lambda here: f"while {_shown_net(here['self'])} was computed")
-    def read(self):
-        return self.formula()
-
-    @circumstance(lambda here: f"while {_shown_net(here['self'])} was computed")
-    def peek(self):
-        return peeking(self.formula)
-
-    def input_pulsed(self) -> None:
-        self.pulse()
-
-
-class CachedNet(Net[T_co]):
-    """A net whose inputs are all cacheable. It is computed when an input pulses, and it pulses only when its value changes."""
-
-    __slots__ = ("cached", "turn")
-    lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::FL-NET-CACHEABLE-FLUENT"
-    foreign = False
-
-    @circumstance(lambda here: f"while {_shown_net(here['self'])} was made: its first value is computed at once")
-    def _begin(self):
-        self.turn = 0
-        if not self.careful:
-            self.cached = self.formula()  # before the inputs hear of this net: if it fails, they never do
-            return
-        pulses = None
-        while pulses != (now := [fluent.pulses for fluent in self.inputs]):  # until nobody assigned meanwhile
-            pulses = now
-            self.cached = self.formula()
-
-    def read(self):
-        return self.cached
-
-    peek = read
-
-    @circumstance(lambda here: None if "new" in here else f"while {_shown_net(here['self'])}, which keeps its old value, was computed anew")
-    def pulse(self):
-        if self.careful:
-            self.turn = turn = self.turn + 1
-            new = self.formula()
-            if self.turn != turn:
-                new = self._recomputed()
-        else:
-            new = self.formula()
-        old = self.cached
-        if old is new or eql(old, new):
-            return
-        self.cached = new
-        self.pulses += 1
-        if self.waiters or self.nets or self.callbacks:
-            self._notify(new)
-
-    input_pulsed = pulse
-
-    def _recomputed(self):
-        """Inputs pulsed while the formula was computed, and what it read of them is out of date: compute until none does."""
-        while True:
-            turn = self.turn
-            new = self.formula()
-            if self.turn == turn:
-                return new
-
-
-peekers: set[kernel.Task[object]] = set()
-"""The tasks of the kernel that are reading without side effects."""
-
-
-def peeking(thunk: Callable[[], A]) -> A:
-    """Call ``thunk`` and return its value. Reading consumes nothing meanwhile, also in functions of the user."""
-    me = kernel.current()
-    if me in peekers:
-        return thunk()
-    peekers.add(me)
-    try:
-        return thunk()
-    finally:
-        peekers.discard(me)
+reads_slot(ValueFluent, "stored")
 
 
 class FunctionNamed:
@@ -389,21 +300,18 @@ def function_of(designator: Any) -> Callable[..., Any]:
     return FunctionNamed(designator) if isinstance(designator, Symbol) else functions.function_of(designator)
 
 
-def is_cacheable(fluent: object) -> bool:
-    """Whether nets may keep a value computed from ``fluent``: reading it has no side effects, and it pulses when it changes."""
-    return isinstance(fluent, (ValueFluent, CachedNet))
-
-
 @overload
 def value(fluent: Fluent[A]) -> A: ...
 @overload
 def value(fluent: A) -> A: ...
 def value(fluent: Any) -> Any:
     """``(value x)``: the value of a fluent. Any other object is its own value. Reading may consume a pulse. Source: cpl.md 2.3."""
-    kind = fluent.__class__
-    if kind is ValueFluent or kind is CachedNet:  # the commonest by far
-        return fluent.read()
-    return fluent.read() if isinstance(fluent, Fluent) else fluent
+    try:
+        return fluent._fluent_value
+    except AttributeError:
+        if isinstance(fluent, Fluent):
+            raise
+        return fluent
 
 
 @overload

@@ -20,7 +20,9 @@ from cramhy_runtime.ground.data import Cons, lisp_list, list_from, one, truth
 from cramhy_runtime.ground.equality import eq, eql
 from cramhy_runtime.ground.functions import identity
 from cramhy_runtime.ground.packages import keyword
-from .fluents import CachedNet, Fluent, Net, announce, check_fluent, function_of, is_cacheable, make_fluent, value
+from . import formulas
+from .fluents import Fluent, announce, check_fluent, function_of, make_fluent, value
+from .nets import CachedNet, Net, is_cacheable
 from .pulse_fluents import ALWAYS, NEVER, ONCE, ChangeFluent, PulseFluent
 from ..symbols import sym
 
@@ -33,88 +35,49 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 A = TypeVar("A")
 K = TypeVar("K")
-_QUICK = frozenset((int, float))  # kinds whose arithmetic and order are Python's, also between one and the other
-_TESTS = frozenset((lt, gt, same_number))
+_NUMBERS = frozenset(formulas.NUMBERS)
 
 
 def net(operator: str, formula: Callable[[], A], arguments: Sequence[object], careful: bool = False) -> Net[A]:
     """The net of ``formula`` over the fluents among ``arguments``. ``careful`` says that ``formula`` calls a function of the user."""
-    inputs = tuple(dict.fromkeys(argument for argument in arguments if isinstance(argument, Fluent)))
+    inputs = tuple(dict.fromkeys([argument for argument in arguments if isinstance(argument, Fluent)]))
     kind = CachedNet if all(map(is_cacheable, inputs)) else Net
     return announce(kind(operator, formula, inputs, careful))
 
 
-def _formula(function, arguments, quick=None):
-    if len(arguments) == 1:
-        (only,) = arguments
-        return lambda: function(only.read())
-    if len(arguments) == 2:
-        if quick is not None:
-            return _quick_formula(function, quick, *arguments)
-        first, second = arguments
-        if not isinstance(second, Fluent):
-            return lambda: function(first.read(), second)
-        if not isinstance(first, Fluent):
-            return lambda: function(first, second.read())
-        return lambda: function(first.read(), second.read())
-    return lambda: function(*map(value, arguments))
+def _lifted(name, operator, quick=None, symbol=None):
+    """The fluent-aware form of the Common Lisp function ``name``.
 
+    The commonest case, two ordinary numbers, is done by ``quick`` of Python, whose ``symbol`` formulas contain.
+    """
+    lisp, is_test = sym(name), symbol in ("<", ">", "==")
 
-def _quick_formula(function, quick, first, second):
-    """``function`` of two arguments, done by Python's ``quick`` when both are ordinary numbers: nets like ``(< distance 0.5)`` are
-    what plans wait for, and are computed at each step of the world."""
-    if second.__class__ not in _QUICK:
-
-        def formula():
-            return function(value(first), value(second))
-    elif quick in _TESTS:
-
-        def formula():
-            given = first.read()
-            return (quick(given, second) or None) if given.__class__ in _QUICK else function(given, second)
-    else:
-
-        def formula():
-            given = first.read()
-            return quick(given, second) if given.__class__ in _QUICK else function(given, second)
-
-    return formula
-
-
-def _lifted(name, operator, quick=None):
-    """The fluent-aware form of the Common Lisp function ``name``; ``quick``, of Python, does the commonest case, two ordinary numbers."""
-    symbol = sym(name)
-    if quick is None:
-
-        def compute(*arguments):
-            return symbol.function(*arguments)
-    else:
-        is_test = quick in _TESTS
-
-        def compute(*arguments):
-            if len(arguments) == 2:
-                first, second = arguments
-                if first.__class__ in _QUICK and second.__class__ in _QUICK:
-                    return quick(first, second) or None if is_test else quick(first, second)
-            return symbol.function(*arguments)
+    def compute(*arguments):
+        return lisp.function(*arguments)
 
     def lifted(*arguments):
+        if quick is not None and len(arguments) == 2:
+            first, second = arguments
+            if first.__class__ in _NUMBERS and second.__class__ in _NUMBERS:
+                return quick(first, second) or None if is_test else quick(first, second)
         for argument in arguments:
             if isinstance(argument, Fluent):
-                return net(operator, _formula(compute, arguments, quick), arguments)
-        return compute(*arguments)
+                fast = quick is not None and len(arguments) == 2
+                formula = formulas.of_numbers(symbol, compute, arguments) if fast else formulas.of_call(compute, arguments)
+                return net(operator, formula, arguments)
+        return lisp.function(*arguments)
 
     lifted.__name__ = operator.lower()
     lifted.__doc__ = f"``cl:{name.lower()}`` that makes a net when an argument is a fluent."
     return lifted
 
 
-fl_lt = _lifted("<", "FL<", lt)
-fl_gt = _lifted(">", "FL>", gt)
-fl_equals = _lifted("=", "FL=", same_number)
-fl_plus = _lifted("+", "FL+", add)
-fl_minus = _lifted("-", "FL-", sub)
-fl_times = _lifted("*", "FL*", mul)
+fl_lt = _lifted("<", "FL<", lt, "<")
+fl_gt = _lifted(">", "FL>", gt, ">")
+fl_equals = _lifted("=", "FL=", same_number, "==")
+fl_plus = _lifted("+", "FL+", add, "+")
+fl_minus = _lifted("-", "FL-", sub, "-")
+fl_times = _lifted("*", "FL*", mul, "*")
 fl_divide = _lifted("/", "FL/")
 fl_member = _lifted("MEMBER", "FL-MEMBER")
 
@@ -122,7 +85,7 @@ fl_member = _lifted("MEMBER", "FL-MEMBER")
 def _lift_test(operator: str, test: Callable[[Any, Any], bool | None]) -> Comparison:
     def lifted(first, second):
         if isinstance(first, Fluent) or isinstance(second, Fluent):
-            return net(operator, _formula(test, (first, second)), (first, second))
+            return net(operator, formulas.of_call(test, (first, second)), (first, second))
         return test(first, second)
 
     lifted.__name__ = lifted.__qualname__ = operator.lower().replace("-", "_")  # by which an error of its arguments finds it
@@ -140,7 +103,7 @@ def fl_not(argument: object) -> object: ...
 def fl_not(argument: object) -> object:
     """``(not x)``; for a fluent, a net that is true while the value of the fluent is not."""
     if isinstance(argument, Fluent):
-        return net("FL-NOT", lambda: None if truth(argument.read()) else True, (argument,))
+        return net("FL-NOT", formulas.of_not(argument), (argument,))
     return None if truth(argument) else True
 
 
@@ -150,16 +113,7 @@ def fl_and(first: Fluent[object], /, *more: object) -> Fluent[object]: ...
 def fl_and(*arguments: object) -> object: ...
 def fl_and(*arguments: object) -> object:
     """The last value if all are true, else nil; a net of that if there is a fluent. ``(fl-and)`` is true."""
-
-    def formula() -> Any:
-        result: Any = True
-        for argument in arguments:
-            result = value(argument)
-            if not truth(result):
-                return None
-        return result
-
-    return _now_or_net("FL-AND", formula, arguments)
+    return _now_or_net("FL-AND", formulas.of_and(arguments), arguments)
 
 
 @overload
@@ -168,15 +122,7 @@ def fl_or(first: Fluent[object], /, *more: object) -> Fluent[object]: ...
 def fl_or(*arguments: object) -> object: ...
 def fl_or(*arguments: object) -> object:
     """The first true value, or nil; a net of that if there is a fluent. The fluents after it are not read, so they are not consumed."""
-
-    def formula() -> Any:
-        for argument in arguments:
-            result = value(argument)
-            if truth(result):
-                return result
-        return None
-
-    return _now_or_net("FL-OR", formula, arguments)
+    return _now_or_net("FL-OR", formulas.of_or(arguments), arguments)
 
 
 def _now_or_net(operator: str, formula: Callable[[], Any], arguments: tuple[object, ...]) -> Any:
@@ -194,9 +140,7 @@ def fl_funcall(function: Any, *arguments: Any) -> Any:
     function = function_of(function)
     for argument in arguments:
         if isinstance(argument, Fluent):
-            if len(arguments) == 1:
-                return net("FL-FUNCALL", lambda: one(function(argument.read())), arguments, careful=True)
-            return net("FL-FUNCALL", lambda: one(function(*map(value, arguments))), arguments, careful=True)
+            return net("FL-FUNCALL", formulas.of_users_call(function, arguments), arguments, careful=True)
     return function(*arguments)
 
 

@@ -11,7 +11,8 @@ from cramhy_runtime import kernel
 
 from cramhy_runtime.ground.data import one, truth
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
-from .fluents import Fluent, Net, peekers, value
+from .fluents import Fluent, value
+from .nets import Net, peekers
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -55,6 +56,11 @@ class PulseFluent(Fluent[bool | None]):
     def input_pulsed(self) -> None:
         self.seen = self.parent.pulses
         self.pulse()
+
+    def pulse(self) -> None:
+        self.pulses += 1
+        if self.waiters or self.nets or self.callbacks:
+            self._notify(True if self.processed < self.seen else None)
 
 
 class ChangeFluent(Net[bool | None]):

@@ -9,20 +9,20 @@ That is an error, since in ``if distance < 0.5:`` the net would always count as 
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Callable
 from cramhy_runtime.kernel.typing_names import Any, NoReturn
 
+from . import formulas
 from .operators import fl_and, fl_not, fl_or, net
-from .fluents import Fluent, value
+from .fluents import Fluent
 
 
-def _binary(symbol: str, function: Callable[[Any, Any], Any]) -> tuple[Callable[..., Fluent[object]], Callable[..., Fluent[object]]]:
+def _binary(symbol: str) -> tuple[Callable[..., Fluent[object]], Callable[..., Fluent[object]]]:
     def plain(self: Fluent[object], other: Any) -> Fluent[object]:
-        return net(f"FL{symbol}", lambda: function(value(self), value(other)), (self, other))
+        return net(f"FL{symbol}", formulas.of_python(symbol, (self, other)), (self, other))
 
     def reflected(self: Fluent[object], other: Any) -> Fluent[object]:
-        return plain(other, self) if isinstance(other, Fluent) else net(f"FL{symbol}", lambda: function(other, self.read()), (self,))
+        return plain(other, self) if isinstance(other, Fluent) else net(f"FL{symbol}", formulas.of_python(symbol, (other, self)), (self,))
 
     return plain, reflected
 
@@ -35,20 +35,15 @@ def _truth(self: Fluent[object]) -> NoReturn:
     )
 
 
-for _name, _symbol, _function in [
-    ("add", "+", operator.add),
-    ("sub", "-", operator.sub),
-    ("mul", "*", operator.mul),
-    ("truediv", "/", operator.truediv),
-]:
-    _plain, _reflected = _binary(_symbol, _function)
+for _name, _symbol in [("add", "+"), ("sub", "-"), ("mul", "*"), ("truediv", "/")]:
+    _plain, _reflected = _binary(_symbol)
     setattr(Fluent, f"__{_name}__", _plain)
     setattr(Fluent, f"__r{_name}__", _reflected)
-for _name, _symbol, _function in [("lt", "<", operator.lt), ("le", "<=", operator.le), ("gt", ">", operator.gt), ("ge", ">=", operator.ge)]:
-    setattr(Fluent, f"__{_name}__", _binary(_symbol, _function)[0])  # Python turns 3 > f into f < 3
+for _name, _symbol in [("lt", "<"), ("le", "<="), ("gt", ">"), ("ge", ">=")]:
+    setattr(Fluent, f"__{_name}__", _binary(_symbol)[0])  # Python turns 3 > f into f < 3
 for _name, _function in [("and", fl_and), ("or", fl_or)]:
     setattr(Fluent, f"__{_name}__", _function)
     setattr(Fluent, f"__r{_name}__", lambda self, other, function=_function: function(other, self))
 setattr(Fluent, "__invert__", fl_not)
-setattr(Fluent, "__abs__", lambda self: net("FL-ABS", lambda: abs(self.read()), (self,)))
+setattr(Fluent, "__abs__", lambda self: net("FL-ABS", formulas.of_call(abs, (self,)), (self,)))
 setattr(Fluent, "__bool__", _truth)

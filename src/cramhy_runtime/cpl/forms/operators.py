@@ -24,7 +24,7 @@ from cramhy_runtime.ground.functions import function_of
 from ..tree import finished_plans
 from ..tasks.branches import branch_tasks, run, run_forms, run_one
 from ..failures.failure_types import CompositeFailure, opened
-from ..failures.handling import attempt, composite_failure, observed
+from ..failures.handling import Attempt, composite_failure, observed
 from ..hooks import (
     on_finishing_named_top_level,
     on_preparing_named_top_level,
@@ -262,9 +262,9 @@ def try_each_in_order(elements: Cons | None, body: Callable[[Any], T]) -> T:
 
 
 def _try(thunks):
-    failures = []
+    failures, attempt = [], Attempt()
     for thunk in thunks:
-        values, failure = attempt(thunk)
+        values, failure = attempt.run(thunk)
         if failure is None:
             return values
         if active_tags:

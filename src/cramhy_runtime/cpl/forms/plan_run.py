@@ -48,7 +48,7 @@ def run(
 ) -> T:
     """Run ``main(*arguments)`` as a plan and return its result. Its failure is raised here, when all its tasks are dead.
 
-    clock: "virtual" or "wall", or a clock. backend: "threads" or "greenlet", or a back end. seed: decides the order of tasks and random
+    clock: "virtual" or "wall", or a clock. backend: as for `kernel.start`. seed: decides the order of tasks and random
     numbers. time_limit: seconds of the kernel's clock, after which the plan ends with `TimeLimit`. Inside a plan it is an error. An
     interrupt becomes ``KeyboardInterrupt``.
     """

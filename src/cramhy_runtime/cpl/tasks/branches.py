@@ -79,8 +79,10 @@ class Branches:
         self.ready = ready
         while not ready(self):
             self.waiter.kernel.park(self._why)
-        while self.living and any(task.status is CREATED for task in self.tasks):  # only where a seed shuffles who runs next
-            kernel.yield_()
+        if self.living:
+            for task in self.tasks:
+                while task.status is CREATED:  # only where a seed shuffles who runs next
+                    kernel.yield_()
 
     def _why(self) -> str:
         return f"the branches of {self.form.upper()}: " + ", ".join(task.name for task in self.tasks if task.alive)

@@ -74,7 +74,8 @@ def end_tasks(tasks: list[Any], reason: str | None = None) -> None:
         task.ask_to_end(reason)
     with awaiting_death(tasks):
         for task in tasks:
-            task.park_until(DEAD, lambda task=task: f"the cleanup of {task.name}")
+            if task.status not in DEAD:
+                task.park_until(DEAD, lambda task=task: f"the cleanup of {task.name}")
 
 
 def end_waits(task: AbstractTask[object], because: str | None = None) -> bool:
@@ -145,7 +146,7 @@ class CleanupLimit:
 
 def limit_cleanup(task: AbstractTask[object], block: cleanup | None = None) -> CleanupLimit | None:
     """A `CleanupLimit` for the cleanup that ``task``, the current task, begins; ``None`` if no limit is set."""
-    seconds = _limit.value
+    seconds = LIMIT.value
     if seconds is None or not isinstance(seconds, Real) or not 0 <= seconds < float("inf"):
         return None
     return CleanupLimit(task, float(seconds), block)
@@ -156,16 +157,16 @@ def _limit_of_block(block: cleanup, kernel_task: Task[object]) -> CleanupLimit |
     return None if task is None else limit_cleanup(task, block)
 
 
-_limit: Cell[float | None] = Cell(None)
+LIMIT: Cell[float | None] = Cell(None)
 
 
 def _set_limit(seconds: float | None) -> None:
-    _limit.value = seconds
+    LIMIT.value = seconds
     if seconds is not None:  # until somebody sets a limit, blocks do not even ask for it
         kernel.limit_by(_limit_of_block)
 
 
-CLEANUP_TIME_LIMIT = inherit(define_task_state("CPL-IMPL", "*CLEANUP-TIME-LIMIT*", lambda: _limit.value, _set_limit), None)
+CLEANUP_TIME_LIMIT = inherit(define_task_state("CPL-IMPL", "*CLEANUP-TIME-LIMIT*", lambda: LIMIT.value, _set_limit), None)
 
 
 def cleanup_time_limit(seconds: float | None) -> binding:

@@ -17,10 +17,12 @@ from __future__ import annotations
 import itertools
 import time
 from collections import deque
+from functools import partial
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Generic, Self, TypeVar, subscripted
 
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.active import ACTIVE
 
 from cramhy_runtime.ground import condition_types as types
 from cramhy_runtime.ground.conditions import error, from_python, type_error
@@ -30,7 +32,7 @@ from cramhy_runtime.ground.source_places import locate
 from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.looking_on import only_looked_at
 from ..current import current_task
-from .ending import end_tasks, end_waits, limit_cleanup
+from .ending import LIMIT, end_tasks, end_waits, limit_cleanup
 from ..failures.failure_types import PlanFailure, envelope, opened
 from ..failures.handling import signal_failure
 from ..fluents.operators import fl_and
@@ -39,7 +41,7 @@ from ..logging import EVENT, active_tags, log, log_sending
 from .pausing import AT_REST, AWAKE, obey, pause, release, request
 from ..statuses import CREATED, DEAD, EVAPORATED, FAILED, NEXT, RUNNING, SUCCEEDED
 from ..symbols import sym
-from ..task_variables import inherit, inherited_bindings
+from ..task_variables import declared, inherit, inherited_bindings
 from .waiting import wait_for
 
 if TYPE_CHECKING:
@@ -229,8 +231,9 @@ class AbstractTask(Generic[T]):
             error("Tried to execute task ~S which has no thread-fun.", self)
         if self.kernel_task is not None or self.status is not CREATED:
             error("Task ~S is already running a thread.", self)
-        self._find_parent()
-        parent = self.parent
+        running = ACTIVE.value
+        me = kernel.current() if running is None else running.current
+        parent = self.parent = self._parent_in(me)
         if parent is not None:
             self.depth = parent.depth + 1
             if self.depth > DEEPEST:
@@ -247,8 +250,8 @@ class AbstractTask(Generic[T]):
                 self.path, self.node = parent.path, parent.node
         if self._name is None:
             self.name  # names are numbered in the order in which tasks start
-        me = kernel.current()
-        self.kernel_task = task = me.kernel.spawn(self._live, inherited_bindings(me, self, parent), name=self._name_as_text)
+        bindings = inherited_bindings(me, self, parent) if me.dynamic is not None or declared else None
+        self.kernel_task = task = me.kernel.spawn(self._live, bindings, name=self._name_as_text)
         task.when_refused = self._refused
         if self.held:
             task.interject(lambda: obey(self))
@@ -257,10 +260,11 @@ class AbstractTask(Generic[T]):
             saved_tasks.append(self)
         return self
 
-    def _find_parent(self) -> None:
-        self.parent = current_task()
-        if self.parent is None:
+    def _parent_in(self, me: kernel.Task[object]) -> AbstractTask[object] | None:
+        """The parent of this task, which the kernel's task ``me`` starts."""
+        if me.owner is None:
             error("No current task active (*CURRENT-TASK* is NIL).")
+        return me.owner  # type: ignore[no-any-return]  # the kernel does not know whose its tasks are
 
     def _name_as_text(self) -> str:
         return self.name
@@ -283,6 +287,10 @@ class AbstractTask(Generic[T]):
             if self.held:
                 obey(self)
             status = SUCCEEDED
+        except kernel.WaitEnded as exception:
+            status, result = self.outcome(exception)
+        except kernel.Cancelled:
+            status, result = EVAPORATED, NO_VALUES
         except BaseException as exception:
             status, result = self.outcome(exception)
         if self.children:
@@ -292,7 +300,7 @@ class AbstractTask(Generic[T]):
                 status, result = self.outcome(exception)
         if self.threads:
             self.end_threads(self.threads)
-        if me.cancelled and not me.cancelled_delivered and status is SUCCEEDED:
+        if me.cancel_request is not None and not me.cancelled_delivered and status is SUCCEEDED:
             status, result = EVAPORATED, NO_VALUES  # asked to end at the last moment
         if self.unclaimed:
             self.tell_unclaimed(self.unclaimed)
@@ -354,7 +362,7 @@ class AbstractTask(Generic[T]):
 
     def _die(self, status: Keyword, result: Any) -> None:
         self.result = result  # before the status, so that who sees a dead status can read it
-        self.ended_at = kernel.active().clock.now()
+        self.ended_at = ACTIVE.value.clock.now()
         self.body = self.constraints = self.suspension_handlers = None
         if self.parent is not None:
             self.parent.children.pop(self, None)
@@ -395,17 +403,20 @@ class AbstractTask(Generic[T]):
                 kernel_task.cancel(reason)
             self._die(EVAPORATED, NO_VALUES)  # it never ran, so nothing is to be cleaned up
             return
-        kernel_task.cancel(lambda: self._begin_to_end(reason))
+        kernel_task.cancel(partial(self._begin_to_end, reason))
 
     def _begin_to_end(self, reason: str | None) -> kernel.Cancelled:
         """The exception for a request to end that arrives in the task itself. Cleanup begins after it is raised."""
-        if kernel.current() is self.kernel_task:
+        me = self.kernel_task
+        if me is not None and me.kernel.current is me:
             if active_tags:
                 log("RECEIVE-EVENT", EVENT, "EVAPORATE", reason)
-            strays = [child for child in self.children if child.ended is None]  # no form waits for these and ends them
-            if strays:
-                end_tasks(strays, reason)
-            self.cleanup_limit = limit_cleanup(self)
+            if self.children:
+                strays = [child for child in self.children if child.ended is None]  # no form waits for these and ends them
+                if strays:
+                    end_tasks(strays, reason)
+            if LIMIT.value is not None:
+                self.cleanup_limit = limit_cleanup(self)
         return kernel.Cancelled(reason)
 
     def suspend(self, reason: str | None = None, sync: bool | None = True) -> None:
@@ -478,7 +489,7 @@ class ToplevelTask(AbstractTask[T]):
     __slots__ = ()
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::TOPLEVEL-TASK"
 
-    def _find_parent(self) -> None:
+    def _parent_in(self, me: kernel.Task[object]) -> None:
         self.processor_time = time.process_time()
         if truth(RECORD.value):
             self.record = [] if self.record is None else self.record

@@ -12,6 +12,7 @@ from math import inf
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar, overload
 
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.active import ACTIVE
 
 from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import is_ratio, truth
@@ -70,7 +71,8 @@ def _wait(fluent: Fluent[object], timeout: float | None) -> Any:
         return None
     if active_tags:
         log("WAIT-FOR", "~s", fluent)
-    me = kernel.current()
+    running = ACTIVE.value
+    me = kernel.current() if running is None else running.current
     why = fluent.awaited
     waiters = fluent.waiters
     if not waiters:

@@ -7,7 +7,8 @@ one dictionary look-up once it has been made with such arguments. ``(eql x)`` sp
 How methods are called (for the compiler): a method that uses neither ``call-next-method`` nor ``next-method-p`` is added with
 ``uses_next=False`` and called as ``function(*arguments)``. Otherwise it is called as ``function(next, *arguments)``:
 ``(call-next-method)`` is ``next()``, ``(call-next-method a b)`` is ``next(a, b)``, and ``(next-method-p)`` is
-``next.exists`` (``True`` or ``None``). A lambda list with ``&key`` is compiled as if it said ``&allow-other-keys``: which
+``next.exists`` (``True`` or ``None``). With ``uses_next=DIRECTLY`` it is called so, too, but ``next`` is the function of the next
+method itself, and the method gives it all arguments. A lambda list with ``&key`` is compiled as if it said ``&allow-other-keys``: which
 keywords a call may have is checked here, because all applicable methods together decide it (ANSI 7.6.5).
 
 Runtime rooms make generic functions with `generic` and ``@function.method(Class, ...)``. Source: ANSI 7.6; texts are SBCL's.
@@ -16,24 +17,24 @@ Runtime rooms make generic functions with `generic` and ``@function.method(Class
 from __future__ import annotations
 
 import weakref
-from operator import attrgetter
 
 from ..classes import find_class_or_error, when_classes_change
-from ..conditions import SimpleError, SimpleProgramError, error, program_error, restart_case, wrong_argument_count
+from ..conditions import SimpleError, SimpleProgramError, error, restart_case, wrong_argument_count
 from ..condition_types import shown_with
 from ..data import UNSUPPLIED, Cons, Symbol, UndefinedFunction, lisp_list, list_from, python_list
 from ..equality import eql_key
 from ..functions import invalid_function_name
 from .generic_errors import incongruent, no_applicable_method_error
 from ..keyword_calls import lispify
-from .method_combination import STANDARD, Combination, find_combination
+from .keyword_checks import checking_keys
+from .method_combination import DIRECTLY, STANDARD, Combination, find_combination
+from .reached_slots import ReachedSlots
 from .methods import EqlSpecializer, Method, Shape, class_for_dispatch, is_sized
 from ..packages import is_symbol, keyword, our_own, redefined, sym, symbol_name
 from ..ports import PORTS
 from ..python_names import python_name
 
 all_generic_functions = weakref.WeakSet()
-ALLOW_OTHER_KEYS = keyword("ALLOW-OTHER-KEYS")
 
 
 @when_classes_change
@@ -50,7 +51,7 @@ class FunctionObject:
     lisp_name = "GENERIC-FUNCTION"
 
 
-class GenericFunction(FunctionObject):
+class GenericFunction(ReachedSlots, FunctionObject):
     """A generic function. Calls are in the subclasses; an instance changes its class when its way of dispatching changes.
 
     Python looks for ``__call__`` in the class alone. One class whose ``__call__`` asks the instance how to dispatch would make a call
@@ -156,8 +157,7 @@ class GenericFunction(FunctionObject):
             if found is None:
                 return lambda *arguments: no_applicable_method(self, arguments)
             self.cache[key] = found
-            if attribute_of(found) is not None:
-                self.tell_callers()
+            self.tell_callers(found=True)
         return found
 
     def _eql_possible(self, index, argument):
@@ -232,53 +232,8 @@ class GenericFunction(FunctionObject):
         if self.enclosure is not None and any(method not in self.own_methods for method in methods):
             effective = self.enclosure(effective)
         if self.shape.has_keys and methods:
-            return self._checking_keys(effective, methods)
+            return checking_keys(self, effective, methods)
         return effective
-
-    def _checking_keys(self, effective, methods):
-        shapes = [self.shape, *(method.shape for method in methods)]
-        others_allowed = any(shape.allow_other_keys for shape in shapes)
-        allowed = list(dict.fromkeys(key for shape in shapes for key in shape.keys))
-        first = self.shape.required + self.shape.optional
-
-        def check(*arguments, **keywords):
-            if len(arguments) > first:
-                given = arguments[first:]
-                if len(given) % 2:
-                    return program_error("odd number of &KEY arguments")
-                for key in given[::2]:
-                    if not others_allowed and key not in allowed and key is not ALLOW_OTHER_KEYS and not other_keys_allowed(given):
-                        return program_error("invalid keyword argument: ~S (valid keys are ~{~S~^, ~}).", key, list_from(allowed))
-            return effective(*arguments, **keywords)
-
-        return check
-
-    # ------------------------------------------------------------------------------------------- slots that callers reach
-
-    def slot_accesses(self):
-        """The pairs (class, attribute) for which a call just reads or writes that attribute of an object of that class."""
-        if self.__class__ is not UnaryGeneric and self.__class__ is not _SecondOfTwo:
-            return []
-        found = [(cls, attribute_of(effective)) for cls, effective in self.cache.items()]
-        return [(cls, attribute) for cls, attribute in found if attribute is not None]
-
-    def slot_attribute(self):
-        """The attribute that all methods read or write; ``None`` if they do anything else."""
-        if self.__class__ is not UnaryGeneric and self.__class__ is not _SecondOfTwo:
-            return None
-        (position,) = self.positions
-        found = {
-            method.function.attribute_in(method.specializers[position]) if hasattr(method.function, "attribute_in") else None
-            for method in self.methods
-        }
-        return found.pop() if len(found) == 1 else None
-
-    def tell_callers(self):
-        """Let the calls in compiled code that reach into objects themselves know what this function does now."""
-        name = self.__lisp_name__
-        symbol = name.cdr.car if isinstance(name, Cons) else name
-        if isinstance(symbol, Symbol):
-            symbol.function_changed()
 
     # ------------------------------------------------------------------------------------------------- for Python rooms
 
@@ -297,22 +252,9 @@ class GenericFunction(FunctionObject):
         return define
 
 
-def attribute_of(effective):
-    """The attribute that an effective function just reads or writes, or ``None``."""
-    if effective.__class__ is attrgetter:
-        return effective.__reduce__()[1][0]
-    return getattr(effective, "writes_attribute", None)
-
-
-def other_keys_allowed(given):
-    """Whether keyword arguments, key by key, hold a true ``:allow-other-keys``; the first one counts."""
-    for index in range(0, len(given), 2):
-        if given[index] is ALLOW_OTHER_KEYS:
-            return given[index + 1] is not None
-    return False
-
-
 class UnaryGeneric(GenericFunction):
+    by_object, by_first_of = True, 1
+
     def __call__(self, *arguments, **keywords):
         try:
             (argument,) = arguments
@@ -326,6 +268,8 @@ class UnaryGeneric(GenericFunction):
 
 
 class FirstOfTwo(UnaryGeneric):
+    by_object, by_first_of = False, 2
+
     def __call__(self, *arguments, **keywords):
         try:
             argument, _ = arguments
@@ -336,6 +280,8 @@ class FirstOfTwo(UnaryGeneric):
 
 
 class _SecondOfTwo(GenericFunction):
+    by_object = True
+
     def __call__(self, *arguments, **keywords):
         try:
             _, argument = arguments
@@ -559,7 +505,14 @@ def add_method(
     specializers = [specializer_of(specializer) for specializer in python_list(specializers)]
     shape = Shape(lambda_list) if lambda_list is not None else generic_function.shape
     method = Method(
-        generic_function, tuple(python_list(qualifiers)), specializers, function, bool(uses_next), shape, per_class, documentation
+        generic_function,
+        tuple(python_list(qualifiers)),
+        specializers,
+        function,
+        uses_next if uses_next is DIRECTLY else bool(uses_next),
+        shape,
+        per_class,
+        documentation,
     )
     if not generic_function.shape.agrees_with(shape) or len(specializers) != generic_function.shape.required:
         if generic_function.methods or generic_function.lambda_list is not None:

@@ -9,12 +9,16 @@ Source: ANSI 7.6.6; texts are SBCL's.
 
 from __future__ import annotations
 
+from functools import partial
+
 from ..conditions import SimpleError, error, restart_case, warn
 from ..data import Symbol, lisp_list, list_from, one, truth
 from ..packages import keyword, sym, symbol_name
 from ..ports import PORTS
 from .generic_errors import no_next_method_error, no_primary_method_error
 
+DIRECTLY = keyword("DIRECTLY")
+"""What ``uses_next`` of a method is that takes the function of the next method itself, and gives it all arguments."""
 AROUND, BEFORE, AFTER = keyword("AROUND"), keyword("BEFORE"), keyword("AFTER")
 
 
@@ -39,6 +43,8 @@ class NextMethod:
 class _NoNext:
     """Stands behind the last method."""
 
+    exists = None
+
     def __init__(self, generic_function, method):
         self.generic_function, self.method = generic_function, method
 
@@ -58,6 +64,8 @@ def _step(method, classes, following):
     function = method.callable_for(classes)
     if not method.uses_next:
         return function
+    if method.uses_next is DIRECTLY:
+        return partial(function, following)
 
     def run(*arguments, **keywords):
         return function(NextMethod(following, arguments, keywords), *arguments, **keywords)

@@ -29,8 +29,16 @@ if TYPE_CHECKING:
 def make_backend(backend: BackendName | Backend) -> Backend:
     """A fresh back end for "threads" or "greenlet". An object with the interface above is returned as it is.
 
+    "auto" is "greenlet" where the package is installed, and "threads" elsewhere: plans do the same on both, and greenlets are faster.
     Another word is a ValueError; "greenlet" without the package is an ImportError.
     """
+    if backend == "auto":
+        try:
+            from .greenlet import GreenletBackend
+
+            return GreenletBackend()
+        except ImportError:
+            backend = "threads"
     if backend == "threads":
         from .threads import ThreadBackend
 
@@ -47,5 +55,5 @@ def make_backend(backend: BackendName | Backend) -> Backend:
             ) from missing
         return GreenletBackend()
     if isinstance(backend, str):
-        raise ValueError(f'There is no back end "{backend}". Choose "threads" or "greenlet".')
+        raise ValueError(f'There is no back end "{backend}". Choose "auto", "threads" or "greenlet".')
     return backend

@@ -4,7 +4,8 @@ Every carrier has one lock, and waits on it while it does not have the baton. To
 the lock of the other carrier, wait on its own. There is no dispatcher thread in between, so a hand-over costs one wake-up.
 
 Threads come from a pool that all kernels share, and return to it when their task is dead. So a run that starts and
-ends tasks all the time starts no threads. The pool keeps `KEEP` idle threads; they are daemons and do not delay the exit.
+ends tasks all the time starts no threads. The pool keeps `KEEP` idle threads, and `KEEP_AFTERWARDS` when a kernel has stopped; they are
+daemons and do not delay the exit. `futexes` says what many waiting threads need.
 
 A task may recurse as deep as the main thread: `depth` says how large a stack is, and why.
 """
@@ -20,13 +21,17 @@ from ..depth import STACK_SIZE
 from ..errors import NoStack, Terminated
 from ..images import in_forked_child
 from .affinity import affinity
+from .futexes import MANY, Table
 
-KEEP = 1024  # idle threads in the pool; each holds some 10 KiB, and a new one takes up to 0.6 ms to get its memory
+KEEP = 16_384  # idle threads in the pool; each holds some 10 KiB, and a new one takes up to 0.6 ms to get its memory
+KEEP_AFTERWARDS = 1024
 
 _native_id = getattr(_thread, "get_native_id", _thread.get_ident)  # only `affinity` asks, where there is such a thing
 _idle = deque()
 _affinity = None  # see `affinity`; asked for when the first kernel starts
+_table = Table()
 in_forked_child(_idle.clear)  # threads do not come along
+in_forked_child(_table.forget)
 
 
 class ThreadCarrier:
@@ -53,6 +58,8 @@ def borrow(job):
         carrier = ThreadCarrier()
         carrier.job = job
         before = _thread.stack_size(STACK_SIZE)
+        if not _table.wide and _thread._count() >= MANY:
+            _table.widen()
         try:
             carrier.ident = _thread.start_new_thread(_carry_on, (carrier,))
         except RuntimeError as refused:
@@ -92,6 +99,8 @@ def _carry_on(carrier):
         if _affinity is not None:
             _affinity.let_go()
         job, carrier.job = carrier.job, None
+        if job is None:
+            return  # the pool keeps it no longer
         successor = job(carrier)
         job = None
         keep = len(_idle) < KEEP
@@ -189,7 +198,9 @@ class ThreadBackend:
         return sys._current_frames().get(carrier.ident)
 
     def close(self):
-        """Do nothing: the pool outlives its kernels."""
+        """The pool outlives its kernels, but it does not keep the threads of the largest plan for ever."""
+        while len(_idle) > KEEP_AFTERWARDS:
+            _idle.popleft().lock.release()
 
     def forsake(self, carrier):
         """Do nothing: a daemon thread that waits for ever does no harm."""

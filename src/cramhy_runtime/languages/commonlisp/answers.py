@@ -70,6 +70,7 @@ class _Classes:
 
 class _Types:
     known = staticmethod(types.is_known_type)
+    test = staticmethod(types.type_test)
     predicate = staticmethod(types.type_predicate)
     expand = staticmethod(types.expand_type)
     of = staticmethod(types.type_of)

@@ -51,7 +51,7 @@ HELPERS = {
     "loop.loop_support": "car-of-cons cdr-of-cons end-of-list collect collect-append collect-nconc loop-vector table-entries loop-symbols",
     "ground.source_places": "source-position",
     "evaluation.setf_places": "define-modifier define-setf-function define-setf-form define-expander",
-    "evaluation.expansion_support": """check-shape key-table key-given-p key-value case-failure ask-for-value check-type-failed
+    "evaluation.expansion_support": """next-values check-shape key-table key-given-p key-value case-failure ask-for-value check-type-failed
         handler-bind handler-case restart-report restart-case restart-bind with-simple-restart
         signal-with-restarts with-condition-restarts hash-table-iterator
         remove-property next-method-exists""",

@@ -72,7 +72,7 @@ def compile_form(form):
     if not getattr(unit, "started", False):
         unit.started = True
         statements.append(
-            models.Expression([models.Symbol("import"), read("cramhy_runtime.languages.commonlisp.compiler.names"), models.Symbol("*")])
+            models.Expression([models.Symbol("import"), read("cramhy_runtime.languages.hy.compiled_names"), models.Symbol("*")])
         )
     now = isinstance(form, Cons) and form.car in _COMPILE_TIME
     ahead = getattr(reader, "compiled_ahead", None) or rest_of_file.Ahead(None)

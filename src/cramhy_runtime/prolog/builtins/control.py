@@ -20,7 +20,7 @@ from ..engine.machine import FAIL, SOLVED, Machine, call_again, fail, proceed, s
 from ..engine.services import SERVICES
 from .native_predicates import refuse_count
 from ..symbols import sym
-from ..terms.terms import Restore, TermTail, Var, copy_term, deref, raw, undo, unify, unset_variables
+from ..terms.terms import UNSET, Restore, TermTail, Var, copy_term, deref, raw, undo, unify, unset_variables
 
 _PLAIN = frozenset([Symbol, Keyword, int, str, float, DoubleFloat])
 
@@ -370,11 +370,11 @@ def _keep_only(m, step):
                 dropped.setdefault(variable)
     values = [(variable, copy_term(variable, {v: v for v in unset_variables(variable, {})})) for variable in kept]
     for variable in dropped:
-        if variable not in kept and variable.ref is not Var.ref:
+        if variable not in kept and variable.ref is not UNSET:
             m.trail.append(Restore(variable))
-            variable.ref = Var.ref
+            variable.ref = UNSET
     for variable, value in values:
-        if variable.ref is not Var.ref:
+        if variable.ref is not UNSET:
             m.trail.append(Restore(variable))
             variable.ref = value
     return k

@@ -8,15 +8,13 @@ Plan failures and other conditions that are not errors pass. Source: prolog.md s
 
 from __future__ import annotations
 
+from cramhy_runtime.ground.catching import caught, enter_case, foreign_case
 from cramhy_runtime.ground.conditions import (
     Condition,
     Error,
     HandlerExit,
     SimpleWarning,
     StorageCondition,
-    caught,
-    enter_case,
-    foreign_case,
     type_error,
     undefined_function,
     warn,
@@ -77,8 +75,8 @@ def call_lisp(function, arguments, kind, written, m=None):
         finally:
             unbind()
     except HandlerExit as left:
+        inside = exception_position(left)  # before `caught` takes the frames from it
         problem = caught(left, case)
-        inside = exception_position(left)
     except RecursionError:
         problem = StorageCondition("Control stack exhausted.")
     warning = SimpleWarning(f"An error occurred while executing the lisp {kind} `~a': `~a'", written, problem)

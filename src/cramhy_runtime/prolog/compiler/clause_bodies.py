@@ -20,6 +20,7 @@ from ..engine.database import arguments_of, find_predicate, in_place, looked_up,
 from ..engine.machine import FAIL
 from .head_matching import Matching
 from .generated_code import is_ground, proper, variables
+from .variants import variant_of_call
 from ..symbols import sym
 
 AND, OR, NOT, IF, SOFT_IF = sym("AND"), sym("OR"), sym("NOT"), sym("CRAM-PROLOG::->"), sym("CRAM-PROLOG::*->")
@@ -86,6 +87,11 @@ def is_test(goal):
     return arguments is not None and goal.car in (AND, NOT, ONCE) and all(map(is_test, arguments))
 
 
+def is_plain_test(goal):
+    """Whether a goal is a test that calls no Lisp and signals no error of its own."""
+    return is_test(goal) and goal.car in (TRUE, FALSE, UNIFIES, BOUND, GROUND)
+
+
 def flat(goals):
     """The goals of a body, with conjunctions in it flattened."""
     for goal in goals or ():
@@ -119,6 +125,7 @@ class Bodies(Matching):
     """
 
     keep_variables = False
+    enumerating = False  # whether a generator is written, which yields at a solution
     predicate = None
 
     def body(self, goals, names, context):
@@ -141,7 +148,12 @@ class Bodies(Matching):
             else:
                 self._call(goal, goals, names, context)
                 return
-        self.emit(f"return {context.k}")
+        if self.enumerating:
+            self.emit("m.choices.pop()")
+            self.emit("yield")
+            self.emit("return")
+        else:
+            self.emit(f"return {context.k}")
 
     # ------------------------------------------------------------------------------------------------------------------ tests
 
@@ -245,6 +257,13 @@ class Bodies(Matching):
     def _call(self, goal, goals, names, context):
         functor = goal.car if isinstance(goal, Cons) else None
         if direct(goal):
+            if not self.keep_variables:
+                variant, arguments = variant_of_call(goal, names, variables(list_from(goals)))
+                if variant is not None:
+                    given = [self.build(argument, names) for argument in arguments]
+                    rest = self.continuation(goals, names, context)
+                    self.emit(f"return {self.constant(variant)}.call, {rest}{''.join(', ' + item for item in given)}")
+                    return
             build = self._as_written if functor in (LISP_FUN, LISP_PRED) else self.build
             given = [build(argument, names) for argument in goal.cdr or ()]
             predicate = self.predicate
@@ -254,7 +273,7 @@ class Bodies(Matching):
                     self.emit(f"{', '.join(f'a{i}' for i in range(len(given)))}{comma} = {', '.join(given)}{comma}")
                 self.emit(context.repeat)
                 return
-            callee = self.constant(find_predicate(functor, len(given)))
+            callee = self.constant(self.predicate_of(functor, len(given)))
             rest = self.continuation(goals, names, context)
             self.emit(f"return {callee}.call, {rest}{''.join(', ' + item for item in given)}")
             return
@@ -264,6 +283,11 @@ class Bodies(Matching):
             self.emit(f"return {self.constant(control.in_clause(functor))}(m, ({term}).cdr, {rest}, {context.b if may_cut(goal) else 0})")
         else:
             self.emit(f"return {self.constant(control.solve)}(m, {term}, {rest}, {context.b})")
+
+    def predicate_of(self, functor, arity):
+        """The `Predicate` for a call. The code that is being written may be that of a variant, which calls itself."""
+        own = self.predicate
+        return own if own is not None and own.functor is functor and own.arity == arity else find_predicate(functor, arity)
 
     def continuation(self, goals, names, context):
         """An expression for the continuation that proves ``goals``; its function is written beside this one."""
@@ -411,6 +435,7 @@ class Bodies(Matching):
         if known_goal(goal, CONSTRUCTS) is None:
             self._call(list_from([CALL, goal]), goals, names, context)
             return
+        self._shared(arguments, goals, names)
         k = self._rest(goals, names, context)
         self.body([goal], names, Context(k, self._height()))
 

@@ -3,7 +3,8 @@
 The compiler writes Python source for each predicate. The code looks at the first argument that distinguishes the clauses, and goes to
 those that can match; if that argument is unset, it looks at the next such argument. It tries a clause together with the tests at the
 beginning of its body. It makes a choice point only if these succeed and other clauses could match too, so a call that only one clause
-answers leaves none. A clause that ends by calling its own predicate becomes a loop.
+answers leaves none. A clause that ends by calling its own predicate becomes a loop. If there is nothing but tests beside that call, as in a
+``member``, the alternatives of a choice point come from a generator: it stands in the middle of the loop and only has to go on.
 
 If the clauses are too many or too long for that function, they are functions of their own, in tables of candidates. Ground facts without
 bodies are tables altogether, see ``engine/relations.py``. ``head_matching.py`` and ``clause_bodies.py`` compile the parts of a clause.
@@ -18,13 +19,31 @@ from cramhy_runtime.ground.data import Cons, Symbol
 from cramhy_runtime.utilities.patterns import variable
 
 from ..engine import database
-from .clause_bodies import CALL, CONSTRUCTS, CUT, FILTER, IF, OR, SOFT_IF, Bodies, Context, direct, flat, is_test, known_goal, may_cut
+from .clause_bodies import (
+    CALL,
+    CONSTRUCTS,
+    CUT,
+    FILTER,
+    IF,
+    OR,
+    SOFT_IF,
+    Bodies,
+    Context,
+    direct,
+    flat,
+    is_plain_test,
+    is_test,
+    known_goal,
+    may_cut,
+)
 from .list_building import FILL, Holes, can_wait, hole_positions
-from ..engine.machine import fail
+from ..engine.machine import again, fail
 from .head_matching import A_LIST, SAME, UNBOUND
-from ..engine.relations import compile_relation, index_key
+from ..engine.list_shapes import index_key
+from ..engine.relations import relation_of, relation_of_rows
 from ..engine.services import SERVICES
 from .generated_code import Rest, is_ground
+from .variants import Variant
 
 LOOP = range(100)
 _HEAVY = 90
@@ -37,6 +56,9 @@ _ANY, _LIST, _OTHER = object(), object(), object()
 def compile_clauses(predicate, clauses):
     """The call function of ``predicate`` for ``clauses``, a list of `Clause`, and its `Relation` if the clauses are rows of one."""
     arity, fitting = predicate.arity, []
+    relation = relation_of(clauses, arity)
+    if relation is not None:
+        return relation.call_function(), relation
     for clause in clauses:
         arguments = _head_arguments(clause.head, arity)
         if arguments is not None:
@@ -44,7 +66,7 @@ def compile_clauses(predicate, clauses):
     if not fitting:
         return lambda m, step: fail(m), None
     if all(clause.goals is None and is_ground(arguments) for arguments, clause in fitting):
-        relation = compile_relation([arguments for arguments, _ in fitting])
+        relation = relation_of_rows([arguments for arguments, _ in fitting])
         return relation.call_function(), relation
     return PredicateCode(predicate, fitting).function(), None
 
@@ -99,6 +121,7 @@ class PredicateCode(Holes, Bodies):
     """The code of one predicate while it is written. ``fitting`` are pairs (argument patterns, clause)."""
 
     waiting = False  # whether the clause to come may find a hole
+    leaving = "return fail(m)"
 
     def __init__(self, predicate, fitting):
         super().__init__(f"clauses of {predicate.functor!r}/{predicate.arity}")
@@ -113,7 +136,7 @@ class PredicateCode(Holes, Bodies):
         telling = self._telling(range(len(fitting)), {})
         self.hole = next((i for i in sum(positions, []) if i != telling), None) if self.looping else None
         self.builders = {n for n, found in enumerate(positions) if self.hole in found}
-        self.space.update(LOOP=LOOP, P=predicate, try_clauses=try_clauses)
+        self.space.update(LOOP=LOOP, P=predicate, try_clauses=try_clauses, again=again)
         self.tries, self.buckets, self.clause_names = {}, {}, {}
 
     def function(self):
@@ -146,14 +169,19 @@ class PredicateCode(Holes, Bodies):
     def _loop(self, body):
         if self.hole is not None:
             self.emit("hole = None")
+            self.emit("while True:")
+            self.depth += 1
         self.emit("for _ in LOOP:")
         self.depth += 1
         body()
         self.depth -= 1
-        if self.hole is not None:
-            self.emit(FILL.format(self.hole))
         self.emit(f"budget.left -= {len(LOOP)}")  # the machine's next checkpoint knows what was done here
         self.emit("if not m.choices: trail.clear()")
+        if self.hole is not None:
+            self.emit("if hole is None or P.call is not predicate: break")  # a list that is being built stays in one piece
+            self.emit("m.rest()")
+            self.depth -= 1
+            self.emit(FILL.format(self.hole))
         self.emit(f"return P.call, k{self.arguments}")
 
     def _repeats(self, goals):
@@ -190,6 +218,22 @@ class PredicateCode(Holes, Bodies):
                 return position
         return None
 
+    def _unbound(self, numbers, known):
+        """Emit code for calls in which the argument that tells most is not known. A variant is not made for them."""
+        if not isinstance(self.predicate, Variant):
+            self._dispatch(numbers, known)
+        elif self.enumerating:
+            self.emit(self._going_on())
+        else:
+            self.emit(f"return P.call_general(m, (None, k{self.arguments}))")
+
+    def _going_on(self):
+        """The statements with which a generator lets the predicate go on."""
+        return f"yield ({self.arguments[2:]}{',' if self.arity == 1 else ''}); return"
+
+    def _call_again(self):
+        self.emit("continue" if self.enumerating else f"return P.call, k{self.arguments}")
+
     def _discriminates(self, position):
         """Whether some clauses can match values of an argument that others cannot."""
         return any(self._kind(n, position) is not self._kind(0, position) for n in range(len(self.fitting)))
@@ -213,7 +257,7 @@ class PredicateCode(Holes, Bodies):
         outermost = not known
         telling = position if outermost else None
         self._case(f"if {c} is Cons:", lambda: self._candidates(fit(_LIST), {**known, position: A_LIST}, telling))
-        self._case(f"elif {c} is Var:", lambda: (self._fill(outermost), self._dispatch(numbers, {**known, position: UNBOUND})))
+        self._case(f"elif {c} is Var:", lambda: (self._fill(outermost), self._unbound(numbers, {**known, position: UNBOUND})))
         keys = {kinds[n]: self.fitting[n][0][position] for n in numbers if kinds[n] not in (_ANY, _LIST, _OTHER)}
         if len(keys) <= 4:
             for key, value in list(keys.items()):
@@ -230,7 +274,7 @@ class PredicateCode(Holes, Bodies):
                     del keys[key]
         self._case(
             f"elif {c} is LazyTail or {c} is TermTail:",
-            lambda: (self._fill(outermost), self.emit(f"{a} = {a}.force()"), self.emit(f"return P.call, k{self.arguments}")),
+            lambda: (self._fill(outermost), self.emit(f"{a} = {a}.force()"), self._call_again()),
         )
         self.emit("else:")
         self.depth += 1
@@ -268,7 +312,7 @@ class PredicateCode(Holes, Bodies):
             elif numbers:
                 self._fill(True)
         if not numbers:
-            self.emit("return fail(m)")
+            self.emit(self.leaving)
         elif self._light(numbers) and not any(kind is UNBOUND and self._discriminates(position) for position, kind in known.items()):
             self._chain(numbers, known, "continue" if self.looping else None)
         else:
@@ -304,7 +348,7 @@ class PredicateCode(Holes, Bodies):
         """Write code of clause ``n``."""
         clause = self.fitting[n][1]
         outer = self.owner, self.keep_variables, self.failing
-        self.owner, self.failing = clause, "return fail(m)"
+        self.owner, self.failing = getattr(clause, "original", clause), self.leaving
         self.keep_variables = _mentions(clause.goals, FILTER)
         write()
         self.owner, self.keep_variables, self.failing = outer
@@ -332,7 +376,7 @@ class PredicateCode(Holes, Bodies):
 
         def first():
             self.emit(f"{height} = len(trail)")
-            self.emit("for _ in ONCE:")
+            self.emit("while True:" if self.enumerating else "for _ in ONCE:")
             self.depth += 1
             count, self.failing = len(self.lines), "break"
             self.match_head(patterns, names, self._known(n, known))
@@ -340,21 +384,74 @@ class PredicateCode(Holes, Bodies):
             while tests < len(goals) and is_test(goals[tests]):
                 self.test(goals[tests], names)
                 tests += 1
+            self.failing = self.leaving
+            if self.enumerating:
+                self.emit(f"choice[2] = {height}; yield")
+                self.emit("break")
+                self.depth -= 1
+                return
             if len(self.lines) == count:
                 self.emit("pass")
             self.depth -= 1
             self.emit("else:")
             self.depth += 1
-            self.failing = "return fail(m)"
             following = goals[tests:]
             if not (following and known_goal(following[0], {CUT: (0, 0)}) is not None):
-                self.emit(f"m.choices.append(({self._try(numbers[1:], known)}, k, {height}{self.arguments}))")
+                self.emit(f"m.choices.append({self._choice(numbers[1:], known, height)})")
             self.body(following, names, Context(repeat=repeat))
             self.depth -= 1
 
         self._owned(n, first)
         self.emit(f"while len(trail) > {height}: trail.pop().ref = UNSET")
         self._chain(numbers[1:], known, repeat)
+
+    def _choice(self, numbers, known, height):
+        """An expression for a choice point whose alternatives are the clauses ``numbers``."""
+        if self._enumerable(numbers):
+            return f"[again, k, {height}, {self._rest_of(numbers, known)}(m{self.arguments}), P]"
+        return f"({self._try(numbers, known)}, k, {height}{self.arguments})"
+
+    def _enumerable(self, numbers):
+        """Whether the alternatives can come from a generator: they go on through the whole predicate, and nothing in it is called."""
+        if self.hole is not None or isinstance(self.predicate, Variant) or not self.looping or not self._repeats(self.goals[numbers[-1]]):
+            return False
+        last = len(self.fitting) - 1
+        if numbers[-1] != last or not self._light(range(last + 1)) or not direct(self.goals[last][-1]):
+            return False
+        return all(is_plain_test(goal) for goals in [*self.goals[:-1], self.goals[-1][:-1]] for goal in goals)
+
+    def _rest_of(self, numbers, known):
+        """The name of a generator that yields ``None`` at each solution of the clauses ``numbers`` and of the turns after them.
+
+        It runs while its choice point is the newest one, and takes that away before the last solution. It yields the arguments instead
+        if there are other clauses now, with which the predicate goes on.
+        """
+        key = ("rest", tuple(numbers), tuple(known.items()))
+        name = self.tries.get(key)
+        if name is None:
+            name = self.tries[key] = self.fresh("rest_")
+            self.define(name, f"m{self.arguments}", lambda: self._enumerate(numbers, known))
+        return name
+
+    def _enumerate(self, numbers, known):
+        outer = self.leaving, self.enumerating
+        self.leaving, self.enumerating = "return", True
+        self.emit("trail, choice, code = m.trail, m.choices[-1], P.call")
+        self.emit("for _ in ONCE:")  # the first turn takes the clauses that are left
+        self.depth += 1
+        self._chain(numbers, known, "continue")
+        self.depth -= 1
+        self.emit("while True:")
+        self.depth += 1
+        self.emit("for _ in LOOP:")
+        self.depth += 1
+        self._dispatch(list(range(len(self.fitting))), {})
+        self.depth -= 1
+        self.emit(f"budget.left -= {len(LOOP)}")
+        self.emit(f"if P.call is not code: {self._going_on()}")
+        self.emit("m.rest()")
+        self.depth -= 1
+        self.leaving, self.enumerating = outer
 
     def _try(self, numbers, known):
         """The name of the function of a choice point that tries ``numbers``."""

@@ -14,7 +14,7 @@ from cramhy_runtime.utilities.patterns import ANONYMOUS, same_atom, variable
 
 from ..builtins import function_calls as lisp_calls
 from ..engine import machine
-from ..engine.relations import index_key
+from ..engine.list_shapes import index_key
 from ..terms.terms import UNSET, TermTail, Var, deref, ground, undo, unify
 
 GLOBALS = {

@@ -13,11 +13,22 @@ from cramhy_runtime.ground.data import Cons, Symbol
 from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
 
 from ..engine.database import traced
+from ..terms.terms import NEW_VARIABLE
 from .generated_code import Rest, Source, is_ground, variables
 
 _DEEP = 4
+_ALONG = 0.5
+"""How much deeper the next element of a list counts than this one."""
 UNKNOWN, A_LIST, UNBOUND, SAME = "unknown", "a list", "unbound", "same"
 """Knowledge about an argument: nothing; that it is a cons; an unset variable; or the atom that the clause has there."""
+
+
+def _short(pattern):
+    """Whether a list without variables has two atoms at most: tests for these are shorter than a call."""
+    rest = pattern.cdr
+    return not isinstance(pattern.car, Cons) and (
+        not isinstance(rest, Cons) or not (isinstance(rest.car, Cons) or isinstance(rest.cdr, Cons))
+    )
 
 
 class Matching(Source):
@@ -83,7 +94,7 @@ class Matching(Source):
             return
         if known is SAME:
             return
-        if isinstance(pattern, Cons) and known is None and (depth >= _DEEP or is_ground(pattern)):
+        if isinstance(pattern, Cons) and known is None and (depth >= _DEEP or (is_ground(pattern) and not _short(pattern))):
             self.fail_unless(f"unify({self.build(pattern, names)}, {x}, trail)")
             return
         if known is None:
@@ -100,13 +111,14 @@ class Matching(Source):
         if known is UNBOUND:
             self._set(x, value)
             return
-        same = f"{x} is {value}" if isinstance(pattern, Symbol) or pattern is None or pattern is True else f"same_atom({x}, {value})"
-        self.emit(f"if not ({same}):")
+        identical = isinstance(pattern, Symbol) or pattern is None or pattern is True
+        self.emit(f"if {x} is not {value}:" if identical else f"if not same_atom({x}, {value}):")
         self.emit(f"    if {x}.__class__ is Var:")
         self.depth += 2
         self._set(x, value)
         self.depth -= 2
-        self.emit(f"    elif not unify({x}, {value}, trail): {self.failing}")
+        other = f"{x}.__class__ is Symbol or " if identical else ""
+        self.emit(f"    elif {other}not unify({x}, {value}, trail): {self.failing}")
 
     def _set(self, x, value):
         self.emit(f"{x}.ref = {value}")
@@ -143,7 +155,7 @@ class Matching(Source):
         self.emit(f"else: {self.failing}")
 
     def _match_parts(self, pattern, x, names, depth):
-        for part, attribute in ((pattern.car, "car"), (pattern.cdr, "cdr")):
+        for part, attribute, further in ((pattern.car, "car", 1), (pattern.cdr, "cdr", _ALONG)):
             if part is ANONYMOUS:
                 continue
             if variable(part) and part not in names:
@@ -152,7 +164,7 @@ class Matching(Source):
             else:
                 piece = self.fresh("p")
                 self.emit(f"{piece} = {x}.{attribute}")
-                self.match(part, piece, names, depth + 1)
+                self.match(part, piece, names, depth + further)
 
     # ------------------------------------------------------------------------------------------------------------ building terms
 
@@ -167,7 +179,9 @@ class Matching(Source):
         """An expression for the term ``pattern``; new variables and conses are made on lines before it."""
         if variable(pattern):
             if pattern is ANONYMOUS:
-                return "Var()"
+                name = self.fresh("v")
+                self.emit(NEW_VARIABLE.format(name))
+                return name
             if pattern not in names:
                 names[pattern] = self.fresh("v")
                 self.new_variable(names[pattern], pattern)
@@ -194,7 +208,7 @@ class Matching(Source):
 
     def new_variable(self, python_name, symbol):
         """Emit code that makes a variable. While goals are traced, the variable knows its name in the clause."""
-        self.emit(f"{python_name} = Var()")
+        self.emit(NEW_VARIABLE.format(python_name))
         self.name_variable(python_name, symbol)
 
     def name_variable(self, python_name, symbol):

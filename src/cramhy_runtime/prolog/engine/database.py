@@ -12,6 +12,7 @@ The compiler of clauses and the constructs of control stand above this module. T
 from __future__ import annotations
 
 import itertools
+from weakref import WeakSet
 
 from cramhy_runtime.ground.data import Cons, list_from
 from cramhy_runtime.ground.packages import common, is_symbol
@@ -55,15 +56,18 @@ traced = Traced()
 class Predicate:
     """The code for goals with ``functor`` and ``arity`` arguments: ``call(machine, (call, continuation, *arguments))``."""
 
-    __slots__ = ("functor", "arity", "call", "_relation")
+    __slots__ = ("functor", "arity", "call", "_relation", "variants", "__weakref__")
 
     def __init__(self, functor, arity):
         self.functor, self.arity = functor, arity
+        self.variants = WeakSet()
         self.forget()
 
     def forget(self):
-        """Make the code anew at the next call."""
+        """Make the code anew at the next call, and that of its variants (``compiler/variants.py``)."""
         self.call, self._relation = self.compile_and_call, False
+        for variant in self.variants:
+            variant.forget()
 
     def compile(self):
         """Make the code now. Code that is running meanwhile does not change."""

@@ -23,7 +23,7 @@ from cramhy_runtime.utilities.patterns import ANONYMOUS, same_atom
 from . import database
 from .database import find_predicate, valid_functor
 from .machine import SOLVED, Machine
-from .relations import index_key
+from .list_shapes import index_key
 from ..symbols import sym
 from ..terms.terms import Var, resolve
 

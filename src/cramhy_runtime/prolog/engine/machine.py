@@ -149,6 +149,13 @@ class Machine:
         if budget.left < 0:
             kernel.checkpoint()
 
+    def rest(self):
+        """From time to time in a loop that builds a list: let other tasks run, tidy the trail."""
+        if len(self.trail) > self.until_tidy and self.choices:
+            self._tidy()
+        if budget.left < 0:
+            kernel.checkpoint()
+
     def _depth(self, step):
         """The number of goals that wait for ``step``, or of choice points if these are more. Beyond the limit it is an error.
 
@@ -233,6 +240,35 @@ def call_again(m, step):
     """The function of a choice point ``(call_again, k, height, call, *arguments)`` that calls a goal."""
     m.choices.pop()
     return step[3](m, (step[3], step[1], *step[4:]))
+
+
+def again(m, step):
+    """The function of a choice point ``[again, k, height, solutions, predicate]``. The generator ``solutions`` sets variables.
+
+    It yields ``None`` for a solution. If it yields arguments, the predicate goes on with these.
+    """
+    k, solutions, collect = step[1], step[3], m.collect
+    if k is SOLVED and collect is not None:
+        for given in solutions:
+            if given is not None:
+                break
+            collect()
+            budget.left -= 1
+            if budget.left < 0:
+                kernel.checkpoint()
+        else:
+            given = None
+    else:
+        for given in solutions:
+            if given is None:
+                return k
+            break
+        else:
+            given = None
+    choices = m.choices
+    if choices and choices[-1] is step:
+        choices.pop()
+    return fail(m) if given is None else (step[4].call, k, *given)
 
 
 def settle(m, height):

@@ -10,24 +10,25 @@ values, and a variable that occurs twice, are handled in general: rows that may 
 
 from __future__ import annotations
 
+import gc
+from collections import defaultdict
+from functools import lru_cache
+from itertools import islice
+
 from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol
-from cramhy_runtime.ground.equality import equal_key
 from cramhy_runtime.utilities.generated_functions import generated_function
 
+from .list_shapes import FEW, ListedRows, index_key
 from .machine import fail
 from ..terms.terms import UNSET, Var, deref, unify
 
-_BY_VALUE = frozenset([int, str, float, DoubleFloat])
-_WRITTEN_OUT = 4
-"""A call function is written for so many arguments at most."""
-
-
-def index_key(atom):
-    """The key of ``atom`` in an index, equal for atoms that are `same_atom`. ``NotImplemented`` for objects that are compared otherwise."""
-    kind = atom.__class__
-    if kind is Symbol or kind is Keyword or atom is None:
-        return atom
-    return equal_key(atom) if kind in _BY_VALUE or atom is True else NotImplemented  # `t` is Python's True, which is 1 in a dict
+_SYMBOLS = {Symbol, Keyword}
+_OWN_KEYS = {Symbol, Keyword, int, str, type(None)}
+"""The kinds of atoms that are their own key."""
+_SAMPLE = 500
+"""So many rows are looked at in order to guess whether each has a key of its own."""
+_CONSTANTS = {int, str, float, DoubleFloat, type(None), bool}
+"""The kinds of atoms that are never variables."""
 
 
 def column_key(term):
@@ -39,15 +40,21 @@ def column_key(term):
 
 
 class Relation:
-    """The rows of a relation and the tables made of them. ``exact`` says that every value is an atom with a key of its own."""
+    """The rows of a relation and the tables made of them. ``exact`` says that every value is an atom with a key of its own.
 
-    def __init__(self, rows):
-        self.rows = rows
-        self.arity = len(rows[0])
-        columns = range(self.arity)
-        self.keyed = [all(column_key(row[i]) is not NotImplemented for row in rows) for i in columns]
-        self.lists = [any(row[i].__class__ is Cons for row in rows) for i in columns]
-        self.exact = all(index_key(value) is not NotImplemented for row in rows for value in row)
+    The rows are kept by columns, since Python looks through a list of 100,000 values in a hundredth of the time of a loop over rows.
+    """
+
+    def __init__(self, columns, count, kinds):
+        """``columns``: for each argument the list of its values in all ``count`` rows; ``kinds``: the set of their classes."""
+        self.columns, self.count = columns, count
+        self.arity = len(columns)
+        self.keys = [
+            column if found <= _OWN_KEYS else [column_key(value) for value in column] for column, found in zip(columns, kinds, strict=True)
+        ]
+        self.keyed = [keys is column or NotImplemented not in keys for keys, column in zip(self.keys, columns, strict=True)]
+        self.lists = [Cons in found for found in kinds]
+        self.exact = all(self.keyed) and not any(self.lists)
         self._tables = {}
 
     def table(self, mask, kept=None):
@@ -57,15 +64,37 @@ class Relation:
         """
         table = self._tables.get((mask, kept))
         if table is None:
-            known = [i for i in range(self.arity) if mask >> i & 1]
             columns = [i for i in range(self.arity) if not mask >> i & 1] if kept is None else kept
-            table = {}
-            for row in self.rows:
-                keys = [column_key(row[i]) for i in known]
-                rest = row[columns[0]] if len(columns) == 1 else tuple([row[i] for i in columns])
-                table.setdefault(keys[0] if len(keys) == 1 else tuple(keys), []).append(rest)
+            collecting = gc.isenabled()
+            gc.disable()  # all that is made now is kept
+            try:
+                table = self._table([i for i in range(self.arity) if mask >> i & 1], columns)
+            finally:
+                if collecting:
+                    gc.enable()
             self._tables[mask, kept] = table
         return table
+
+    def _table(self, known, kept):
+        if not known:
+            return {(): self._listed([*_side_by_side([self.columns[i] for i in kept], self.count)])}
+        keys = [self.keys[i] for i in known]
+        if self.count > _SAMPLE == len(set(islice(_side_by_side(keys, self.count), _SAMPLE))):  # perhaps each row has a key of its own
+            rows = map(list, zip(_side_by_side([self.columns[i] for i in kept], self.count)))
+            table = dict(zip(_side_by_side(keys, self.count), rows)) if kept else dict.fromkeys(_side_by_side(keys, self.count), [()])
+            if len(table) == self.count:
+                return table
+        table = defaultdict(list)
+        for key, row in zip(_side_by_side(keys, self.count), _side_by_side([self.columns[i] for i in kept], self.count)):
+            table[key].append(row)
+        table.default_factory = None
+        if not self.exact:
+            for key, rows in table.items():
+                table[key] = self._listed(rows)
+        return table
+
+    def _listed(self, rows):
+        return rows if self.exact or len(rows) <= FEW else ListedRows(rows)
 
     def call_general(self, m, step):
         """The call function for any goal."""
@@ -81,12 +110,16 @@ class Relation:
                 keys.append(key)
         every = tuple(range(self.arity))
         rows = self.table(mask, every).get(keys[0] if len(keys) == 1 else tuple(keys), ())
-        return _unify_rows(m, step[1], [(row,) for row in rows] if self.arity == 1 else rows, terms, 0)
+        if len(rows) > FEW and rows.__class__ is ListedRows:
+            rows = rows.narrowed(*terms)
+        if self.arity == 1:
+            return _unify_one(m, step[1], rows, terms[0], 0)
+        return _unify_rows(m, step[1], rows, terms, 0)
 
     def call_function(self):
         """The call function, written for this relation if it is simple enough."""
         if not self.arity:
-            return _constant(len(self.rows))
+            return _constant(self.count)
         if self.arity <= (4 if self.exact else 3) and all(self.keyed):
             return self._written()
         return self.call_general
@@ -155,6 +188,7 @@ class Relation:
         yield "if rows is None: return fail(m)"
         if lists:
             terms = ", ".join(f"a{j}" for j in kept)
+            yield f"if len(rows) > {FEW}: rows = rows.narrowed({terms})"
             yield f"return unify_one(m, k, rows, {terms}, 0)" if len(kept) == 1 else f"return unify_rows(m, k, rows, ({terms}), 0)"
         elif not unknown:
             yield "return again(m, k, len(rows)) if len(rows) > 1 else k"
@@ -163,9 +197,70 @@ class Relation:
             yield f"return set_{min(len(unknown), 3)}(m, k, rows, {f'[{terms}]' if len(unknown) > 2 else terms})"
 
 
-def compile_relation(rows):
-    """The `Relation` of the ground facts ``rows``, each the list of its arguments."""
-    return Relation([tuple(row) for row in rows])
+def _side_by_side(columns, count):
+    """Iterate over the ``count`` rows of ``columns``: tuples, or the values of a single column."""
+    if len(columns) == 1:
+        return columns[0]
+    return zip(*columns) if columns else [()] * count
+
+
+def relation_of(clauses, arity):
+    """The `Relation` of clauses that are all facts with ``arity`` arguments without variables. ``None`` if some are not, or may not be."""
+    columns = columns_of(arity)(clauses)
+    if columns is None:
+        return None
+    kinds = [set(map(type, column)) for column in columns]
+    return Relation(columns, len(clauses), kinds) if all(map(_constants, columns, kinds)) else None
+
+
+@lru_cache(50)
+def columns_of(arity):
+    """A function that takes facts apart: it returns a list of the values of each argument, or ``None`` if a clause is not such a fact."""
+    lines = [f"v{i} = []; append{i} = v{i}.append" for i in range(arity)]
+    lines += ["for clause in clauses:", "    if clause.goals is not None: return None", "    cell = clause.head.cdr"]
+    for i in range(arity):
+        lines += ["    if cell.__class__ is not Cons: return None", f"    append{i}(cell.car); cell = cell.cdr"]
+    lines += ["    if cell is not None: return None", f"return [{', '.join(f'v{i}' for i in range(arity))}]"]
+    return generated_function("columns of facts", "columns", ["clauses"], lines, {"Cons": Cons})
+
+
+def relation_of_rows(rows):
+    """The `Relation` of ground facts, each the list of its arguments."""
+    columns = [[row[i] for row in rows] for i in range(len(rows[0]))]
+    return Relation(columns, len(rows), [set(map(type, column)) for column in columns])
+
+
+def _constants(column, kinds):
+    """Whether all values, which are of these ``kinds``, are known to be without variables."""
+    unlike = kinds - _CONSTANTS
+    if Cons in unlike:
+        if not all(_ground(value) for value in column if value.__class__ is Cons):
+            return False
+        column = [value for value in column if value.__class__ is not Cons]
+        unlike.discard(Cons)
+    if not unlike <= _SYMBOLS:
+        return False
+    return not unlike or not any(value.name[:1] == "?" for value in set(column) if value.__class__ in _SYMBOLS)
+
+
+def _ground(cell):
+    """Whether a list is known to be without variables."""
+    waiting = []
+    while True:
+        while cell.__class__ is Cons:
+            item = cell.car
+            kind = item.__class__
+            if kind is Cons:
+                waiting.append(item)
+            elif (item.name[:1] == "?") if kind in _SYMBOLS else kind not in _CONSTANTS:
+                return False
+            cell = cell.cdr
+        kind = cell.__class__
+        if (cell.name[:1] == "?") if kind in _SYMBOLS else kind not in _CONSTANTS:
+            return False
+        if not waiting:
+            return True
+        cell = waiting.pop()
 
 
 # ---------------------------------------------------------------------------- the rows that fit, one after the other

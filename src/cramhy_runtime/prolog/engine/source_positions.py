@@ -15,7 +15,7 @@ from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.kernel.images import Cell, per_image
 
 from . import database
-from .machine import Machine
+from .machine import Machine, again
 from .goal_text import clause_name, clause_number, show
 from ..terms.terms import import_term, undo, unify
 
@@ -110,9 +110,9 @@ def _tell_clause(found):
     step = found.get("step") or (None, None)
     function = step[0]
     clause = getattr(function, "clause", None)
-    if clause is None and step[1] is not None:
+    if clause is None and step[1] is not None and function is not again:
         clause = getattr(step[1][0], "clause", None)
-    predicate = getattr(function, "__globals__", {}).get("P")
+    predicate = step[4] if function is again else getattr(function, "__globals__", {}).get("P")
     if clause is None and isinstance(predicate, database.Predicate):
         entry = database.functors.get(predicate.functor)
         clauses = entry.clauses if entry is not None else ()

@@ -141,6 +141,8 @@ def characterp(thing):
 
 def _comparison(name, compare, key, all_pairs=False):
     def compared(character, *characters):
+        if len(characters) == 1 and character.__class__ is characters[0].__class__ is Character and not all_pairs:
+            return True if compare(key(character.char), key(characters[0].char)) else None
         chars = [key(char_of(character, "\nwhen binding CHARACTER")), *(key(char_of(other, "")) for other in characters)]
         if all_pairs:
             return True if len(set(chars)) == len(chars) else None

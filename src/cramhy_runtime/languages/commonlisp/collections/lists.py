@@ -134,6 +134,7 @@ def _define_path(name, path):
         setattr(pair, last_step, value)
         return value
 
+    accessor.single_valued = True  # `primary` need not look
     accessor.__name__ = accessor.__qualname__ = name
     accessor.__doc__ = f"``{name}``: " + ", then ".join(steps) + "."
     if name not in globals():
@@ -148,6 +149,7 @@ for _index, _name in enumerate("first second third fourth fifth sixth seventh ei
     _define_path(_name, "a" + "d" * _index)
 _define_path("rest", "d")
 first, rest = car, cdr
+car.single_valued = cdr.single_valued = True
 
 
 def cadr(lst):

@@ -32,6 +32,8 @@ def _ordered(items, predicate, key):
     keys = items if plain else values_of(function_of(key, "\nwhen binding SB-IMPL::KEY"), in_turns(items))
     if predicate is LESS.function or predicate is GREATER.function:
         if _comparable(keys):
+            if plain and len(items) <= RUN:
+                return sorted(items, reverse=predicate is GREATER.function)
             indices = _numbered(keys, predicate is GREATER.function)
             return [items[index] for index in in_turns(indices)]
     predicate = directly(predicate)

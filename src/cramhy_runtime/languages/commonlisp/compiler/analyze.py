@@ -17,8 +17,9 @@ from cramhy_runtime.ground.dispatch.methods import Shape
 from cramhy_runtime.ground.packages import is_symbol, sym
 from ..reader.form_places import FormPlaces
 from . import nodes
-from .declared_types import declared_types, kind_of_type
+from .declared_types import declared_types
 from .environment import Env, FunctionScope, LocalFunction, SpecialVariable, SymbolMacro, Variable, function_key
+from .kinds import kind_of_type
 from .net_tests import WAITING, look_at_wait
 from .nodes import (
     Call,
@@ -37,7 +38,7 @@ from .nodes import (
     SetGlobal,
     SetLocal,
 )
-from .open_coding import MAPPING, open_coded
+from .open_coding import MAPPING, call_of_next, open_coded
 from .style_checks import CRAMHY, Scrutiny, tuple_of
 
 SPECIAL_FORMS: dict = {}
@@ -128,6 +129,8 @@ class Analyzer(Scrutiny):
                 )
             if isinstance(local, LocalFunction):
                 self.local_call(head, local.shape, tuple_of(form), env)
+                if local.next is not None:
+                    return call_of_next(self, local.next, form, env)
                 return CallLocal(local.variable.used_from(env.scope), self.arguments(form, env))
             expansion, expanded = self.expand(form, env)
             if expanded:
@@ -394,7 +397,8 @@ note_traits(
     "mapcan member assoc find position count remove delete sort concatenate format princ prin1 print terpri write-string "
     "gensym error make-hash-table vector copy-list cadr cddr caar cdar caddr string-upcase string-downcase coerce reduce "
     "cramhy::car-of-cons cramhy::cdr-of-cons cramhy::collect cramhy::loop-vector "
-    "rplaca rplacd list-length subseq type-of class-of identity random sqrt sin cos atan expt",
+    "rplaca rplacd list-length subseq type-of class-of identity random sqrt sin cos atan expt exp log tan asin acos "
+    "float gcd lcm isqrt logand logior logxor ash array-dimension make-array",
     "single",
 )
 

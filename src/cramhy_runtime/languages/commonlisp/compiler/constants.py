@@ -11,8 +11,11 @@ from fractions import Fraction
 from operator import attrgetter
 
 from cramhy_runtime.ground.arrays import SimpleArray, TypedVector
+from cramhy_runtime.ground.keyword_calls import KeywordCalls
 from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Symbol
+from ..format.format_pieces import Piece
 from ..numbers.complex_numbers import parts
+from ..objects.makers import Maker
 from ..syntax.backquote import Comma
 from .core import List, expression, word
 
@@ -123,6 +126,12 @@ class Constants:
             return expression(word("Larray"), List([*obj.dimensions]), List([self.builder(item) for item in obj.storage]))
         if isinstance(obj, TypedVector):
             return expression(word("Ltyped_vector"), List([self.builder(item) for item in obj]), self.builder(obj.element_type))
+        if kind is KeywordCalls:
+            return expression(word("Lkeyword_calls"), self.builder(obj.symbol), obj.count, *map(self.builder, obj.keys))
+        if kind is Piece:
+            return expression(word("Lpiece"), obj.control, obj.index)
+        if kind is Maker:
+            return expression(word("Lmaker"), self.builder(obj.name), *map(self.builder, obj.keys))
         raise NotStorable(obj)
 
 

@@ -24,8 +24,6 @@ MUFFLE-CONDITIONS""".split()
 
 UNCHECKED = {sym("T"), sym("*"), True}
 FIXNUM = sym("FIXNUM")
-CLASSES = {sym("INTEGER"): "int", FIXNUM: "int", sym("SINGLE-FLOAT"): "float"}
-"""Types that one comparison of classes proves (for a fixnum also one of size), and the kind of a value that has passed it."""
 LEAST_FIXNUM, GREATEST_FIXNUM = -FIXNUM_LIMIT, FIXNUM_LIMIT - 1
 DOUBLE = {sym("DOUBLE-FLOAT"), sym("LONG-FLOAT")}
 
@@ -62,11 +60,6 @@ def checkable(specifier):
 
 def is_fixnum(value):
     return value.__class__ is int and LEAST_FIXNUM <= value <= GREATEST_FIXNUM
-
-
-def kind_of_type(specifier):
-    """The kind (see ``facts.py``) of the values that have passed the check, or ``None``."""
-    return CLASSES.get(specifier) if isinstance(specifier, Symbol) else None
 
 
 _predicates: dict = {}

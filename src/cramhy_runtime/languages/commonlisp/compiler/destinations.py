@@ -8,16 +8,17 @@ __all__ = ["NONE", "TRUE"]
 
 
 class Destination:
-    """Where a value goes. ``multiple``: all values are wanted, not only the first."""
+    """Where a value goes. ``multiple``: all values are wanted, not only the first. ``raw``: doubles come as Python's floats."""
 
-    __slots__ = ("kind", "name", "multiple")
+    __slots__ = ("kind", "name", "multiple", "raw")
 
-    def __init__(self, kind, name=None, multiple=False):
-        self.kind, self.name, self.multiple = kind, name, multiple
+    def __init__(self, kind, name=None, multiple=False, raw=False):
+        self.kind, self.name, self.multiple, self.raw = kind, name, multiple, raw
 
 
 EFFECT = Destination("effect")
 VALUE = Destination("value")
+RAW = Destination("value", raw=True)
 VALUES = Destination("value", multiple=True)
 FIRST_OF_VALUES = Destination("value", multiple=True)
 """The first value is wanted, and who wants it takes it out of several: so it need not be done before."""

@@ -11,6 +11,7 @@ from cramhy_runtime.ground.data import Cons
 from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.packages import sym, symbol_name
 from .core import HEADS
+from .kinds import ANY
 
 EXECUTE = {sym(":EXECUTE"), sym("EVAL")}
 """The situations of ``eval-when`` in which ``eval`` evaluates; a file is compiled and loaded at once, so it evaluates in all."""
@@ -24,6 +25,7 @@ class FunctionScope:
         self.parent = parent
         self.names = parent.names if parent else (names if names is not None else {})
         self.loop_depth = 0
+        self.loops = False  # whether there is any tagbody in it
         self.catching_depth = 0
         self.nonlocals = set()
         self.exits_set = 0  # how many statements that leave a loop for an outer one have been generated
@@ -67,7 +69,9 @@ class Variable:
         self.used = self.ignored = self.ignorable = False
         self.reads = self.writes = self.operand_uses = 0  # these and the next are found by ``facts.py``
         self.values = []
-        self.kind = None
+        self.kind = ANY
+        self.raw = False  # whether a float that it holds stands for a double: see ``kinds.py``
+        self.bits = self.never_negative = None  # asked for when code is made
         self.type = None  # the declared type, which assigned values are checked for
         self.proven = None  # the kind of a parameter whose type is checked on entry
 
@@ -108,11 +112,15 @@ class SymbolMacro:
 
 
 class LocalFunction:
-    """A function of ``flet`` or ``labels``: the value of a variable. ``shape``: the calls that it takes."""
+    """A function of ``flet`` or ``labels``: the value of a variable. ``shape``: the calls that it takes.
 
-    def __init__(self, variable, shape=None):
+    next: if it is ``call-next-method`` or ``next-method-p``, what it means (`open_coding.next_method`).
+    """
+
+    def __init__(self, variable, shape=None, next=None):
         self.variable = variable
         self.shape = shape
+        self.next = next
 
 
 class LocalMacro:
@@ -147,6 +155,7 @@ class Block(_Exit):
     def __init__(self, symbol, owner):
         super().__init__(owner)
         self.symbol = symbol
+        self.values = []  # what it is left with
 
 
 class Tagbody(_Exit):

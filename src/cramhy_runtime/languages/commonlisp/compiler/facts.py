@@ -1,33 +1,25 @@
 """What is known about variables before code is made: how often each is read and assigned, and the kind of its values.
 
-A variable that only ever gets integers needs no test before ``+``: the *kind* of a variable is "int", "float" or "boolean" when
-all forms that give it a value are of that kind, "number" when they are numbers of any kinds, and ``ANY`` otherwise. Variables may
-depend on each other and on themselves (``(setq s (+ s j))``), so the kinds are the least solution: all begin as ``NONE_YET`` and
-are widened until nothing changes. Parameters are ``ANY``. "float" is the plain float that stands for a single-float, never a
-`DoubleFloat`.
+A variable that only ever gets integers needs no test before ``+``: the kind (``kinds.py``) of a variable joins the kinds of all
+forms that give it a value. Variables may depend on each other and on themselves (``(setq s (+ s j))``), so the kinds are the least
+solution: all begin as ``NONE_YET`` and are widened until nothing changes. Parameters are of ``ANY`` kind.
 """
 
 from __future__ import annotations
 
-from dataclasses import fields
+from cramhy_runtime.utilities.records import fields
 
 from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.packages import sym
 from . import nodes
-from .declared_types import kind_of_type
+from .kinds import ABS, ANY, DIVIDE, MAX, MIN, MINUS, NONE_YET, PLUS, SMOOTH, SQRT, STEPS, TIMES, kind_of, raw
 
-NONE_YET, ANY = "none yet", None
-NUMBERS = {"int", "float", "number"}
-
-PLUS, MINUS, TIMES, DIVIDE, ADD_ONE, SUBTRACT_ONE = map(sym, "+ - * / 1+ 1-".split())
-TESTED = {sym(name) for name in "+ - * 1+ 1- < > <= >= =".split()}
-_STEPS = {ADD_ONE, SUBTRACT_ONE}
-_OPERATORS = {PLUS, MINUS, TIMES}
-_REST = {sym("MOD"), sym("REM")}
-_CHOICE = {sym("MAX"), sym("MIN")}
-_INTEGERS = {sym(name) for name in "LENGTH CHAR-CODE COUNT LOGAND LOGIOR LOGXOR HASH-TABLE-COUNT LIST-LENGTH ARRAY-RANK".split()}
+OPERANDS_OF = {PLUS, MINUS, TIMES, DIVIDE, MAX, MIN, ABS, SQRT, *STEPS, *SMOOTH, *map(sym, "< > <= >= = ZEROP PLUSP MINUSP".split())}
+"""Functions for whose arguments it pays to know the class, or to be raw."""
 
 _node_fields: dict = {}
+_ENDS = {nodes.Constant, nodes.LocalVariable, nodes.GlobalVariable, nodes.FunctionReference, nodes.Go}
+"""Nodes that have none below them."""
 
 
 def children(node):
@@ -60,11 +52,12 @@ def walk(roots):
     while pending:
         node = pending.pop()
         yield node
-        pending.extend(children(node))
+        if node.__class__ not in _ENDS:
+            pending.extend(children(node))
 
 
 def study(root):
-    """Note on each variable bound in ``root`` its ``reads``, ``writes`` and ``kind``."""
+    """Note on each variable bound in ``root`` its ``reads``, ``writes`` and ``kind``, and whether it is ``raw``."""
     bound = []
     for node in walk([root]):
         kind = node.__class__
@@ -73,87 +66,56 @@ def study(root):
         elif kind is nodes.SetLocal:
             node.variable.writes += 1
             node.variable.values.append(node.value)
-        elif kind is nodes.Call and node.symbol in TESTED:
-            for argument in node.arguments:
-                if argument.__class__ is nodes.LocalVariable:
-                    argument.variable.operand_uses += 1
+        elif kind is nodes.Call:
+            if node.symbol in OPERANDS_OF:
+                for argument in node.arguments:
+                    if argument.__class__ is nodes.LocalVariable:
+                        argument.variable.operand_uses += 1
         elif kind is nodes.Let:
             for variable, value in node.bindings:
                 if not isinstance(variable, Symbol):
                     variable.values.append(value)
                     variable.kind = NONE_YET
                     bound.append(variable)
+        elif kind is nodes.ReturnFrom:
+            node.block.values.append(node.value)
+    for variable in reversed(bound):
+        value = variable.values[0]
+        if not variable.writes and value.__class__ is nodes.LocalVariable:  # another name
+            value.variable.operand_uses += variable.operand_uses
+    find_kinds(bound)
+
+
+def find_kinds(bound):
+    """Note on each variable in ``bound`` its ``kind``, given what it is assigned, and whether it is held ``raw``."""
     changed = bool(bound)
     while changed:
         changed = False
         for variable in bound:
-            if variable.kind is not ANY:
+            if variable.kind != ANY:
                 new = variable.kind
                 for value in variable.values:
-                    new = join(new, kind_of(value))
+                    new |= kind_of(value)
                 if new != variable.kind:
                     variable.kind = new
                     changed = True
+    held = [variable for variable in bound if raw(variable.kind)]
+    for variable in held:
+        for value in variable.values:
+            for other in _passed_on(value):
+                other.operand_uses += 1
+    for variable in held:
+        if not variable.captured and 2 * variable.operand_uses >= variable.reads:
+            variable.raw = True
 
 
-def join(one, other):
-    """The kind of a value that is of the kind ``one`` or ``other``."""
-    if one == other or other == NONE_YET:
-        return one
-    if one == NONE_YET:
-        return other
-    return "number" if one in NUMBERS and other in NUMBERS else ANY
-
-
-def kind_of(node):
-    """The kind of the first value of ``node``."""
+def _passed_on(node):
+    """The variables of which one may be the value of ``node``."""
     kind = node.__class__
-    if kind is nodes.Constant:
-        value = node.value
-        if value is None or value is True:
-            return "boolean"
-        kind = value.__class__
-        return "int" if kind is int else "float" if kind is float else ANY
     if kind is nodes.LocalVariable:
-        return node.variable.proven or node.variable.kind
-    if kind is nodes.SetLocal:
-        return kind_of(node.value)
-    if kind is nodes.Checked:
-        return kind_of_type(node.type) or kind_of(node.value)
-    if kind is nodes.Call:
-        return _call_kind(node)
+        return [node.variable]
     if kind is nodes.If:
-        return join(kind_of(node.then), kind_of(node.otherwise))
-    if kind is nodes.Let or kind is nodes.Functions or kind is nodes.MultipleValueBind:
-        return kind_of(node.body)
+        return [*_passed_on(node.then), *_passed_on(node.otherwise)]
     if kind is nodes.Progn:
-        return kind_of(node.forms[-1])
-    return "boolean" if node.boolean else ANY
-
-
-def _call_kind(node):
-    if node.boolean:
-        return "boolean"
-    symbol, arguments = node.symbol, node.arguments
-    if symbol in _OPERATORS or symbol is DIVIDE:
-        if len(arguments) < 2:
-            return ANY
-        kinds = [kind_of(argument) for argument in arguments]
-    elif symbol in _STEPS and len(arguments) == 1:
-        kinds = [kind_of(arguments[0]), "int"]
-    elif symbol in _REST and len(arguments) == 2 or symbol in _CHOICE:
-        kinds = [kind_of(argument) for argument in arguments]
-        if NONE_YET in kinds:
-            return NONE_YET
-        return kinds[0] if kinds and all(kind == kinds[0] == "int" for kind in kinds) else ANY
-    elif symbol in _INTEGERS:
-        return "int"
-    else:
-        return ANY
-    if NONE_YET in kinds:
-        return NONE_YET
-    if all(kind in ("int", "float") for kind in kinds):
-        if "float" in kinds:
-            return "float"
-        return "int" if symbol is not DIVIDE else "number"
-    return "number"  # of what is none these functions make an error
+        return _passed_on(node.forms[-1])
+    return _passed_on(node.body) if kind is nodes.Let else []

@@ -9,25 +9,29 @@ Exits are in ``generate_exits.py``, function definitions in ``generate_functions
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Symbol, UndefinedFunction
+from cramhy_runtime.ground.data import DoubleFloat, Symbol, UndefinedFunction
 from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym
 from . import core, nodes
 from .constants import Constants, float_model
 from .core import expression, word
-from .destinations import EFFECT, FIRST_OF_VALUES, NONE, TRUE, VALUE, VALUES, Destination
-from .facts import MINUS, NUMBERS, PLUS, study, walk
+from .destinations import EFFECT, FIRST_OF_VALUES, NONE, RAW, TRUE, VALUE, VALUES, Destination
+from .facts import study, walk
 from .generate_calls import CallGenerator, written_attribute
 from .generate_exits import ExitGenerator
 from .generate_functions import FunctionGenerator
-from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS, STEPS, OperatorGenerator
+from .arithmetic.functions import NUMBER_FUNCTIONS
+from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS, OperatorGenerator
 from .generate_texts import TextGenerator
+from .kinds import BOOLEAN, MAX, MIN, MINUS, OPERATORS, PI, PLUS, STEPS, THING, WHOLE, kind_of
 
 
-COLLECT, CONS, FORMAT, GETHASH = map(sym, "CRAMHY::COLLECT CONS FORMAT GETHASH".split())
+COLLECT, CONS, ERROR, FORMAT, GETHASH = map(sym, "CRAMHY::COLLECT CONS ERROR FORMAT GETHASH".split())
 KNOWN_SETTERS = {sym(name) for name in "GETHASH AREF SVREF ELT NTH GET CHAR".split()}
 """Functions of Common Lisp whose ``setf`` is a function, which nobody may redefine or give methods."""
-DISPATCHERS = {"UnaryGeneric": 1, "FirstOfTwo": 2}
-"""Kinds of generic functions that look only at the class of the first of so many arguments; the caller's code may ask them for it."""
+
+
+SINGLE_VALUE = nodes.Constant(None)
+"""Stands for a node that gives one value."""
 
 
 class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerator, TextGenerator):
@@ -42,6 +46,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         self.destinations = {}
         self.jump_codes = {}
         self.class_names = {}  # names of parameters → names of variables that hold their classes
+        self.cases = []  # the names and scopes of the ``handler-case`` forms around
         self.before = []  # statements that must stand before the definition of the function being generated
 
     # ------------------------------------------------------------------------------------------------------------- output
@@ -88,11 +93,13 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
     def value(self, node):
         return self.gen(node, VALUE)
 
-    def finish(self, model, node, destination, pure=False):
-        """Deliver an expression to its destination."""
+    def finish(self, model, node, destination, pure=False, raw=False):
+        """Deliver an expression to its destination. ``raw``: doubles among its values are Python's floats."""
         kind = destination.kind
         if not destination.multiple and not node.single and kind != "effect":
             model = self.first_value(model)
+        if raw is not destination.raw and kind != "effect":
+            model = self.wrapped(model, kind_of(node)) if raw else self.unwrapped(model, kind_of(node))
         if kind == "value":
             return model
         if kind == "return":
@@ -118,7 +125,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
             produce(destination)
             return None
         name = self.temporary()
-        produce(Destination("assign", name, destination.multiple))
+        produce(Destination("assign", name, destination.multiple, destination.raw))
         return word(name)
 
     def stable(self, model, node):
@@ -130,11 +137,12 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         return isinstance(node, nodes.Lambda) and isinstance(model, core.Symbol)
 
     def arguments(self, arguments, destination=VALUE):
-        """The expressions of ``arguments``, evaluated from left to right."""
+        """The expressions of ``arguments``, evaluated from left to right. ``destination``: that of all, or a list with that of each."""
         done = []
-        for node in arguments:
+        for index, node in enumerate(arguments):
             before = self.effects
-            statements, model = self.captured(lambda node=node: self.gen(node, destination))
+            where = destination[index] if destination.__class__ is list else destination
+            statements, model = self.captured(lambda node=node, where=where: self.gen(node, where))
             if statements and self.effects != before:
                 for index, (earlier, earlier_node) in enumerate(done):
                     if not self.stable(earlier, earlier_node):
@@ -148,6 +156,8 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
     # -------------------------------------------------------------------------------------------------------- values, names
 
     def Constant(self, node, destination):
+        if destination.raw and node.value.__class__ is DoubleFloat:
+            return self.finish(float_model(float(node.value)), node, destination, pure=True, raw=True)
         return self.finish(self.literal(node.value), node, destination, pure=True)
 
     def literal(self, value):
@@ -169,9 +179,11 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         return expression(word("."), name, word("v")) if variable.boxed else name
 
     def LocalVariable(self, node, destination):
-        return self.finish(self.reference(node.variable), node, destination, pure=True)
+        return self.finish(self.reference(node.variable), node, destination, pure=True, raw=node.variable.raw)
 
     def GlobalVariable(self, node, destination):
+        if node.symbol is PI and destination.raw:
+            return self.finish(float(PI.value), node, destination, pure=True, raw=True)
         constant, value = self.constant(node.symbol), word("Lv")
         place = expression(word("."), constant, word("value"))
         bound = expression(word("is-not"), expression(word("setx"), value, place), word("Lunbound"))
@@ -193,10 +205,10 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
                 self.emit(word("setv"), cell, NONE)  # or it would keep the list for as long as the function runs
                 return None
         if not variable.boxed:
-            self.gen(node.value, Destination("assign", variable.name))
+            self.gen(node.value, Destination("assign", variable.name, raw=variable.raw))
         else:
             self.emit(word("setv"), self.reference(variable), self.value(node.value))
-        return self.finish(self.reference(variable), node, destination, pure=True)
+        return self.finish(self.reference(variable), node, destination, pure=True, raw=variable.raw)
 
     @staticmethod
     def grows(node, symbol, position):
@@ -242,10 +254,19 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         if symbol in STEPS and len(arguments) == 1:
             symbol, arguments = STEPS[symbol], [*arguments, nodes.Constant(1)]
         standard = self.standard(symbol) and destination.kind != "effect"
+        if standard and len(arguments) > 2 and (symbol in OPERATORS or symbol is MAX or symbol is MIN):
+            arguments = self.nested(node)
+            if arguments is None:
+                return self.gen(self.named_arguments(node), destination)
         if standard and len(arguments) == 2 and symbol in ARITHMETIC:
             if symbol not in COMPARISONS:
-                return self.finish(self.arithmetic(node, symbol, arguments), node, destination)
+                model, raw = self.arithmetic(node, symbol, arguments, destination.raw)
+                return self.finish(model, node, destination, raw=raw)
             return self.finish(self.truth_value(self.comparison(node, symbol, arguments)), node, destination)
+        if standard and symbol in NUMBER_FUNCTIONS:
+            found = self.number_function(node, symbol, arguments, destination.multiple and destination is not FIRST_OF_VALUES)
+            if found is not None:
+                return self.finish(found[0], SINGLE_VALUE if symbol in WHOLE else node, destination, raw=found[1])
         if symbol in NEGATIONS and len(arguments) == 1:
             return self.finish(self.truth_value(expression(word("not"), self.test(arguments[0]))), node, destination)
         if standard or symbol in KNOWN_PARTS:
@@ -259,13 +280,20 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
             model = self.open_call(node, symbol, arguments, destination)
             if model is not None:
                 return self.finish(model, nodes.Constant(None), destination)
-        if symbol is FORMAT and destination.kind != "effect":
+        if symbol is ERROR and self.cases and self.cases[-1][1] is self.scope and arguments and self.standard(symbol):
+            call = self.call("error_in_case", self.cases[-1][0], *self.arguments(arguments))
+            self.emit(word("raise"), self.positioned(call, node))
+            return NONE if destination.kind == "value" else None
+        if symbol is FORMAT:
             model = self.text(node, arguments)
             if model is not None:
                 return self.finish(model, node, destination)
         models = self.arguments(arguments)
         if standard and symbol is GETHASH and 1 < len(arguments) < 4 and (not destination.multiple or destination is FIRST_OF_VALUES):
             return self.finish(self.positioned(self.call("gethash", *models), node), nodes.Constant(None), destination)
+        model = self.keyword_call(node, symbol, models, arguments)
+        if model is not None:
+            return self.finish(model, node, destination)
         model = self.slot_read(node, symbol, models)
         if model is not None:
             return self.finish(model, nodes.Constant(None), destination)
@@ -293,22 +321,13 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         return done
 
     def through_object(self, node, symbol, models):
-        """A call that goes through its first argument, if that is of the expected class, or ``None``.
-
-        A generic function is asked for the effective function of its first argument's class right here, if the function is still
-        that one.
-        """
-        if not isinstance(symbol, Symbol) or not models:
-            return None
-        kind = symbol.function.__class__.__name__
-        if DISPATCHERS.get(kind) != len(models):
+        """A call of a generic function that looks at the class of its first argument only: that is looked up right here; or ``None``."""
+        if not isinstance(symbol, Symbol) or not models or getattr(symbol.function, "by_first_of", None) != len(models):
             return None
         models = self.stable_names(models)
-        name, key = word("Lf"), expression(word("."), models[0], word("__class__"))
-        cached = expression(expression(word("."), expression(word("."), name, word("cache")), word("get")), key)
-        current = expression(word("setx"), name, expression(word("."), self.constant(symbol), word("function")))
-        same = expression(word("is"), expression(word("."), current, word("__class__")), word("L" + kind))
-        chosen = expression(word("if"), same, expression(word("or"), cached, name), name)
+        table = word(self.constants.name("unary" if len(models) == 1 else "binary", symbol))
+        known = expression(expression(word("."), table, word("get")), expression(word("."), models[0], word("__class__")))
+        chosen = expression(word("or"), known, expression(word("."), self.constant(symbol), word("function")))
         return self.positioned(expression(chosen, *models), node)
 
     @staticmethod
@@ -333,6 +352,9 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         return self.finish(self.positioned(expression(function, *arguments), node), node, destination)
 
     def CallSetf(self, node, destination):
+        stored = self.store(node)
+        if stored is not None:
+            return self.finish(stored, SINGLE_VALUE, destination, pure=True)
         arguments = self.arguments(node.arguments)
         if (attribute := written_attribute(node.symbol)) is not None and len(arguments) == 2:
             return self.by_statements(node, destination, lambda inner: self.slot_written(node, attribute, arguments, inner))
@@ -363,11 +385,11 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         if not node.rest:
             return self.gen(node.first, destination)
         name = self.temporary()
-        self.gen(node.first, Destination("assign", name, destination.multiple))
+        self.gen(node.first, Destination("assign", name, destination.multiple, destination.raw))
         for item in node.rest:
             self.gen(item, EFFECT)
         saved = nodes.Constant(None)
-        return self.finish(word(name), saved, destination, pure=True)
+        return self.finish(word(name), saved, destination, pure=True, raw=destination.raw)
 
     def LoadTimeValue(self, node, destination):
         if not hasattr(node, "name"):
@@ -397,17 +419,17 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         if isinstance(node, nodes.Call) and self.standard(node.symbol):
             if node.symbol in COMPARISONS and len(node.arguments) == 2:
                 return self.comparison(node, node.symbol, node.arguments)
-            test = self.small_test(node, node.symbol, node.arguments)
+            test = self.small_test(node, node.symbol, node.arguments) or self.open_test(node, node.symbol, node.arguments)
             if test is not None:
                 return test
         if node.boolean:
             return expression(word("is-not"), self.value(node), NONE)
         if isinstance(node, nodes.LocalVariable):
             kind, value = node.variable.kind, self.reference(node.variable)
-            if kind in NUMBERS:
+            if kind and not kind & (BOOLEAN | THING):
                 return TRUE
             true = expression(word("is-not"), value, NONE)
-            return true if kind == "boolean" else expression(word("and"), true, expression(word("is-not"), value, word("False")))
+            return true if not kind & THING else expression(word("and"), true, expression(word("is-not"), value, word("False")))
         model = self.gen(node, FIRST_OF_VALUES)
         if model.__class__ is not core.Expression:
             return self.call("truth", model)
@@ -449,7 +471,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
     @staticmethod
     def alike(variable, other, forms):
         """Whether ``variable``, bound to the value of ``other`` while ``forms`` run, can do without a Python variable of its own."""
-        if variable.writes or variable.captured or other.boxed or variable.owner is not other.owner:
+        if variable.writes or variable.captured or other.boxed or variable.owner is not other.owner or variable.raw is not other.raw:
             return False
         if not other.writes:
             return True
@@ -476,8 +498,11 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
             return None
         if any(item.__class__ is nodes.SetLocal and item.variable is place for item in walk([value])):
             return None
-        call.arguments[1] = value
-        return body
+        sum_ = nodes.Call(call.symbol, [call.arguments[0], value])
+        sum_.single, sum_.position = True, call.position
+        changed = nodes.SetLocal(place, sum_)
+        changed.position = body.position
+        return changed
 
     def Let(self, node, destination):
         if node.bindings and (body := self.modification(node)) is not None:
@@ -490,7 +515,8 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
             else:
                 bindings.append((variable, value))
         node = nodes.Let(bindings, node.body)
-        values = self.arguments([value for _, value in node.bindings])
+        wanted = [RAW if getattr(variable, "raw", False) else VALUE for variable, _ in node.bindings]
+        values = self.arguments([value for _, value in node.bindings], wanted)
         lexical = [(variable, value) for (variable, _), value in zip(node.bindings, values) if not isinstance(variable, Symbol)]
         dynamic = [(symbol, value) for (symbol, _), value in zip(node.bindings, values) if isinstance(symbol, Symbol)]
         for variable, value in lexical:

@@ -7,15 +7,19 @@ are taken apart where they are made, if that can be seen.
 
 from __future__ import annotations
 
+from types import FunctionType
+
 from cramhy_runtime.ground.data import Character, Keyword, Symbol
+from cramhy_runtime.ground.keyword_calls import keyword_calls, name_of_key, takes_keywords
 from cramhy_runtime.ground.packages import sym
+from ..objects.makers import maker
 from . import core, nodes
 from .core import NONE, List, Tuple, expression, word
-from .destinations import EFFECT, VALUES as ALL_VALUES
-from .generate_operators import AND, CLASS, DOT, IF, INT, IS, SETX, class_of
+from .destinations import VALUES as ALL_VALUES
+from .arithmetic.operations import AND, DOT, IF, INT_CLASS, IS, IS_NOT, SETX, class_of
 
-APPLY, FIND, FLOOR, GETHASH, LIST, VALUES = map(sym, "APPLY FIND FLOOR GETHASH LIST VALUES".split())
-SAME_CHARACTER = sym("CHAR=")
+FIND, FLOOR, GETHASH, LIST, VALUES = map(sym, "FIND FLOOR GETHASH LIST VALUES".split())
+MAKE_INSTANCE, SAME_CHARACTER = sym("MAKE-INSTANCE"), sym("CHAR=")
 CHARACTER = word("Lcharacter")
 
 
@@ -31,6 +35,19 @@ class CallGenerator:
             if sorted_ is not None:
                 return expression(word(self.constants.name("function.python", symbol)), *sorted_)
         return expression(word(self.constants.name("function", symbol)), *models)
+
+    def keyword_call(self, node, symbol, models, arguments):
+        """The call of a user's function with keywords that the code names, if it takes them as Python's; else ``None``."""
+        if not isinstance(symbol, Symbol) or (count := _keys_begin(symbol.function, arguments)) is None:
+            return None
+        names = [name_of_key(key.value) for key in arguments[count::2]]
+        if not takes_keywords(symbol.function, count, names) or len({*names}) < len(names):
+            return None
+        calls = self.constant(keyword_calls(symbol, count, *[key.value for key in arguments[count::2]]))
+        done = models[:count]
+        for name, value in zip(names, models[count + 1 :: 2], strict=True):
+            done += [core.Keyword(name), value]
+        return self.positioned(expression(expression(DOT, calls, word("call")), *done), node)
 
     def known_function(self, symbol):
         return word(self.constants.name("function", symbol))
@@ -48,28 +65,54 @@ class CallGenerator:
                 return expression(word("LMultipleValues"), Tuple(self.arguments(arguments)))
             (first, *_) = self.stable_names(self.arguments(arguments))
             return first
-        if symbol is FLOOR and count == 2 and _is_number(arguments[1]):
+        if symbol is MAKE_INSTANCE:
+            return self.instance_made(node, arguments)
+        if symbol is FLOOR and count == 2 and destination.multiple and _is_number(arguments[1]):
             divisor = arguments[1].value
             number, name = self.named(arguments[0])
             slow = self.positioned(expression(self.known_function(symbol), name, divisor), node)
-            if destination.multiple:
-                quick = expression(word("LMultipleValues"), self.call("divmod", name, divisor))
-            else:
-                quick, slow = expression(word("//"), name, divisor), self.first_value(slow)
-            return expression(IF, expression(IS, class_of(number), INT), quick, slow)
+            quick = expression(word("LMultipleValues"), self.call("divmod", name, divisor))
+            return expression(IF, expression(IS, class_of(number), INT_CLASS), quick, slow)
         if symbol is LIST and count > 4:
             return self.call("list", *self.arguments(arguments))
         if symbol is SAME_CHARACTER and count == 2:
-            return self.same_character(node, arguments)
-        if symbol is FIND and count == 2 and arguments[1].__class__ is nodes.Constant and arguments[1].value.__class__ is str:
-            item, name = self.named(arguments[0])
-            among = expression(IF, expression(word("in"), expression(DOT, name, word("char")), arguments[1].value), name, NONE)
-            slow = self.positioned(expression(self.known_function(symbol), name, arguments[1].value), node)
-            return expression(IF, expression(IS, class_of(item), CHARACTER), among, slow)
+            test = self.same_character(node, arguments)
+            return None if test is None else self.truth_value(test)
+        if symbol is FIND and count == 2 and _is_text(arguments[1]):
+            item, name, among, slow = self.found_in_text(node, arguments)
+            return expression(IF, expression(IS, class_of(item), CHARACTER), expression(IF, among, name, NONE), slow)
         return None
 
+    def open_test(self, node, symbol, arguments):
+        """A Python expression that is true when the value of such a call is; ``None`` for other calls."""
+        if symbol is SAME_CHARACTER and len(arguments) == 2:
+            return self.same_character(node, arguments)
+        if symbol is FIND and len(arguments) == 2 and _is_text(arguments[1]):
+            item, _, among, slow = self.found_in_text(node, arguments)
+            return expression(IF, expression(IS, class_of(item), CHARACTER), among, expression(IS_NOT, slow, NONE))
+        return None
+
+    def found_in_text(self, node, arguments):
+        """``(find item "text")``: the first and later use of the item, a test whether the character is in the text, and the usual call."""
+        item, name = self.named(arguments[0])
+        among = expression(word("in"), expression(DOT, name, word("char")), arguments[1].value)
+        return item, name, among, self.positioned(expression(self.known_function(FIND), name, arguments[1].value), node)
+
+    def instance_made(self, node, arguments):
+        """``(make-instance 'class :key value ...)``"""
+        keys = arguments[1::2]
+        constant = all(each.__class__ is nodes.Constant for each in (arguments[:1] + keys))
+        if not arguments or not constant or len(arguments) % 2 == 0 or any(key.value.__class__ is not Keyword for key in keys):
+            return None
+        name = arguments[0].value
+        if name.__class__ is not Symbol or name.package is None:
+            return None
+        made_by = self.constant(maker(name, *[key.value for key in keys]))
+        model = expression(expression(DOT, made_by, word("make")), *self.arguments(arguments[2::2]))
+        return self.first_value(self.positioned(model, node))
+
     def same_character(self, node, arguments):
-        """``(char= x y)``: characters are the same object if they are the same."""
+        """A test for ``(char= x y)``: characters are the same object if they are the same."""
         if any(each.__class__ is nodes.Constant and each.value.__class__ is not Character for each in arguments):
             return None
         models = self.stable_names(self.arguments(arguments))
@@ -78,11 +121,12 @@ class CallGenerator:
             for model, argument in zip(models, arguments, strict=True)
             if not (argument.__class__ is nodes.Constant and argument.value.__class__ is Character)
         ]
-        same = expression(IF, expression(IS, *models), word("True"), NONE)
+        same = expression(IS, *models)
         if not unknown:
             return same
         test = unknown[0] if len(unknown) == 1 else expression(AND, *unknown)
-        return expression(IF, test, same, self.positioned(expression(self.known_function(SAME_CHARACTER), *models), node))
+        slow = self.positioned(expression(self.known_function(SAME_CHARACTER), *models), node)
+        return expression(IF, test, same, expression(IS_NOT, slow, NONE))
 
     # -------------------------------------------------------------------------------------------------------------- slots
 
@@ -145,8 +189,22 @@ class CallGenerator:
                 divisor = arguments[1].value
                 number, name = self.named(arguments[0])
                 slow = self.call("spread", self.positioned(expression(self.known_function(symbol), name, divisor), node), 2)
-                return expression(IF, expression(IS, class_of(number), INT), self.call("divmod", name, divisor), slow)
+                return expression(IF, expression(IS, class_of(number), INT_CLASS), self.call("divmod", name, divisor), slow)
         return None
+
+
+def _keys_begin(function, arguments):
+    """The number of arguments of a call of ``function`` before those with keywords; ``None`` if there are none, or odd ones."""
+    if function.__class__ is not FunctionType or len(arguments) < 2:
+        return None
+    code = function.__code__
+    if not code.co_kwonlyargcount and "python_keys" not in function.__dict__:
+        return None
+    count = code.co_argcount
+    keys = arguments[count::2]
+    if not keys or len(arguments) - count & 1:
+        return None
+    return count if all(key.__class__ is nodes.Constant and key.value.__class__ is Keyword for key in keys) else None
 
 
 def _attribute(function):
@@ -162,6 +220,10 @@ def _attribute(function):
 def written_attribute(symbol):
     """The attribute that the function ``(setf symbol)`` just writes, or ``None``."""
     return _attribute(symbol.setf_function) if isinstance(symbol, Symbol) else None
+
+
+def _is_text(node):
+    return node.__class__ is nodes.Constant and node.value.__class__ is str
 
 
 def _is_number(node):
@@ -190,4 +252,4 @@ def sorted_arguments(function, models, arguments):
     return done
 
 
-__all__ = ["CLASS", "EFFECT", "VALUES", "CallGenerator"]
+__all__ = ["CallGenerator", "written_attribute"]

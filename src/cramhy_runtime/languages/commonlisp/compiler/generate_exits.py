@@ -247,7 +247,9 @@ class ExitGenerator:
         """``handler-case``: the handlers are in force while the form runs; the clause runs when they are not any more."""
         cluster, foreign, caught = word(self.temporary("Lcase")), word(self.temporary("Le")), word(self.temporary("Le"))
         self.emit(word("setv"), cluster, self.call("enter_case", self.constant(node.types)))
+        self.cases.append((cluster, self.scope))
         guarded, _ = self.captured(lambda: self.gen(node.form, destination))
+        self.cases.pop()
         inner = expression(
             word("try"),
             *(guarded or [NONE]),

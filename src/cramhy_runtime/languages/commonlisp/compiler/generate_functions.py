@@ -8,11 +8,14 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.data import Cons, Symbol
 from cramhy_runtime.ground.dynamic import special
+from cramhy_runtime.ground.keyword_calls import GIVEN, name_of_key
 from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.packages import symbol_name
 from . import nodes
 from .core import List, Tuple, expression, word
-from .generate_operators import class_of
+from .arithmetic.operations import AND, DOUBLE_CLASS, FLOAT_CLASS, INT_CLASS, IS, class_of, fixnum_test
+from .kinds import DOUBLE, INT, SINGLE
+from .arithmetic.versions import assumed, bounded, guesses
 from .destinations import NONE, RETURN, TRUE, Destination
 
 DEBUGGED = special(Symbol("*DEBUGGED*"), False)
@@ -36,8 +39,9 @@ class FunctionGenerator:
         outer_before, self.before = self.before, []
         parameters = self.parameters(node)
         outer_classes, self.class_names = self.class_names, {}
+        self.version(node)
         for variable in node.parameters.required:
-            if variable.operand_uses > 1 and not (variable.writes or variable.captured or variable.kind or variable.proven):
+            if variable.operand_uses > 1 and not (variable.writes or variable.captured or variable.proven):
                 noted = self.temporary("Lk")
                 self.assign(noted, class_of(word(variable.name)))
                 self.class_names[variable.name] = word(noted)
@@ -63,6 +67,28 @@ class FunctionGenerator:
         self.out.append(self.positioned(definition, node))
         return word(name)
 
+    def version(self, node):
+        """Emit the body for arguments of the usual classes, behind a test of them, if that pays (``arithmetic/versions.py``)."""
+        found = guesses(node)
+        if not found:
+            return
+        tests = []
+        for variable, kind in found.items():
+            name = word(variable.name)
+            tests.append(expression(IS, class_of(name), {INT: INT_CLASS, SINGLE: FLOAT_CLASS, DOUBLE: DOUBLE_CLASS}[kind]))
+            if kind == INT and bounded(node, variable):
+                tests.append(fixnum_test(name))
+
+        def body():
+            for variable in found:
+                if variable.raw:
+                    self.assign(variable.name, self.call("float", word(variable.name)))
+            self.gen(node.body, RETURN)
+
+        with assumed(node, found):
+            statements, _ = self.captured(body)
+        self.emit(word("when"), tests[0] if len(tests) == 1 else expression(AND, *tests), *statements)
+
     def leavable(self, statements):
         """``statements``, the body of a function, so that a debugger can end the call or begin it anew (`frame_exits`)."""
         caught = self.temporary("Lexit")
@@ -81,10 +107,16 @@ class FunctionGenerator:
         for variable, default, supplied in spec.optional:
             plain = default is None and supplied is None
             parameters.append(List([word(variable.name), NONE if plain else word("Lunsupplied")]))
-        if spec.rest is not None or spec.has_keys:
-            rest = spec.rest.name if spec.rest is not None else self.temporary("Lkeys")
-            parameters.append(expression(word("unpack-iterable"), word(rest)))
         frozen = [variable for variable in node.scope.frozen if variable.fresh]
+        pythonic = spec.has_keys and spec.rest is None and not frozen and all(name_of_key(key) == var.name for var, *_, key in spec.keys)
+        if spec.rest is not None or spec.has_keys:
+            rest = spec.rest.name if spec.rest is not None else self.temporary(GIVEN if pythonic else "Lkeys")
+            parameters.append(expression(word("unpack-iterable"), word(rest)))
+        if pythonic:
+            parameters += [
+                List([word(variable.name), NONE if default is None and supplied is None else word("Lunsupplied")])
+                for variable, default, supplied, _ in spec.keys
+            ]
         if frozen and not (spec.rest is not None or spec.has_keys):
             parameters.append(word("*"))
         parameters += [List([word(variable.name), word(variable.name)]) for variable in frozen]
@@ -95,25 +127,31 @@ class FunctionGenerator:
             self.default(variable, default, supplied)
         if spec.has_keys:
             table = [(key, default is None and supplied is None) for _, default, supplied, key in spec.keys]
-            values = expression(word(parser), word(rest), word(keywords))
+            known = [Tuple([word(variable.name) for variable, *_ in spec.keys])] if pythonic else []
+            values = expression(word(parser), word(rest), word(keywords), *known)
             self.before.append(
                 self.setting(parser, self.call("key_parser", self.constant_keys(table), TRUE if spec.allow_other_keys else NONE))
             )
-            if spec.keys:
-                self.keys_in_order(spec.keys, table, word(rest), word(keywords), values)
+            sort = lambda: self.keys_in_order(spec.keys, table, word(rest), word(keywords), values, pythonic)  # noqa: E731
+            if pythonic:
+                statements, _ = self.captured(sort)
+                self.emit(word("when"), expression(word("or"), word(rest), word(keywords)), *statements)
             else:
-                self.out.append(values)
+                sort()
         if spec.rest is not None:
             self.assign(spec.rest.name, self.call("list_from", word(spec.rest.name)))
         for variable, default, supplied, _ in spec.keys:
             self.default(variable, default, supplied)
         return parameters
 
-    def keys_in_order(self, keys, table, rest, python, values):
+    def keys_in_order(self, keys, table, rest, python, values, known):
         """Give the parameters ``keys`` their values: those in the order of the lambda list, as mostly written, are taken one by one.
 
-        Where arguments are left over then, all are sorted by the parser: ``values``.
+        Where arguments are left over then, all are sorted by the parser: ``values``. known: parameters have a value already.
         """
+        if not keys:
+            self.out.append(values)
+            return
         taken, last = word(self.temporary("Ltaken")), word(self.temporary("Llast"))
         self.emit(word("setv"), last, expression(word("-"), self.call("len", rest), 1))
         self.emit(word("setv"), taken, 0)
@@ -127,7 +165,7 @@ class FunctionGenerator:
                 self.setting(variable.name, expression(word("get"), rest, expression(word("+"), taken, 1))),
                 self.setting(taken, expression(word("+"), taken, 2)),
             ]
-            self.branch(found, take, [self.setting(variable.name, NONE if plain else word("Lunsupplied"))])
+            self.branch(found, take, [] if known else [self.setting(variable.name, NONE if plain else word("Lunsupplied"))])
         left = expression(word("or"), expression(word("<="), taken, last), python)
         self.emit(word("when"), left, expression(word("setv"), List([word(variable.name) for variable, *_ in keys]), values))
 

@@ -4,28 +4,26 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.data import Keyword
 from . import core, nodes
-from ..format.format_templates import SMALL, template, with_known
+from ..format.format_templates import SMALL, Piece, template, with_known
 from ..printer.print_controls import PRINT_BASE, PRINT_CASE, UPCASE
 from ..printer.print_names import symbol_text
 from ..reader.readtables import READTABLE
-from .core import NONE, expression, word
-from .facts import kind_of
+from .core import NONE, TRUE, expression, word
+from .kinds import INT, kind_of
 
 
 class TextGenerator:
     """The part of the `Generator` that makes expressions of calls of ``format``."""
 
     def text(self, node, arguments):
-        """``(format nil "..." ...)`` with a simple control: Python's formatting, if all arguments are atoms; else ``None``."""
-        if len(arguments) < 2 or any(argument.__class__ is not nodes.Constant for argument in arguments[:2]):
+        """``(format stream "..." ...)`` with a simple control: Python's formatting, if all arguments are atoms; else ``None``."""
+        if len(arguments) < 2 or arguments[1].__class__ is not nodes.Constant or arguments[1].value.__class__ is not str:
             return None
-        control = arguments[1].value
-        if arguments[0].value is not None or control.__class__ is not str:
-            return None
+        control, to_string = arguments[1].value, arguments[0].__class__ is nodes.Constant and arguments[0].value is None
         found = template(control)
-        if found is None or len(found[1]) != len(arguments) - 2 or not found[1]:
+        if found is None or len(found[1]) != len(arguments) - 2:
             return None
-        names = self.stable_names(self.arguments(arguments[2:]))
+        target, *names = self.stable_names(self.arguments([arguments[0], *arguments[2:]]))
         tests, parts, known = [], [], []
         for kind, name, argument in zip(found[1], names, arguments[2:], strict=True):
             if kind == "A" and name.__class__ is str:
@@ -40,24 +38,32 @@ class TextGenerator:
                 tests.append(self.small_integer(name, argument))
                 parts.append(name)
                 continue
-            part, text = word(self.temporary()), self.call("text" + kind, name)
+            part = word(self.temporary())
+            if kind.__class__ is Piece:
+                text = expression(expression(word("."), self.constant(kind), word("text_of")), name)
+            else:
+                text = self.call("text" + kind, name)
             if kind == "A":
                 is_text = expression(word("is"), expression(word("."), name, word("__class__")), word("Lstr"))
                 text = expression(word("if"), is_text, name, text)
             tests.append(expression(word("is-not"), expression(word("setx"), part, text), NONE))
             parts.append(part)
         text = with_known(found[0], known)
-        filled = expression(word("Lfresh"), expression(word("%"), text, core.Tuple(parts)) if parts else text % ())
+        filled = expression(word("%"), text, core.Tuple(parts)) if parts else text % ()
+        if to_string:
+            filled = expression(word("Lfresh"), filled)
+        else:
+            filled = self.positioned(self.call("write_text", target, filled, TRUE if found[2] else NONE), node)
         if not tests:
             return filled
-        general = expression(word(self.constants.name("function", node.symbol)), NONE, control, *names)
+        general = expression(word(self.constants.name("function", node.symbol)), target, control, *names)
         simple = tests[0] if len(tests) == 1 else expression(word("and"), *tests)
         return expression(word("if"), simple, filled, self.positioned(general, node))
 
     def small_integer(self, name, argument):
         """The test that the value of ``argument``, which ``name`` has, is an integer that Python prints at once."""
         small = expression(word("<"), -SMALL, name, SMALL)
-        if kind_of(argument) == "int":
+        if kind_of(argument) == INT:
             return small
         is_integer = expression(word("is"), expression(word("."), name, word("__class__")), word("Lint"))
         return expression(word("and"), is_integer, small)

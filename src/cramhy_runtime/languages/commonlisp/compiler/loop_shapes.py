@@ -8,11 +8,12 @@ only serves to walk along a vector, so that Python's ``for`` can do that.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from cramhy_runtime.utilities.records import dataclass
 
 from cramhy_runtime.ground.packages import sym
 from . import nodes
 from .facts import walk
+from .kinds import INT
 
 LENGTH, AREF = sym("LENGTH"), sym("AREF")
 LIMITS = {sym(">="): (1, False), sym(">"): (1, True), sym("<="): (-1, False), sym("<"): (-1, True)}
@@ -31,6 +32,10 @@ CRAMHY::COLLECT CRAMHY::CAR-OF-CONS CRAMHY::CDR-OF-CONS CRAMHY::LOOP-VECTOR""".s
 slice is over."""
 QUICK_OF_TWO = {sym(name) for name in "FIND POSITION MEMBER ASSOC COUNT STRING= STRING/= STRING< STRING> EQUAL".split()}
 """The same, if they are called with two arguments. Where an argument is long, they look by themselves whether the slice is over."""
+CHANGES = {sym(name) for name in "VECTOR-PUSH VECTOR-PUSH-EXTEND".split()}
+"""Functions that are as quick, but change the length of a vector."""
+SETTERS = {sym(name) for name in "GETHASH AREF SVREF CHAR".split()}
+"""Places whose setters are as quick, but change what a loop may walk along."""
 
 
 @dataclass
@@ -115,7 +120,7 @@ def counting(statements, tagbody, first, end, scope):
         return _across(variable, limit, step, inclusive, body, scope)
     if not _settled(limit):
         return None
-    if _reads(body, variable) and variable.kind != "int":
+    if _reads(body, variable) and variable.kind != INT:
         return None
     return Counting(variable, limit, step, inclusive, body)
 
@@ -123,6 +128,8 @@ def counting(statements, tagbody, first, end, scope):
 def _across(variable, limit, step, inclusive, body, scope):
     """``(>= index (length vector))`` ends the loop, and ``index`` occurs in ``(setq element (aref vector index))`` only."""
     vector = limit.arguments[0] if len(limit.arguments) == 1 else None
+    if any(item.__class__ is nodes.CallSetf or item.__class__ is nodes.Call and item.symbol in CHANGES for item in walk(body)):
+        return None
     if vector.__class__ is not nodes.LocalVariable or not _settled(vector) or step != 1 or inclusive or not body or variable.reads != 3:
         return None
     setting = body[0]
@@ -175,8 +182,17 @@ _CALLS = (nodes.CallLocal, nodes.CallValue, nodes.CallSetf, nodes.CallSpread, no
 def _quick(statements):
     for item in walk(statements):
         kind = item.__class__
-        if kind in _CALLS:
+        if kind in _CALLS and not (kind is nodes.CallSetf and item.symbol in SETTERS):
             return False
-        if kind is nodes.Call and item.symbol not in QUICK and not (item.symbol in QUICK_OF_TWO and len(item.arguments) == 2):
-            return False
+        if kind is nodes.Call and item.symbol not in QUICK and item.symbol not in CHANGES:
+            if item.symbol not in QUICK_OF_TWO or len(item.arguments) != 2:
+                return False
     return True
+
+
+def quiet(node):
+    """Whether evaluating ``node`` surely changes no variable: a simple expression of quick functions."""
+    kind = node.__class__
+    if kind is nodes.Call:
+        return node.symbol in QUICK and all(map(quiet, node.arguments))
+    return kind is nodes.Constant or kind is nodes.LocalVariable or kind is nodes.GlobalVariable

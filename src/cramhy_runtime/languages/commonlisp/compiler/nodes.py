@@ -6,7 +6,7 @@ A node is one meaning. ``single`` says that it never returns several values, so 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from cramhy_runtime.utilities.records import dataclass, field
 
 
 @dataclass

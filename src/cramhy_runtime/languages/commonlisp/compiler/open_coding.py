@@ -1,8 +1,12 @@
-"""Mapping over lists with a function written in place: a loop instead of calls.
+"""Functions that are written in place: mapping over lists, and the next method of a method.
 
 ``(mapcar (lambda (x) ...) list)`` means a loop whose body is that of the function, and becomes one. So the variables around stay
 variables of one Python function, and ``return-from`` and ``go`` out of the function written in place are jumps. Functions of
 several lists end with the shortest. What has another shape (a lambda list with keywords, a function that is computed) is called.
+
+A method that uses ``call-next-method`` and ``next-method-p`` has them as local functions, so that it can give them away, too. Where its
+parameters are all required, the definitions of these functions say which variable holds the function of the next method, and which the
+arguments. Then a call of ``call-next-method`` is a call of that function, and no closure is made.
 """
 
 from __future__ import annotations
@@ -11,6 +15,7 @@ from cramhy_runtime.ground.data import Cons, Symbol, lisp_list, list_from
 from ..syntax.lambda_lists import gensym
 from ..loop.loop_support import CAR_OF_CONS, CDR_OF_CONS, COLLECT, COLLECT_NCONC, END_OF_LIST
 from cramhy_runtime.ground.packages import sym
+from .nodes import CallLocal, LocalVariable, Support
 
 MAPCAR, MAPC, MAPCAN = map(sym, "MAPCAR MAPC MAPCAN".split())
 LET, LET_STAR, TAGBODY, IF, GO, SETQ, PROGN, ATOM, CONS, FUNCTION, LAMBDA = map(
@@ -67,3 +72,36 @@ def _loop(name, variables, body, lists):
         result = lisp_list(CDR_OF_CONS, header)
     loop = Cons(TAGBODY, list_from([again, *tests, value, *steps, lisp_list(GO, again), end]))
     return lisp_list(LET_STAR, list_from(bindings), loop, result)
+
+
+# -------------------------------------------------------------------------------------------------------- next methods
+
+CALL, EXISTS = sym("CALL-NEXT-METHOD"), sym("NEXT-METHOD-P")
+NEXT_VALUES, NEXT_METHOD_EXISTS = sym("CRAMHY::NEXT-VALUES"), sym("CRAMHY::NEXT-METHOD-EXISTS")
+
+
+def next_method(name, body):
+    """What the local function ``name`` with the forms ``body`` means: its name, the variable of the next method, and those of the
+    arguments; ``None`` if it is none of the two functions."""
+    form = body.car if isinstance(body, Cons) else None
+    if not isinstance(form, Cons):
+        return None
+    if name is CALL and form.car is NEXT_VALUES:
+        _, following, _, *given = form
+        return name, following, given
+    if name is EXISTS and form.car is NEXT_METHOD_EXISTS:
+        return name, form.cdr.car, None
+    return None
+
+
+def call_of_next(analyzer, meaning, form, env):
+    """The node of the call ``form`` of one of the two."""
+    name, following, given = meaning
+    function = env.variable(following).used_from(env.scope)
+    if name is EXISTS:
+        return Support("next_method_exists", [LocalVariable(function)])
+    if given is None or form.cdr is not None:
+        arguments = analyzer.arguments(form, env)
+    else:
+        arguments = [analyzer.form(variable, env) for variable in given]
+    return CallLocal(function, arguments)

@@ -11,6 +11,7 @@ from ..syntax.lambda_lists import gensym
 from cramhy_runtime.ground.dispatch.methods import Shape
 from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym, symbol_name, symbol_package
 from ..packages.package_errors import locked
+from .open_coding import next_method
 from .analyze import LAMBDA, SETF, SPECIAL_FORMS, progn
 from .declared_types import checkable, declared_types
 from .environment import EXECUTE, SITUATIONS, Block, LocalFunction, LocalMacro, SpecialVariable, SymbolMacro, Tagbody, Variable
@@ -272,8 +273,10 @@ def _local_functions(analyzer, form, env, recursive):
     definitions, forms = _definitions(analyzer, form)
     inner = env.child()
     variables = [Variable(symbol, env.scope) for _, symbol, _, _ in definitions]
-    for (key, _, lambda_list, _), variable in zip(definitions, variables):
-        inner.functions[key] = LocalFunction(variable, Shape(lambda_list))
+    for (key, symbol, lambda_list, body), variable in zip(definitions, variables):
+        inner.functions[key] = LocalFunction(variable, Shape(lambda_list), next_method(symbol, body))
+    if any(inner.functions[key].next for key, *_ in definitions):
+        return _with_next_methods(analyzer, definitions, variables, forms, env, inner)
     functions = []
     for (_, symbol, lambda_list, body), variable in zip(definitions, variables):
         if recursive:
@@ -283,6 +286,17 @@ def _local_functions(analyzer, form, env, recursive):
     _free_specials(analyzer.specials(specifiers), inner, ())
     body = analyzer.scope((), specifiers, forms, inner)
     return _bound(body, Functions(functions, body))
+
+
+def _with_next_methods(analyzer, definitions, variables, forms, env, inner):
+    """``flet`` as the body of a method has it: its functions are made only if somebody takes them as values."""
+    body = analyzer.body(forms, inner)
+    functions = [
+        (variable, analyzer.lambda_(lambda_list, body_, env, symbol, symbol, local=True))
+        for (_, symbol, lambda_list, body_), variable in zip(definitions, variables)
+        if variable.used
+    ]
+    return _bound(body, Functions(functions, body)) if functions else body
 
 
 @special("FLET")
@@ -363,6 +377,7 @@ def _tagbody(analyzer, form, env):
             segments[-1].append(item)
     if index:
         env.scope.loop_depth += 1
+        env.scope.loops = True
     try:
         analysed = [[analyzer.form(item, inner) for item in segment] for segment in segments]
     finally:

@@ -9,29 +9,19 @@ from __future__ import annotations
 from ..collections.sequences import length
 from ..collections.arrays import aref
 from ..collections.sequence_types import characters
+import math
 from fractions import Fraction
 from itertools import zip_longest
 from operator import itemgetter
 from types import FunctionType
 
 from cramhy_runtime.ground.arrays import SimpleArray, TypedVector, Vector
-from cramhy_runtime.ground.catching import ThrowExit, catch, throw  # noqa: F401  compiled code calls them
+from cramhy_runtime.ground.catching import caught, catch, enter_case, error_in_case, foreign_case, throw
 from cramhy_runtime.ground.functions import fdefinition, setf_function  # noqa: F401  compiled code calls them
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.budget import TICKS, budget
 
-from cramhy_runtime.ground.conditions import (
-    Condition,
-    HandlerExit,
-    SimpleControlError,
-    caught,
-    enter_case,
-    error,
-    foreign_case,
-    program_error,
-    unbound_variable,
-    unknown_key,
-)
+from cramhy_runtime.ground.conditions import Condition, HandlerExit, SimpleControlError, error, program_error, unbound_variable, unknown_key
 from .frame_exits import FrameExit, ends_here
 from cramhy_runtime.ground.data import (
     FreshString,
@@ -52,12 +42,14 @@ from cramhy_runtime.ground.data import (
     truth,
 )
 from cramhy_runtime.ground.hash_tables import value_and_presence, value_in_table
+from cramhy_runtime.ground.keyword_calls import keyword_calls
 from cramhy_runtime.ground.dynamic import Bindings, bind, unbind
 from cramhy_runtime.ground.functions import function_of
-from ..format.format_templates import decimal, prin1_atom, princ_atom
+from ..format.format import write_text
+from ..format.format_templates import decimal, piece_of, prin1_atom, princ_atom
 from ..numbers import arithmetic
 from ..numbers.irrational import complex_
-from cramhy_runtime.ground.dispatch.generic_functions import FirstOfTwo, UnaryGeneric
+from ..objects.makers import maker
 from cramhy_runtime.ground.packages import intern, keyword, printed
 from ..syntax.backquote import Comma
 from .declared_types import checked
@@ -210,6 +202,7 @@ def key_parser(table, allow_others):
 
     table: pairs of (keyword, value when missing). It takes the arguments after the positional ones, keyword objects and values,
     and the keyword arguments of a Python caller, and gives the values in the order of ``table``; of equal keys the first counts.
+    ``known``: the values of those that are not among these arguments.
     """
     slots = {key: index for index, (key, _) in enumerate(table)}
     missing = tuple(value for _, value in table)
@@ -218,15 +211,15 @@ def key_parser(table, allow_others):
     getters: dict = {}
     getter_for = getters.get
 
-    def parse(rest, python):
+    def parse(rest, python, known=missing):
         if not python and not len(rest) & 1:
             try:
                 getter = getter_for(rest[KEYS_OF_ARGUMENTS])
             except TypeError:  # something that is no keyword and has no hash
                 getter = None
             if getter is not None:
-                return getter(rest + missing)
-        values = list(missing)
+                return getter(rest + known)
+        values = list(known)
         for name, value in python.items():
             rest = (*rest, keyword(name.upper().replace("_", "-")), value)
         unknown = None
@@ -258,8 +251,23 @@ def dotted(*items):
     return list_from(items[:-1], items[-1])
 
 
+def next_method_exists(following):
+    """``next-method-p`` in the body of a method: whether ``following`` is another method."""
+    return getattr(following, "exists", True)
+
+
 def value_list(value):
     return list_from(all_values(value))
+
+
+def wrapped(value):
+    """What a raw value is for Lisp: a float is a double, anything else is itself (see ``kinds.py``)."""
+    return DoubleFloat(value) if value.__class__ is float else value
+
+
+def unwrapped(value):
+    """The raw value that stands for ``value``, which is no single-float."""
+    return float(value) if value.__class__ is DoubleFloat else value
 
 
 def not_(value):
@@ -285,6 +293,7 @@ NAMESPACE = {
     "Lblock": BlockExit,
     "LHandlerExit": HandlerExit,
     "Lenter_case": enter_case,
+    "Lerror_in_case": error_in_case,
     "Lforeign_case": foreign_case,
     "Lcaught": caught,
     "LException": (Exception, Condition),
@@ -301,11 +310,11 @@ NAMESPACE = {
     "Lnew_object": object.__new__,
     "Lstr": str,
     "Lfresh": FreshString,
+    "Lwrite_text": write_text,
+    "Lpiece": piece_of,
     "LtextA": princ_atom,
     "LtextS": prin1_atom,
     "LtextD": decimal,
-    "LUnaryGeneric": UnaryGeneric,
-    "LFirstOfTwo": FirstOfTwo,
     "LFunction": FunctionType,
     "Lcleanup": kernel.cleanup,
     "Llist_from": list_from,
@@ -318,12 +327,23 @@ NAMESPACE = {
     "Lchecked": checked,
     "Lint": int,
     "Lbudget": budget,
+    "Lnext_method_exists": next_method_exists,
+    "Lmaker": maker,
     "Lkey_parser": key_parser,
+    "Lkeyword_calls": keyword_calls,
     "Lintern": intern,
     "Lgensym": Symbol,
     "Llist": lisp_list,
     "Ldotted": dotted,
     "Ldouble": DoubleFloat,
+    "Labs": abs,
+    "Latan2": math.atan2,
+    "Lceil": math.ceil,
+    "Lfloor": math.floor,
+    "Lvector": list,
+    **{f"L{name}": getattr(math, name) for name in "sin cos tan atan exp sqrt log asin acos".split()},
+    "Lwrapped": wrapped,
+    "Lunwrapped": unwrapped,
     "Lratio": Fraction,
     "Lcomplex": complex_,
     "Lgethash": value_in_table,

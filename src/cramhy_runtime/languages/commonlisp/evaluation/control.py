@@ -38,8 +38,8 @@ def fdefinition(name):
     return symbol_function(name) if place is None else support.setf_function(place)
 
 
-def error(datum, *arguments):
-    return conditions.error(datum, *arguments)  # the keyword ``hint`` is for Python
+def error(datum, *arguments):  # that of Python rooms has the keyword ``hint``
+    return conditions.signal_error(conditions.make_condition(datum, arguments))
 
 
 signal, warn, cerror, break_ = conditions.signal, conditions.warn, conditions.cerror, conditions.break_

@@ -10,9 +10,9 @@ from cramhy_runtime.ground.list_shapes import check_shape  # noqa: F401  macros 
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.hash_tables import need_table
 from ..collections.list_search import without_property
-from ..compiler.support import function_of
+from ..compiler.support import function_of, next_method_exists  # noqa: F401  macros name the second one here
 from cramhy_runtime.ground.conditions import CaseFailure, SimpleTypeError, error, program_error
-from cramhy_runtime.ground.data import MultipleValues, boolean, truth
+from cramhy_runtime.ground.data import MultipleValues, boolean, python_list, truth
 from cramhy_runtime.ground.packages import is_symbol, keyword, sym, symbol_name
 from ..streams.streams import StringOutputStream
 from ..types.type_names import simplified_type
@@ -137,9 +137,9 @@ def with_simple_restart(name, report, thunk):
     return conditions.with_simple_restart(name, report, thunk)
 
 
-def next_method_exists(next_method):
-    """``next-method-p`` in the body of a method."""
-    return next_method.exists
+def next_values(next_method, others, *given):
+    """``call-next-method`` in the body of a method that was called with ``given``: with ``others``, a list, if there are any."""
+    return next_method(*(python_list(others) or given))
 
 
 # ----------------------------------------------------------------------------------------------------------------- iteration

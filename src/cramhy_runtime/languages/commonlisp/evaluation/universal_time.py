@@ -6,7 +6,6 @@ that of the machine in wall time and UTC in virtual time. A time zone of Lisp co
 
 from __future__ import annotations
 
-import datetime
 import time
 from fractions import Fraction
 
@@ -60,6 +59,12 @@ def _local_offset(seconds):
     return -local.tm_gmtoff, local.tm_isdst > 0
 
 
+def _calendar():
+    import datetime  # takes 2 ms, and a prompt is there without it
+
+    return datetime
+
+
 def decode_universal_time(universal_time, time_zone=None):
     """``decode-universal-time``: second, minute, hour, date, month, year, day (0 is Monday), daylight saving time, time zone."""
     if universal_time.__class__ is not int or universal_time < 0:
@@ -73,7 +78,7 @@ def decode_universal_time(universal_time, time_zone=None):
         west, daylight = int(zone * 3600), False
     days, seconds = divmod(universal_time - west, DAY)
     cycles, day = divmod(days, CYCLE_DAYS)
-    date = datetime.date(1900, 1, 1) + datetime.timedelta(day)
+    date = _calendar().date(1900, 1, 1) + _calendar().timedelta(day)
     return MultipleValues(
         (
             seconds % 60,
@@ -112,7 +117,7 @@ def encode_universal_time(second, minute, hour, date, month, year, time_zone=Non
         present = get_decoded_time()[5]
         year = min((present - present % 100 + century + year for century in (-100, 0, 100)), key=lambda each: (abs(each - present), -each))
     cycles, year_in_cycle = divmod(year - 1900, CYCLE_YEARS)
-    first = datetime.date(1900 + year_in_cycle, month, 1) - datetime.date(1900, 1, 1)
+    first = _calendar().date(1900 + year_in_cycle, month, 1) - _calendar().date(1900, 1, 1)
     local = (first.days + date - 1 + cycles * CYCLE_DAYS) * DAY + hour * 3600 + minute * 60 + second
     # the offset that holds at the time that comes out of it
     result = local + int(zone * 3600) if zone is not None else local + _local_offset(local + _local_offset(local)[0])[0]

@@ -117,7 +117,30 @@ def format_(destination, control, *args):
         stream = StringOutputStream(destination)
     else:
         stream = output_stream(destination)
+    if control.__class__ is str:
+        found = template(control)
+        if found is not None and not found[2]:
+            text = filled(found, args)
+            if text is not None:
+                stream.write(text)
+                return None
     format_on(stream, control, args)
+    return None
+
+
+def write_text(destination, text, fresh):
+    """What ``format`` does with the ``text`` that it made for ``destination``; ``fresh``: it begins a line. Its value."""
+    if destination is None:
+        return FreshString(text)
+    if isinstance(destination, OutputStream):
+        stream = destination
+    elif destination is True:
+        stream = standard_output()
+    else:
+        stream = StringOutputStream(destination) if isinstance(destination, LispString) else output_stream(destination)
+    if fresh:
+        stream.fresh_line()
+    stream.write(text)
     return None
 
 

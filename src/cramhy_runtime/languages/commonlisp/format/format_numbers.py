@@ -17,6 +17,10 @@ from ..printer.print_names import digits_in_base
 from ..printer.printer import prin1, princ_to_string
 
 
+_SHORT = 10**18
+"""Python prints smaller integers without a limit."""
+
+
 def pad(stream, text, mincol, colinc, minpad, padchar, padleft):
     """Write ``text`` in a field at least ``mincol`` wide, filled up in steps of ``colinc``."""
     padding = padchar * minpad
@@ -35,12 +39,17 @@ def write_integer(stream, number, base, commas=False, sign=False, mincol=0, padc
         with bound(PRINT_BASE, base, PRINT_RADIX, None):
             stream.write(princ_to_string(number))
         return
-    text = digits_in_base(abs(number), base)
+    stream.write(integer_field(number, base, commas, sign, mincol, padchar, commachar, interval))
+
+
+def integer_field(number, base, commas, sign, mincol, padchar, commachar, interval):
+    """The text of an integer in a field, with a character after each ``interval`` digits if ``commas``."""
+    text = str(abs(number)) if base == 10 and -_SHORT < number < _SHORT else digits_in_base(abs(number), base)
     if commas:
         head = (len(text) - 1) % interval + 1
         text = commachar.join([text[:head], *(text[index : index + interval] for index in range(head, len(text), interval))])
     text = ("-" if number < 0 else "+" if sign else "") + text
-    stream.write(text.rjust(mincol, padchar) if mincol else text)
+    return text.rjust(mincol, padchar) if mincol else text
 
 
 _ONES = "? one two three four five six seven eight nine".split()

@@ -15,6 +15,7 @@ from ..printer.print_controls import PRINT_CASE, PRINT_CIRCLE, PRINT_BASE, PRINT
 from ..printer.print_names import symbol_text
 from ..printer.printer import PRINT_PPRINT_DISPATCH, atom_text
 from ..reader.readtables import READTABLE
+from .format_pieces import Piece, piece
 from .format_parser import FormatError, parse
 
 SMALL = 10**18
@@ -24,20 +25,30 @@ _templates: dict = {}
 
 
 def template(control):
-    """(text with ``%s`` for each argument, the directives' characters) of a control string; ``None`` when it is not so simple."""
+    """(text with ``%s`` for each argument, what makes the texts, whether it begins a line) of a control string; ``None`` when it is not
+    so simple. What makes a text: the character of a directive in `TEXTS`, or a `Piece`.
+    """
     if control in _templates:
         return _templates[control]
     try:
         nodes = parse(control)
     except FormatError:
         return None
-    text, kinds, found = [], [], None
-    for node in nodes:
+    text, kinds, found, fresh = [], [], None, False
+    for index, node in enumerate(nodes):
         if node.__class__ is str:
             text.append(node.replace("%", "%%"))
             continue
         if node.params or node.colon or node.at or node.char not in ("A", "S", "D", "%", "~"):
-            break
+            if node.char == "&" and not (index or node.params or node.colon or node.at):
+                fresh = True
+                continue
+            text_of = piece(node, TEXTS)
+            if text_of is None:
+                break
+            text.append("%s")
+            kinds.append(Piece(control, index, text_of))
+            continue
         if node.char == "%":
             text.append("\n")
         elif node.char == "~":
@@ -46,11 +57,16 @@ def template(control):
             text.append("%s")
             kinds.append(node.char)
     else:
-        found = "".join(text), "".join(kinds)
+        found = "".join(text), tuple(kinds), fresh
     if len(_templates) > 5000:
         _templates.clear()
     _templates[control] = found
     return found
+
+
+def piece_of(control, index):
+    """The `Piece` of directive number ``index`` of ``control``, as compiled code that was kept asks for it."""
+    return Piece(control, index, piece(parse(control)[index], TEXTS))
 
 
 def with_known(text, known):
@@ -103,12 +119,12 @@ TEXTS = {"A": princ_atom, "S": prin1_atom, "D": decimal}
 
 def filled(found, arguments):
     """The text of the template ``found`` with ``arguments``; ``None`` when one of them is no atom, or is missing."""
-    text, kinds = found
+    text, kinds, _ = found
     if len(arguments) < len(kinds):
         return None
     parts = []
     for kind, argument in zip(kinds, arguments):  # noqa: B905  there may be more arguments
-        part = TEXTS[kind](argument)
+        part = TEXTS[kind](argument) if kind.__class__ is str else kind.text_of(argument)
         if part is None:
             return None
         parts.append(part)

@@ -7,7 +7,7 @@ variables, with nil where a part is not wanted.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from cramhy_runtime.utilities.records import dataclass, field
 
 from cramhy_runtime.ground.data import Cons, lisp_list, list_from
 from ..syntax.lambda_lists import gensym

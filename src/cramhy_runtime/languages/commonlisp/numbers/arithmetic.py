@@ -27,10 +27,12 @@ numerator denominator"""
 
 _PLAIN = frozenset((int, float))
 _REALS = frozenset((int, float, DoubleFloat, Fraction))
-_MACHINE = frozenset((int, float, DoubleFloat))  # asked after _PLAIN: at least one argument is a double
+_MACHINE = frozenset((int, float, DoubleFloat))
 _NUMBERS = _REALS | {complex}
 
 _LARGEST = sys.float_info.max
+_float_add, _float_subtract = float.__add__, float.__sub__
+"""They add doubles without a look at the class of the second, and give a plain float."""
 
 _pack_single = struct.Struct("f")
 
@@ -164,7 +166,9 @@ def add2(a, b):
             return a + b
         except OverflowError:
             return overflow("+", a, b)
-    if a.__class__ in _MACHINE and b.__class__ in _MACHINE:
+    if a.__class__ is DoubleFloat and b.__class__ in _MACHINE:
+        return DoubleFloat(_float_add(a, b))
+    if b.__class__ is DoubleFloat and a.__class__ in _PLAIN:
         return DoubleFloat(float(a) + float(b))
     return _operate("+", lambda x, y: x + y, a, b)
 
@@ -176,7 +180,9 @@ def sub2(a, b):
             return a - b
         except OverflowError:
             return overflow("-", a, b)
-    if a.__class__ in _MACHINE and b.__class__ in _MACHINE:
+    if a.__class__ is DoubleFloat and b.__class__ in _MACHINE:
+        return DoubleFloat(_float_subtract(a, b))
+    if b.__class__ is DoubleFloat and a.__class__ in _PLAIN:
         return DoubleFloat(float(a) - float(b))
     return _operate("-", lambda x, y: x - y, a, b)
 
@@ -192,7 +198,8 @@ def mul2(a, b):
             return _finite("*", product, a, b)
         return product
     if a.__class__ in _MACHINE and b.__class__ in _MACHINE:
-        return DoubleFloat(_finite("*", float(a) * float(b), a, b))
+        product = float(a) * float(b)
+        return DoubleFloat(product if -_LARGEST <= product <= _LARGEST else _finite("*", product, a, b))
     return _operate("*", lambda x, y: x * y, a, b)
 
 
@@ -207,6 +214,11 @@ def div2(a, b):
             return a / b
         except ZeroDivisionError:
             return _zero_division(a, b)
+        except OverflowError:
+            return overflow("/", a, b)
+    if kind in _MACHINE and other in _MACHINE and b:
+        try:
+            return DoubleFloat(float(a) / float(b))
         except OverflowError:
             return overflow("/", a, b)
     if kind is MultipleValues or other is MultipleValues:
@@ -293,28 +305,28 @@ def num_ne2(a, b):
 
 def lt2(a, b):
     """``(< a b)``"""
-    if a.__class__ in _PLAIN and b.__class__ in _PLAIN:
+    if a.__class__ in _MACHINE and b.__class__ in _MACHINE:
         return True if a < b else None
     return True if need_real(a) < need_real(b) else None
 
 
 def gt2(a, b):
     """``(> a b)``"""
-    if a.__class__ in _PLAIN and b.__class__ in _PLAIN:
+    if a.__class__ in _MACHINE and b.__class__ in _MACHINE:
         return True if a > b else None
     return True if need_real(a) > need_real(b) else None
 
 
 def le2(a, b):
     """``(<= a b)``"""
-    if a.__class__ in _PLAIN and b.__class__ in _PLAIN:
+    if a.__class__ in _MACHINE and b.__class__ in _MACHINE:
         return True if a <= b else None
     return True if need_real(a) <= need_real(b) else None
 
 
 def ge2(a, b):
     """``(>= a b)``"""
-    if a.__class__ in _PLAIN and b.__class__ in _PLAIN:
+    if a.__class__ in _MACHINE and b.__class__ in _MACHINE:
         return True if a >= b else None
     return True if need_real(a) >= need_real(b) else None
 

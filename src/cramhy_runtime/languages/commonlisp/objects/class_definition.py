@@ -14,7 +14,16 @@ from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.packages import is_symbol, sym, symbol_name
 from ..streams.streams import StringOutputStream
 from ..packages.package_errors import check_symbol
-from .class_objects import ClassSlot, InstanceSlot, DirectSlot, StandardClass, StandardObject, effective_slots, touch_classes
+from .class_objects import (
+    ClassSlot,
+    InstanceSlot,
+    DirectSlot,
+    StandardClass,
+    StandardObject,
+    effective_slots,
+    missing_attribute,
+    touch_classes,
+)
 from .classes import (
     BuiltInClass,
     StructureClass,
@@ -189,8 +198,6 @@ def _change(name, cls, bases, slots):
             sub.lisp_version = vars(sub).get("lisp_version", 0) + 1
             sub.lisp_history = [*vars(sub).get("lisp_history", ()), before[sub]]
     _install_class_slots(cls, slots)
-    for sub in changed[1:]:
-        _hide_class_slots(sub)
     return cls
 
 
@@ -208,14 +215,6 @@ def _install_class_slots(cls, slots):
             initfunction = effective_slots(cls)[slot.name].initfunction  # perhaps that of a superclass
             if initfunction is not None and slot.cell.value is UNBOUND:
                 slot.cell.value = one(initfunction())
-    _hide_class_slots(cls)
-
-
-def _hide_class_slots(cls):
-    """Let instances of ``cls`` have the slots that it declares for instances where a less specific class has a class slot."""
-    for slot in effective_slots(cls).values():
-        if slot.cell is None and isinstance(getattr(cls, slot.attribute, None), ClassSlot):
-            setattr(cls, slot.attribute, InstanceSlot(slot.attribute))
 
 
 # ----------------------------------------------------------------------------------------------------------------- accessors
@@ -264,7 +263,7 @@ def define_condition(name, parents=None, slots=None, *, report=None, default_ini
     elif "report" in vars(cls):
         del cls.report
     if "__getattr__" not in vars(cls):
-        cls.__getattr__ = StandardObject.__getattr__
+        cls.__getattr__ = missing_attribute
     _define_accessors(cls, slots)
     return name
 

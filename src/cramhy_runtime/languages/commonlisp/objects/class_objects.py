@@ -140,24 +140,28 @@ class ClassSlot:
 
 
 class InstanceSlot:
-    """The Python attribute for a slot of instances that hides a class slot of a superclass: one value for each instance."""
+    """What a class has for a slot of its instances: Python looks here when an instance has no value of its own.
+
+    (With a method ``__getattr__`` it would look there, too, but then every access to any attribute would take three times as long.)
+    """
 
     def __init__(self, attribute):
         self.attribute = attribute
 
     def __get__(self, instance, owner):
         if instance is None:
-            return self
-        try:
-            return instance.__dict__[self.attribute]
-        except KeyError:
-            raise AttributeError(self.attribute) from None  # so Python asks `StandardObject.__getattr__`
+            raise AttributeError(self.attribute)  # the class has no value
+        return missing_attribute(instance, self.attribute)
 
-    def __set__(self, instance, value):
-        instance.__dict__[self.attribute] = value
 
-    def __delete__(self, instance):
-        instance.__dict__.pop(self.attribute, None)
+def missing_attribute(instance, attribute):
+    """The value of an attribute that ``instance`` lacks: the slot is unbound, or the class was defined again with more slots."""
+    slot = slot_of_attribute(type(instance), attribute)
+    if slot is None:
+        raise AttributeError(f"{type(instance).__name__!r} object has no attribute {attribute!r}")
+    from .slots import missing_value
+
+    return missing_value(instance, slot)
 
 
 class StandardObject(metaclass=StandardClass):
@@ -173,15 +177,6 @@ class StandardObject(metaclass=StandardClass):
 
     def __repr__(self):
         return prin1_to_string(self)
-
-    def __getattr__(self, attribute):
-        # Called only when the attribute is missing: the slot is unbound, or the class was defined again with more slots.
-        slot = slot_of_attribute(type(self), attribute)
-        if slot is None:
-            raise AttributeError(f"{type(self).__name__!r} object has no attribute {attribute!r}")
-        from .slots import missing_value
-
-        return missing_value(self, slot)
 
 
 builtin_classes.set_standard_object(StandardObject)
@@ -204,7 +199,18 @@ def effective_slots(cls):
     found = _slots.get(cls)
     if found is None:
         found = _slots[cls] = _compute_slots(cls)
+        if issubclass(cls, StandardObject):
+            _install_slots(cls, found.values())
     return found
+
+
+def _install_slots(cls, slots):
+    """Give ``cls`` an `InstanceSlot` for each of the ``slots`` of its instances for which it inherits none, or a class slot."""
+    for slot in slots:
+        if slot.cell is None:
+            member = next((vars(base)[slot.attribute] for base in cls.__mro__ if slot.attribute in vars(base)), None)
+            if member is None or isinstance(member, ClassSlot):
+                setattr(cls, slot.attribute, InstanceSlot(slot.attribute))
 
 
 def slot_of_attribute(cls, attribute):

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from . import protocol_functions
 import copy
+from types import FunctionType
 from fractions import Fraction
 
 from cramhy_runtime.ground.condition_types import Condition, ProgramError, shown
@@ -19,9 +20,13 @@ from cramhy_runtime.ground.packages import is_symbol, keyword, symbol_name
 from .builtin_classes import BuiltInClass, lisp_mro
 from .class_definition import default_initargs
 from .class_objects import StandardObject, effective_slots, find_slot
+from .constructors import instance_constructor
 from cramhy_runtime.ground.classes import when_classes_change
 from .classes import StructureClass, class_name, class_of, find_class_or_error, qualified
-from cramhy_runtime.ground.dispatch.generic_functions import ALLOW_OTHER_KEYS, no_method_for, other_keys_allowed, when_methods_change
+from cramhy_runtime.ground.dispatch.generic_functions import no_method_for, when_methods_change
+from cramhy_runtime.ground.dispatch.method_combination import AFTER, STANDARD
+from cramhy_runtime.kernel.images import part
+from cramhy_runtime.ground.dispatch.keyword_checks import ALLOW_OTHER_KEYS, other_keys_allowed
 
 
 class InitargError(ProgramError):
@@ -46,16 +51,58 @@ class InitargError(ProgramError):
 _plans: dict = {}
 
 
+_constructors: dict = {}
+"""(class, initargs) → how often instances were made so, or the function that was written for it, or ``None``."""
+_OFTEN = 3
+
+
 @when_classes_change
 def _forget_plans():
     _plans.clear()
+    _constructors.clear()
+    for function in _watchers:
+        function()
 
 
 @when_methods_change
 def _methods_changed(generic_function):
     name = generic_function.__lisp_name__
     if is_symbol(name) and symbol_name(name) in _PROTOCOL:
-        _plans.clear()
+        _forget_plans()
+
+
+class _Callers:
+    """Stands among those who are told that a function of the protocol changes, as by ``trace``."""
+
+    @staticmethod
+    def refresh():
+        _forget_plans()
+
+
+@part
+class _OfImage:
+    """Methods of users are those of the current image."""
+
+    @staticmethod
+    def take():
+        return None
+
+    @staticmethod
+    def put(state):
+        _forget_plans()
+
+    @staticmethod
+    def copy(state):
+        return None
+
+
+_watchers: list = []
+
+
+def when_plans_change(function):
+    """Call ``function()`` whenever classes, methods or a trace change how instances are made."""
+    _watchers.append(function)
+    return function
 
 
 _PROTOCOL = ("INITIALIZE-INSTANCE", "SHARED-INITIALIZE", "ALLOCATE-INSTANCE", "REINITIALIZE-INSTANCE")
@@ -81,6 +128,7 @@ class Plan:
             for method in applicable_user_methods(function, cls)
         ]
         self.custom = bool(methods) and not issubclass(cls, Condition)
+        self.afters = _afters(cls, methods) if self.custom else []
         self.valid = None
         if not issubclass(cls, Condition) and not any(method.shape.allow_other_keys for method in methods):
             self.valid = {*self.targets, *self.parameters, ALLOW_OTHER_KEYS, *(key for method in methods for key in method.shape.keys)}
@@ -137,6 +185,38 @@ class Plan:
         for slot, initfunction in self.initforms:
             if slot.name not in given and (wanted is True or slot.name in wanted) and slot.attribute not in obj.__dict__:
                 setattr(obj, slot.attribute, one(initfunction()))
+
+
+def _afters(cls, methods):
+    """The functions of the :after methods of ``initialize-instance``, in their order, if there are no other ``methods``; or ``None``."""
+    functions = protocol_functions.initialize_instance, protocol_functions.shared_initialize
+    if any(function.watcher is not None or function.combination is not STANDARD for function in functions):
+        return None
+    mro = lisp_mro(cls)
+    for method in methods:
+        if method.generic_function is not functions[0] or method.qualifiers != (AFTER,) or method.uses_next or method.per_class:
+            return None
+    methods.sort(key=lambda method: -mro.index(method.specializers[0]))
+    return [method.function for method in methods]
+
+
+def constructor_for(cls, keys):
+    """The function that makes an instance of ``cls`` from the values of the initargs ``keys``; ``None`` if the protocol must do that."""
+    found = _constructors.get((cls, keys), 0)
+    if found.__class__ is int:
+        if len(_constructors) > 5000:
+            _constructors.clear()
+        found = _constructors[cls, keys] = instance_constructor(_plans.get(cls) or _plan_or_error(cls), keys)
+        _hear_of_traces()
+    return found
+
+
+def _hear_of_traces():
+    for function in (protocol_functions.initialize_instance, protocol_functions.shared_initialize):
+        symbol = function.__lisp_name__
+        if symbol.keyed is None:
+            symbol.keyed = {}
+        symbol.keyed["constructors"] = _Callers
 
 
 def _check_finalized(cls):
@@ -217,7 +297,18 @@ def make_instance(class_, *initargs, **keywords):
     cls = class_ if isinstance(class_, type) else find_class_or_error(class_)
     if keywords:
         initargs = _with_keywords(initargs, keywords)
+    key = (cls, initargs[::2])
+    try:
+        written = _constructors.get(key, 0)
+    except TypeError:  # something that is no keyword and has no hash
+        written = None
+    if written.__class__ is FunctionType and not len(initargs) & 1:
+        return written(*initargs[1::2])
     plan = _plans.get(cls) or _plan_or_error(cls)
+    if written.__class__ is int and not isinstance(cls, StructureClass):
+        _constructors[key] = written + 1
+        if written > _OFTEN:
+            constructor_for(*key)
     if isinstance(cls, StructureClass):
         return cls.lisp_structure.construct(*initargs)
     initargs = plan.with_defaults(initargs)

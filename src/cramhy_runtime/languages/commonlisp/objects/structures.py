@@ -23,6 +23,7 @@ from cramhy_runtime.ground.packages import Package, intern, is_symbol, keyword, 
 from ..packages.package_errors import check_symbol
 from cramhy_runtime.ground.printing import CURRENT_LEVEL, LEVELS_COUNT
 from .builtin_classes import set_structure_object
+from .constructors import keyword_constructor
 from .classes import StructureClass, register_class, registered_class
 from cramhy_runtime.ground.dispatch.generic_functions import add_method
 from cramhy_runtime.ground.dispatch.methods import Shape
@@ -463,10 +464,7 @@ def _define_constructor(structure, constructor):
     if constructor is None:
         return
     if not isinstance(constructor, (Cons, list, tuple)):
-
-        def construct(*initargs, **keywords):
-            return structure.construct(*initargs, **keywords)
-
+        construct = keyword_constructor(structure)
         construct.shape = Shape()
         construct.shape.has_keys, construct.shape.keys = True, [keyword(symbol_name(slot.name)) for slot in structure.slots]
         _function(constructor, construct)

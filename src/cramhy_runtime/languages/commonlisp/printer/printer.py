@@ -42,6 +42,7 @@ from . import print_controls as controls
 from cramhy_runtime.ground.float_printing import float_text
 from .pprint_dispatch import PRINT_PPRINT_DISPATCH
 from .components import COMPONENTS
+from .flat_lists import flat_text
 from .pretty import NO_OBJECT, call_logical_block, on_pretty_stream
 from .print_controls import (
     CIRCULARITY,
@@ -79,6 +80,8 @@ def print_through(print_object):
 
 
 _integer = int.__repr__
+_SHORT = 10**18
+"""Python prints smaller integers without a limit."""
 
 
 def _integer_atom(number, escape):
@@ -308,8 +311,11 @@ def write(obj, stream, escape=True):
     if stream.__class__ is None.__class__ or not isinstance(stream, Stream):
         stream = output_stream(stream)
     text_of = _ATOMS.get(obj.__class__)
-    if text_of is not None and PRINT_CIRCLE.value is None and not PRINT_PPRINT_DISPATCH.value.entries:
+    usual = PRINT_CIRCLE.value is None and not PRINT_PPRINT_DISPATCH.value.entries
+    if text_of is not None and usual:
         stream.write(text_of(obj, escape))
+    elif usual and obj.__class__ is Cons and (text := flat_text(obj, stream, escape, atom_text)) is not None:
+        stream.write(text)
     elif escape:
         if PRINT_ESCAPE.value is True:
             output_object(obj, stream)
@@ -331,6 +337,10 @@ def prin1(obj, stream=None):
 
 def princ(obj, stream=None):
     """``princ``: print ``obj`` for people: no quotes, no packages. Returns ``obj``."""
+    if stream.__class__ is StringOutputStream and obj.__class__ is int and -_SHORT < obj < _SHORT and controls.PRINT_BASE.value == 10:
+        if controls.PRINT_RADIX.value is None and PRINT_CIRCLE.value is None and not PRINT_PPRINT_DISPATCH.value.entries:
+            stream.write(_integer(obj))
+            return obj
     write(obj, stream, False)
     return obj
 

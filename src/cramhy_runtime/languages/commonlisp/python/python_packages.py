@@ -124,9 +124,14 @@ def import_module(name, nickname=None):
 
 def define_faces():
     """Make the package PYTHON; called once, by `package.fill`."""
-    ours(PYTHON, lambda: PythonPackage(PYTHON, builtins))
-    add_nicknames(find_package(PYTHON), ["PY"])
-    define_face(PYTHON, functions={python_calls: python_calls.NAMES, "import-module": import_module}, export="import -> for with")
+    package = ours(PYTHON, lambda: PythonPackage(PYTHON, builtins))
+    add_nicknames(package, ["PY"])
+    package.complete()
+    more = "import -> for with"
+    for name in f"{python_calls.NAMES} import-module {more}".upper().split():
+        if not package.present(name):
+            package.internal[name] = Symbol(name, package)  # Python has none of that name, so it is not asked for each spelling
+    define_face(PYTHON, functions={python_calls: python_calls.NAMES, "import-module": import_module}, export=more)
     define_face(
         "CRAMHY",
         functions={"module-attribute": module_attribute, "iterate": python_calls.iterate, "with-context": python_calls.with_context},

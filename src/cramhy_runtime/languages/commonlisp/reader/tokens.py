@@ -14,7 +14,6 @@ from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.conditions import type_error
 import math
 import re
-import string
 import unicodedata
 from fractions import Fraction
 
@@ -27,7 +26,7 @@ _DECIMAL = re.compile(
     r"([+-]?[0-9]+)(?:(\.)|/([0-9]+))?"
     r"|([+-]?(?:[0-9]*\.[0-9]+|[0-9]+(?:\.[0-9]*)?(?=[a-zA-Z])))(?:([esfdlESFDL])([+-]?[0-9]+))?"
 )
-DIGITS = string.digits + string.ascii_lowercase
+DIGITS = "0123456789abcdefghijklmnopqrstuvwxyz"
 _rationals: dict = {}
 SINGLE_LIMIT = 3.4028235677973366e38
 """The smallest magnitude that rounds to no single-float."""

@@ -120,13 +120,34 @@ class StringOutputStream(OutputStream, StringStream):
     def __init__(self, target=None):
         self.parts = []
         self.target = target
-        if target is not None:
+        self._column = self._counted = 0  # the column behind so many of the parts
+        if target is None:
+            self.write = self.parts.append  # nothing else is to be done for most streams
+        else:
             text = str(target)
             self.column = len(text) - text.rfind("\n") - 1
+
+    @property
+    def column(self):
+        """Where the next character goes. It is found out when somebody asks: hardly anybody does."""
+        for part in self.parts[self._counted :]:
+            newline = part.rfind("\n")
+            self._column = self._column + len(part) if newline < 0 else len(part) - newline - 1
+        self._counted = len(self.parts)
+        return self._column
+
+    @column.setter
+    def column(self, column):
+        self._column, self._counted = column, len(self.parts)
+
+    def close(self, abort=False):
+        super().close(abort)
+        self.__dict__.pop("write", None)
 
     def emit(self, text):
         if self.target is None:
             self.parts.append(text)
+            self._counted += 1  # `write` counts the column
             if self.behind:
                 self.behind = self.behind[len(text) :]
             return
@@ -144,7 +165,7 @@ class StringOutputStream(OutputStream, StringStream):
 
     def take(self):
         text = self.text()
-        self.parts = []
+        self.parts.clear()
         self.behind = ""
         self.column = 0
         return text
@@ -158,7 +179,11 @@ class StringOutputStream(OutputStream, StringStream):
         text = self.text()
         position = len(text) if position is None else position
         text = text.ljust(position, "\0")
-        self.parts, self.behind = [text[:position]], text[position:]
+        self.column, column = 0, self.column
+        self.parts[:], self.behind = [text[:position]], text[position:]
+        self.column = column
+        if not self.closed:
+            self.write = super().write  # what was written behind here is overwritten
         return True
 
 

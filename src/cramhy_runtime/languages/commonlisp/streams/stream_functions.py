@@ -27,6 +27,7 @@ from .streams import (
     BroadcastStream,
     ConcatenatedStream,
     EchoStream,
+    OutputStream,
     Stream,
     StringInputStream,
     StringOutputStream,
@@ -60,11 +61,11 @@ def _characters(vector):
 
 def write_string(string, stream=None, *, start=0, end=None):
     """``write-string``: the characters ``start`` to ``end`` of ``string``. Returns ``string``."""
-    text = _text(string)
+    text = string if string.__class__ is str else _text(string)
     if start or end is not None:
         start, end = bounds(start, end, len(text))
         text = text[start:end]
-    output_stream(stream).write(text)
+    (stream if isinstance(stream, OutputStream) else output_stream(stream)).write(text)
     return string
 
 
@@ -77,9 +78,9 @@ def write_line(string, stream=None, *, start=0, end=None):
 
 
 def write_char(character, stream=None):
-    if not isinstance(character, Character):
+    if character.__class__ is not Character:
         return type_error(character, "CHARACTER")
-    output_stream(stream).write(character.char)
+    (stream if isinstance(stream, OutputStream) else output_stream(stream)).write(character.char)
     return character
 
 
@@ -105,7 +106,7 @@ def write_sequence(sequence, stream, *, start=0, end=None):
 
 
 def terpri(stream=None):
-    output_stream(stream).write("\n")
+    (stream if isinstance(stream, OutputStream) else output_stream(stream)).write("\n")
 
 
 def fresh_line(stream=None):

@@ -18,8 +18,8 @@ import re
 import types
 from collections.abc import Callable, Iterator
 from operator import attrgetter, is_
-from typing import Any
 
+from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction
 from cramhy_runtime.kernel.reports import of_the_library
 from cramhy_runtime.ground.packages import common, find_package, registered, sym, was_redefined

@@ -13,7 +13,7 @@ cramhy itself and Python; and only if this user or root has written it and its c
 
 from __future__ import annotations
 
-import errno
+import contextlib
 import importlib.util
 import linecache
 import marshal
@@ -24,10 +24,10 @@ import runpy
 import sys
 from pathlib import Path
 from types import CodeType
-from typing import NamedTuple
 
-from cramhy_runtime import storage
-from cramhy_runtime.storage.checksummed_code import Unusable, distrust_of_folder, sealed, unsealed
+from cramhy_runtime.kernel.typing_names import NamedTuple
+from cramhy_runtime.storage.checksummed_code import Unusable, sealed, unsealed
+from cramhy_runtime.storage.kept_files import keep, kept_bytes, kept_path
 from cramhy_runtime.ground.function_codes import note_code
 from cramhy_runtime.ground.conditions import CompileError, Condition, FileError, error
 from cramhy_runtime.ground.data import Cons, all_values
@@ -42,7 +42,7 @@ from .code_dependencies import Expectations, Notes, Wanted, reading_state
 
 LOAD_PATHNAME, LOAD_TRUENAME = special("*LOAD-PATHNAME*"), special("*LOAD-TRUENAME*")
 
-FIRST_LINE = b"# cramhy kept code 2\n"
+FIRST_LINE, STAMP_LINE = b"# cramhy kept code 3\n", b"# cramhy stamp 1\n"
 
 _not_used = {}
 
@@ -55,41 +55,37 @@ def _sha256(text):
 
 @functools.cache
 def stamp():
-    """A fingerprint of cramhy itself: kept files made by another version are not used."""
-    digest = _sha256(sys.version)
-    here, libraries = Path(__file__).parents[1], Path(__file__).parents[3] / "libraries"
-    rooms = (here, here / "faces", libraries, here.parents[1] / "ground")
-    folders = [
-        here,
-        here.parents[1] / "ground",
-        here.parents[1] / "ground" / "dispatch",
-        here.parent / "operators",
-        here.parent / "hy",
-        *(entry for room in rooms for entry in room.iterdir() if entry.is_dir()),
+    """A fingerprint of what compiles, cramhy and Python: kept files made by others are not used.
+
+    It is the same wherever cramhy stands, so that the wheel can bring kept files along. What is read for it is kept, too.
+    """
+    files = [(folder.name, entry) for folder in _compiling_folders() for entry in sorted(os.scandir(folder), key=lambda entry: entry.name)]
+    files = [(folder, entry) for folder, entry in files if entry.name.endswith((".py", ".hy", ".lisp"))]
+    python = f"{sys.implementation.cache_tag} {importlib.util.MAGIC_NUMBER.hex()}"
+    states = [(entry.path, entry.stat()) for _, entry in files]
+    state = _sha256("".join([python, *(f"{path} {status.st_mtime_ns} {status.st_size} " for path, status in states)])).hexdigest()
+    place = Path(__file__).with_name("stamp")
+    with contextlib.suppress(Unusable, OSError):
+        return unsealed(kept_path(place), STAMP_LINE, state).decode()
+    digest = _sha256(python)
+    for folder, entry in files:
+        data = Path(entry.path).read_bytes()
+        digest.update(f"{folder}/{entry.name} {len(data)} ".encode(errors="surrogatepass") + data)
+    made = digest.hexdigest()
+    keep(place, lambda: sealed(STAMP_LINE, state, made.encode()))
+    return made
+
+
+def _compiling_folders():
+    """The folders with what compiles, in an order that depends on their names only."""
+    here = Path(__file__).parents[1]
+    libraries, ground = here.parents[1] / "libraries", here.parents[1] / "ground"
+    inside = [
+        Path(entry) for room in (here, here / "compiler", here / "faces", libraries, ground) for entry in os.scandir(room) if entry.is_dir()
     ]
+    folders = [here, ground, here.parent / "operators", here.parent / "hy", *sorted(inside, key=lambda folder: folder.parts)]
     language = importlib.util.find_spec("cramhy")
-    if language and language.submodule_search_locations:
-        folders += map(Path, language.submodule_search_locations)
-    for folder in folders:
-        for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
-            if entry.name.endswith((".py", ".hy", ".lisp")):
-                status = entry.stat()
-                digest.update(f"{entry.name}{status.st_mtime_ns}{status.st_size}".encode(errors="surrogatepass"))
-    return digest.hexdigest()
-
-
-def kept_path(path):
-    """Where the compiled form of ``path`` is kept: beside it if that is possible and safe. `OSError` if there is no place at all."""
-    folder = path.parent / "__pycache__"
-    name = f"{path.name}.{sys.implementation.cache_tag}.cramhy"
-    there = os.path.lexists(folder)
-    if os.access(folder if there else path.parent, os.W_OK) and not (there and distrust_of_folder(folder)):
-        return folder / name
-    base = os.environ.get("XDG_CACHE_HOME", "")
-    base = base if os.path.isabs(base) else os.path.expanduser("~/.cache")
-    if not os.path.isabs(base):
-        raise FileNotFoundError(errno.ENOENT, "This user has no folder", base)
-    return Path(base, "cramhy") / f"{_sha256(str(path)).hexdigest()[:16]}-{name}"
+    return folders + [Path(folder) for folder in (language and language.submodule_search_locations or ())]
 
 
 def decoded(path, encoding=None):
@@ -137,7 +133,7 @@ def load_file(path, chain="", finished=None, show=None, encoding=None, as_source
 
 
 def _fingerprint(path, text, chain=""):
-    return _sha256(f"{stamp()}{chain}{path}{reading_state(text)}{text}").hexdigest()
+    return _sha256(f"{stamp()}{chain}{path.name}{reading_state(text)}{text}").hexdigest()
 
 
 def load_part(text, filename, line, column):
@@ -181,7 +177,7 @@ class _KeptForm(NamedTuple):
 def _load_or_compile(path, fingerprint, text, show=None, as_source=False):
     """Run the code that is kept for ``path`` as far as it is what the compiler would make; compile the rest of ``text``, and keep that."""
     _not_used.pop(str(path), None)
-    kept = _kept(path, fingerprint) if show is None else None
+    kept = _kept(path, fingerprint, text.filename) if show is None else None
     if kept is None:
         forms, used = [], 0
     else:
@@ -197,7 +193,7 @@ def _load_or_compile(path, fingerprint, text, show=None, as_source=False):
     if rest is not None:
         units = forms[used - 1].unit + 1 if used else 0
         rest = [form._replace(place=(offset + form.place[0], *form.place[1:]), unit=units) for form in rest]
-        _keep(path, fingerprint, [tuple(form) for form in [*forms[:used], *rest]])
+        _keep(path, fingerprint, text.filename, [tuple(form) for form in [*forms[:used], *rest]])
 
 
 def _run_kept(forms, filename):
@@ -321,10 +317,15 @@ def _run_hy(path):
             sys.path.remove(folder)
 
 
-def _kept(path, fingerprint):
-    """What is kept for ``path``: a list of `_KeptForm` as tuples, or ``None``."""
+def _kept(path, fingerprint, filename):
+    """What is kept for ``path``: a list of `_KeptForm` as tuples, or ``None``. filename: what the code is told that it stands in."""
     try:
-        return marshal.loads(unsealed(kept_path(path), FIRST_LINE, fingerprint))
+        data = kept_bytes(path, lambda place: unsealed(place, FIRST_LINE, fingerprint))
+        made_in, forms = marshal.loads(data)
+        if made_in != filename:
+            forms = [(place, unit, wanted, [_moved(code, filename) for code in codes]) for place, unit, wanted, codes in forms]
+            _keep(path, fingerprint, filename, forms)
+        return forms
     except Unusable as problem:
         _not_used[str(path)] = problem
     except (OSError, ValueError, EOFError, TypeError) as problem:
@@ -332,10 +333,17 @@ def _kept(path, fingerprint):
     return None
 
 
+def _moved(code, filename):
+    """``code``, which was compiled elsewhere, as that of the file ``filename``."""
+    constants = tuple(_moved(each, filename) if isinstance(each, CodeType) else each for each in code.co_consts)
+    return code.replace(co_filename=filename, co_consts=constants)
+
+
 def kept_codes(path):
     """The code objects that were kept when the file ``path`` was loaded last by itself, if it has not changed since; else ``None``."""
     path = Path(path).absolute()
-    kept = _kept(path, _fingerprint(path, decoded(path), "source ")) or _kept(path, _fingerprint(path, decoded(path)))
+    text = decoded(path)
+    kept = _kept(path, _fingerprint(path, text, "source "), str(path)) or _kept(path, _fingerprint(path, text), str(path))
     return kept and [code for parts in kept for code in _KeptForm(*parts).codes]
 
 
@@ -344,20 +352,8 @@ def why_not_kept(path):
     return _not_used.get(str(Path(path).absolute()))
 
 
-def _keep(path, fingerprint, forms):
-    if sys.dont_write_bytecode:
-        return
-    try:
-        target = kept_path(path)
-        if not target.parent.is_dir():
-            os.makedirs(target.parent.parent, mode=0o755, exist_ok=True)
-            os.mkdir(target.parent, 0o755)  # others must not be able to write there, whatever the umask is
-        if distrust_of_folder(target.parent):
-            return
-        # without waiting for the disk: the checksum shows what a breakdown left
-        storage.write_whole(target, sealed(FIRST_LINE, fingerprint, marshal.dumps(forms)), mode=0o644, durable=False, follow=False)
-    except OSError:
-        pass  # a folder that cannot be written only means compiling again next time
+def _keep(path, fingerprint, filename, forms):
+    keep(path, lambda: sealed(FIRST_LINE, fingerprint, marshal.dumps((filename, forms))))
 
 
 def folder_of_load():

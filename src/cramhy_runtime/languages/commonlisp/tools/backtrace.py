@@ -9,7 +9,6 @@ from __future__ import annotations
 import linecache
 import os
 import sys
-import traceback
 
 from cramhy_runtime.kernel.images import Cell
 from cramhy_runtime.ground.source_places import circumstance, describe, frame_position, is_user_file
@@ -42,6 +41,8 @@ def lines(condition):
         return []
     frames = _frames(condition, sys._getframe(1))
     if wanted == "python":
+        import traceback  # takes 2 ms, and a prompt is there without it
+
         text = "".join(traceback.StackSummary.extract((frame, line) for frame, line, _ in frames).format())
         return ["", "Python frames:", *text.rstrip("\n").splitlines()]
     told = [f"  {name} at {describe(position)}" for name, position in _user_calls(frames)]

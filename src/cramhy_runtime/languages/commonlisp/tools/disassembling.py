@@ -11,6 +11,7 @@ import ast
 import contextlib
 import io
 
+from cramhy_runtime.ground.keyword_calls import KeywordCalls
 from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, truth
 from cramhy_runtime.ground.dynamic import binding
@@ -19,6 +20,7 @@ from ..evaluation.evaluator import PACKAGE, Unit, compile_lambda, compiler
 from ..evaluation.function_facts import defining_forms, lambda_expression, plain, position_of, shown_name
 from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
 from cramhy_runtime.ground.packages import sym
+from ..objects.makers import Maker
 from ..printer.printer import prin1_to_string
 from ..streams.streams import output_stream
 
@@ -113,8 +115,14 @@ class _Named(ast.NodeTransformer):
         if node.id[:1] == "K" and node.id[1:].isdigit() and truth(value):
             if isinstance(value, Symbol):
                 return ast.Name(f"«{prin1_to_string(value)}»", node.ctx)
+            if value.__class__ is dict:  # of effective functions
+                return ast.Name("{" + ", ".join(sorted(each.__name__ for each in value)) + "}", node.ctx)
             if value.__class__ is set:  # of classes whose slot the code takes itself
                 return ast.Name("{" + ", ".join(sorted(each.__name__ for each in value)) + "}", node.ctx)
+            if isinstance(value, KeywordCalls):
+                return ast.Name(f"«{prin1_to_string(value.symbol)}»", node.ctx)
+            if isinstance(value, Maker):
+                return ast.Name(f"«{prin1_to_string(value.name)}»", node.ctx)
             name = getattr(value, "__name__", None)
             if callable(value) and name:
                 return ast.Name(name, node.ctx)

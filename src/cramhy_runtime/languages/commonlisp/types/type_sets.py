@@ -19,8 +19,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import copysign, inf
-from typing import NamedTuple
 
+from cramhy_runtime.kernel.typing_names import NamedTuple
 from cramhy_runtime.ground.arrays import dimensions, element_type, is_simple
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Keyword, Symbol

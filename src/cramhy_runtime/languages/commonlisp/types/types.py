@@ -136,6 +136,14 @@ def typep(object, type_specifier, environment=None):
     return True if (predicate or type_predicate(type_specifier))(object) else None
 
 
+def type_test(specifier):
+    """As `type_predicate`, but ``None`` for what is no type."""
+    known = _predicates.get(specifier) if specifier.__class__ is Symbol else None
+    if known is not None:
+        return known
+    return type_predicate(specifier) if is_known_type(specifier) else None
+
+
 def type_predicate(specifier):
     """The Python predicate (object -> truth value) for a type specifier; an unknown one is an error."""
     if isinstance(specifier, Symbol):

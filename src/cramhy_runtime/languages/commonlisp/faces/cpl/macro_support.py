@@ -32,9 +32,10 @@ def with_parallel_childs(name, thunks, watcher):
     return operators.with_parallel_childs(name, python_list(thunks), watcher)
 
 
-def with_failure_handling(clauses, body):
-    """``clauses`` is a list of lists (type function)."""
-    return failures.with_failure_handling([tuple(clause) for clause in python_list(clauses)], body)
+def with_failure_handling(body, *clauses):
+    """``clauses``: a type and a function for each, in turn."""
+    pairs = (clauses,) if len(clauses) == 2 else [clauses[index : index + 2] for index in range(0, len(clauses), 2)]
+    return failures.Handling(pairs).run(body)
 
 
 def with_tree_node(path_part, function, name, sexp, lambda_list, parameters, log_parameters, log_pattern):
@@ -101,6 +102,7 @@ FUNCTIONS = {
     "with-scheduling": suspension.with_scheduling,
     "define-task-variable": lambda name, init: task_variables.define_task_variable(name, name.value, init_function=init),
     "with-failure-handling": with_failure_handling,
+    "retry": failures.Handling.__call__,
     "make-retry-counter": retry_counters.RetryCounter,
     "use-retry": lambda counter: counter.use(),
     "counter-value": lambda counter: counter.left,

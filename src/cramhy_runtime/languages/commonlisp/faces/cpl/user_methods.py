@@ -22,9 +22,10 @@ from cramhy_runtime.ground.data import one
 from cramhy_runtime.ground.dispatch.generic_functions import when_methods_change
 from cramhy_runtime.ground.dispatch.methods import EqlSpecializer
 from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
-from cramhy_runtime.cpl.fluents import fluents
+from cramhy_runtime.cpl.fluents import fluents, nets
 from cramhy_runtime.cpl.tasks import waiting
-from cramhy_runtime.cpl.fluents.fluents import CachedNet, Fluent, ValueFluent, peeking
+from cramhy_runtime.cpl.fluents.fluents import Fluent, ValueFluent
+from cramhy_runtime.cpl.fluents.nets import CachedNet, peeking
 
 _replaced = {}
 """(class, name of a Python method) → the method that was there, or ``None``, for those that call a generic function now."""
@@ -46,7 +47,7 @@ def _value(fluent):
     """The value of a fluent; any other object is its own value."""
     if not isinstance(fluent, Fluent):
         return fluent
-    return _original(fluent, "peek" if kernel.current() in fluents.peekers else "read")(fluent)
+    return _original(fluent, "peek" if kernel.current() in nets.peekers else "read")(fluent)
 
 
 def _set_value(new, fluent):
@@ -125,6 +126,7 @@ def _prepare(cls):
             cls,
             read=_read_through,
             peek=_peek_through,
+            _fluent_value=property(_read_through),
             foreign=True,
             value=property(_read_through, lambda fluent, new: fluent.set(new)) if issubclass(cls, ValueFluent) else Fluent.value,
         )

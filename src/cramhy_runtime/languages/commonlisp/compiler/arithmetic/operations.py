@@ -1,0 +1,530 @@
+"""Arithmetic and comparison: from calls of ``+ - * / < > <= >= =`` to Python's operators.
+
+Where the kinds of the operands are known (``kinds.py``) a Python operator stands alone. Where they are not, one test of classes
+stands before as many operations as belong together (`fused`), and the generic functions of ``numbers/arithmetic.py`` behind it:
+ratios, complex numbers, errors and several values are their business. Numbers stay what they are in Lisp: ``t`` is none although
+Python's ``True`` is, a quotient of integers is a ratio, and a product of floats that became infinite is an error, unless it is a
+term of a sum of singles.
+
+Doubles are raw wherever it is known that a float must be a double, and wrapped where they leave the expression.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from cramhy_runtime.ground.data import DoubleFloat
+from cramhy_runtime.ground.packages import sym
+from .. import nodes
+from ..core import NONE, TRUE, Symbol, expression, word
+from ..declared_types import GREATEST_FIXNUM, LEAST_FIXNUM
+from ..destinations import FIRST_OF_VALUES, RAW, VALUE
+from ..environment import Variable
+from ..loop_shapes import quiet
+from ..kinds import (
+    DIVIDE,
+    DOUBLE,
+    FEW_BITS,
+    FLOATS,
+    INT,
+    MACHINE,
+    MINUS,
+    NUMBER,
+    ODD,
+    PLUS,
+    SINGLE,
+    STEPS,
+    THING,
+    TIMES,
+    bits,
+    combined,
+    exactly,
+    kind_of,
+    magnitude,
+    raw,
+)
+
+ARITHMETIC = {
+    sym(name): word(f"L{function}")
+    for name, function in (
+        ("+", "add2"),
+        ("-", "sub2"),
+        ("*", "mul2"),
+        ("/", "div2"),
+        ("<", "lt2"),
+        (">", "gt2"),
+        ("<=", "le2"),
+        (">=", "ge2"),
+        ("=", "num_eq2"),
+    )
+}
+OPERATORS = {PLUS: word("+"), MINUS: word("-"), TIMES: word("*"), DIVIDE: word("/")}
+COMPARISONS = {sym(name): word(name) for name in ("<", ">", "<=", ">=", "=")}
+
+LARGEST = sys.float_info.max
+INT_CLASS, FLOAT_CLASS, DOUBLE_CLASS = word("Lint"), word("Lfloat"), word("Ldouble")
+CLASS, CLASSES, RESULT = word("__class__"), word("Lc"), word("Lr")
+IS, IS_NOT, AND, OR, IF, DOT, SETX = map(word, "is is-not and or if . setx".split())
+MOST_LEAVES, MOST_OPERATIONS = 5, 8
+FIXNUM, FIXNUM_BITS = 1 << 10, 62
+"""That what is not known is assumed to be a fixnum, which needs a look at its size as well."""
+
+
+def class_of(model):
+    return expression(DOT, model, CLASS)
+
+
+def nameable(model):
+    """Whether ``model`` may be evaluated twice: a name or a number."""
+    return model.__class__ in (Symbol, int, float)
+
+
+def fixnum_test(model):
+    """A test that ``model``, an integer, is a fixnum."""
+    return expression(word("<="), LEAST_FIXNUM, model, GREATEST_FIXNUM)
+
+
+class Operand:
+    """The value of ``node``. ``first`` evaluates it and is used once, ``later`` means the same value afterwards."""
+
+    __slots__ = ("node", "kind", "first", "later", "raw", "size")
+
+    def __init__(self, node, kind, first, later):
+        self.node, self.kind, self.first, self.later = node, kind, first, later
+        self.raw = raw(kind)
+        self.size = bits(node) if kind & INT else 0
+
+    @property
+    def known(self):
+        """Whether Python's operators may be used without a look at the class."""
+        return exactly(self.kind, INT | SINGLE) or exactly(self.kind, INT | DOUBLE | ODD)
+
+
+class Operation:
+    """A call of a function of two numbers; ``parts`` are operations and `Operand` objects."""
+
+    __slots__ = ("symbol", "node", "parts")
+
+    def __init__(self, symbol, node, parts):
+        self.symbol, self.node, self.parts = symbol, node, parts
+
+
+def bare(symbol, one, other, size, other_size):
+    """The kind of ``one symbol other`` if Python's operator gives it, both operands being `Operand.known`; else 0."""
+    if symbol is DIVIDE and one & other & INT:
+        return 0
+    both = one | other
+    if both & (FLOATS | ODD) and max(size, other_size) > FEW_BITS:
+        return 0
+    if both & SINGLE and both & (DOUBLE | ODD) and (one if one & (DOUBLE | ODD) else other) & INT:
+        return 0  # of an integer or a double and a single: nobody would know what the float is
+    return combined(one, other)
+
+
+class ArithmeticGenerator:
+    """The part of the `Generator` that makes expressions of calls with numbers."""
+
+    # ----------------------------------------------------------------------------------------------------------- operands
+
+    def class_of(self, model):
+        """The class of the value of ``model``; that of a parameter that is often an operand was noted on entry."""
+        noted = self.class_names.get(model) if model.__class__ is Symbol else None
+        return class_of(model) if noted is None else noted
+
+    def noted_class(self, model):
+        """(first use, later use) of the class of the value of ``model``."""
+        known = self.class_of(model)
+        return (known, known) if known.__class__ is Symbol else (expression(SETX, CLASSES, known), CLASSES)
+
+    def operands(self, arguments, all_values=False):
+        """The `Operand` of each of ``arguments``: an expression that is not simple is named by its first use.
+
+        Several values are left in where the kind is unknown: the generic functions take the first.
+        """
+        kinds = [kind_of(argument) for argument in arguments]
+        wanted = [RAW if raw(kind) else FIRST_OF_VALUES if all_values or not exactly(kind, NUMBER) else VALUE for kind in kinds]
+        models = self.arguments(arguments, wanted)
+        found = []
+        for index, (model, node) in enumerate(zip(models, arguments)):
+            simple = nameable(model)
+            if simple and node.__class__ is nodes.LocalVariable and node.variable.captured and node.variable.assigned:
+                simple = all(map(nameable, models[index + 1 :]))  # else a later operand may change it
+            if simple:
+                first = later = model
+            else:
+                later = word(self.temporary())
+                first = expression(SETX, later, model)
+            found.append(Operand(node, kinds[index], first, later))
+        return found
+
+    def settle(self, operands):
+        """Evaluate by statements all ``operands`` that are not simple."""
+        for operand in operands:
+            if operand.first is not operand.later:
+                self.emit(word("setv"), operand.later, operand.first[2])
+                operand.first = operand.later
+
+    def settle_all_but(self, tested, operands):
+        """Settle ``operands`` unless a test that compares the classes of ``tested`` in turn evaluates all that are not simple."""
+        if any(operand.first is not operand.later and operand not in tested[:2] for operand in operands):
+            self.settle(operands)
+
+    def wrapped(self, model, kind):
+        """``model``, a raw value of ``kind``, as Lisp sees it."""
+        if model.__class__ is float:
+            return self.constant(DoubleFloat(model))
+        return self.call("double" if kind == DOUBLE else "wrapped", model)
+
+    def unwrapped(self, model, kind):
+        """``model``, a value of ``kind`` as Lisp sees it, raw. 0 stands for a kind that is not known."""
+        if kind and not kind & DOUBLE:
+            return model
+        return self.call("float" if kind == DOUBLE else "unwrapped", model)
+
+    def generic(self, part):
+        """The call of the generic functions that ``part`` means, with what Lisp sees."""
+        if part.__class__ is Operand:
+            return self.wrapped(part.later, part.kind) if part.raw else part.later
+        return self.positioned(expression(ARITHMETIC[part.symbol], *map(self.generic, part.parts)), part.node)
+
+    # --------------------------------------------------------------------------------------------------------- operations
+
+    def arithmetic(self, node, symbol, arguments, wanted_raw):
+        """(the expression of a sum, difference, product or quotient of two operands, whether it is raw).
+
+        It may be raw even if that is not wanted, where it is all the same.
+        """
+        alone = symbol is DIVIDE and not _never_ratio(*arguments)
+        found = None if alone else self.tree(node, symbol, arguments, MOST_OPERATIONS)
+        operation, leaves = found or self.tree(node, symbol, arguments, 1)
+        operands = self.operands(list(leaves.values()))
+        by_key = dict(zip(leaves, operands))
+
+        def filled(part):
+            if part.__class__ is not Operation:
+                return by_key[part]
+            part.parts = list(map(filled, part.parts))
+            return part
+
+        filled(operation)
+        is_raw = raw(kind_of(node)) and (wanted_raw or all(operand.known for operand in operands))
+        if symbol is DIVIDE and self.may_fail(*operation.parts):
+            return self.divided(operation, operands, is_raw), is_raw
+        return self.computed(operation, operands, is_raw), is_raw
+
+    def tree(self, node, symbol, arguments, most):
+        """(the `Operation` of ``node``, key → node of its leaves), or ``None`` if they are too many, or would be evaluated too early.
+
+        Leaves are named by keys: a variable by itself, so that it is tested once.
+        """
+        leaves, count, done, failed, changed = {}, 1, False, False, False
+
+        def leaf(item):
+            nonlocal failed, changed
+            kind = item.__class__
+            if kind is nodes.LocalVariable and not item.variable.boxed and not (changed and item.variable.assigned):
+                key = item.variable
+            else:
+                key = object()
+                failed = failed or done and kind is not nodes.Constant  # the operations before it must be over
+                changed = changed or not quiet(item)
+            leaves[key] = item
+            return key
+
+        def part(item):
+            nonlocal count, done
+            if count < most and item.__class__ is nodes.Call:
+                operator, operands = self.operation(item)
+                if operator is not None:
+                    count += 1
+                    parts = list(map(part, operands))
+                    done = True
+                    return Operation(operator, item, parts)
+            return leaf(item)
+
+        operation = Operation(symbol, node, list(map(part, arguments)))
+        if failed or most > 1 and (sum(item.__class__ is not nodes.Constant for item in leaves.values()) > MOST_LEAVES or count == 1):
+            return None
+        return operation, leaves
+
+    def operation(self, item):
+        """(operator, its two operands) of a call that may be part of a larger one; (``None``, ``None``) of others."""
+        symbol, arguments = item.symbol, item.arguments
+        if symbol in STEPS and len(arguments) == 1:
+            return STEPS[symbol], [*arguments, nodes.Constant(1)]
+        if symbol not in OPERATORS:
+            return None, None
+        if len(arguments) > 2:
+            arguments = self.nested(item)
+        if arguments is None or len(arguments) != 2 or symbol is DIVIDE and not _never_ratio(*arguments):
+            return None, None
+        return symbol, arguments
+
+    @staticmethod
+    def nested(node):
+        """The two operands that a call with more means, if all is evaluated in the same order then; else ``None``."""
+        first, second, *others = node.arguments
+        sums = node.symbol is PLUS or node.symbol is MINUS
+        sure = sums and exactly(kind_of(first), NUMBER) and exactly(kind_of(second), NUMBER)
+        for other in others:
+            if not (nameable_node(other) or sure and exactly(kind_of(other), NUMBER)):
+                return None
+        inner = node
+        for other in (second, *others[:-1]):
+            first = nodes.Call(node.symbol, [first, other])
+            first.single, first.position = True, inner.position
+        return [first, others[-1]]
+
+    def named_arguments(self, node):
+        """A node that evaluates the arguments of the call ``node`` before it calls, each into a variable of its own."""
+        bindings, arguments = [], []
+        for argument in node.arguments:
+            if argument.__class__ is not nodes.Constant:
+                variable = Variable(node.symbol, self.scope, self.temporary())
+                variable.kind, variable.reads, variable.values = kind_of(argument), 1, [argument]
+                variable.raw = bool(raw(variable.kind))
+                bindings.append((variable, argument))
+                argument = nodes.LocalVariable(variable)
+            arguments.append(argument)
+        call = nodes.Call(node.symbol, arguments)
+        call.single, call.boolean, call.position = True, node.boolean, node.position
+        let = nodes.Let(bindings, call)
+        let.single, let.boolean = True, node.boolean
+        return let
+
+    def computed(self, operation, operands, is_raw):
+        """The expression of ``operation``: bare if all is known, else behind tests of the classes of what is not."""
+        unknown = [operand for operand in operands if not operand.known]
+        generic = self.generic(operation)
+        if any(operand.kind and not operand.kind & (NUMBER | THING) for operand in operands):
+            self.settle(operands)
+            return self.unwrapped(generic, 0) if is_raw else generic
+        slow = self.unwrapped(generic, 0) if is_raw else generic
+        if not unknown:
+            kind = self.kind_in(operation, 0)
+            if not kind:
+                self.settle(operands)
+                return slow
+            used = set()
+            model = self.bare_model(operation, 0, used)
+            if self.needs_check(operation, kind):
+                return self.finite(TRUE, model, slow, kind)
+            return model
+        if len(operation.parts) == 2 and operation.parts[0].__class__ is operation.parts[1].__class__ is Operand:
+            model = self.sum_of_numbers(operation, operands)
+            if model is not None:
+                return self.unwrapped(model, 0) if is_raw else model
+        worlds = self.worlds(operation, operands, unknown, is_raw)
+        if not worlds:
+            self.settle(operands)
+            return slow
+        self.settle_all_but(unknown, operands)
+        return self.chosen(operation, unknown, worlds, slow, is_raw)
+
+    def worlds(self, operation, operands, unknown, is_raw):
+        """The classes that all ``unknown`` operands may be of so that Python's operators do: (class bits, kind of the result)."""
+        known = 0
+        for operand in operands:
+            if operand.known and operand.later.__class__ is not int:
+                known |= operand.kind
+        count = sum(1 for _ in operations_of(operation))
+        products = any(each.symbol is TIMES for each in operations_of(operation))
+        if known & (FLOATS | ODD):
+            order = (DOUBLE if known & (DOUBLE | ODD) else SINGLE,)
+            if len(unknown) == 1:
+                order = (*order, FIXNUM)
+        elif known:
+            order = (INT,)
+        else:
+            order = (SINGLE, INT, DOUBLE) if products and count > 1 else (INT, SINGLE, DOUBLE)
+        found = []
+        for assumed in order:
+            kind = self.kind_in(operation, assumed)
+            if kind and bool(raw(kind)) >= bool(is_raw):
+                found.append((assumed, kind))
+        return found
+
+    def chosen(self, operation, unknown, worlds, slow, is_raw):
+        """The bare expression of the first of ``worlds`` that the classes of ``unknown`` make, or ``slow``."""
+        tests = [self.class_of(operand.first) for operand in unknown]
+        again = [self.class_of(operand.later) for operand in unknown]
+        both = [assumed for assumed, _ in worlds[:2]] == [INT, SINGLE]  # in this order: see `worlds`
+        checked = [self.needs_check(operation, kind) for _, kind in worlds]
+        if both and not any(checked[:2]):
+            noted = expression(SETX, CLASSES, tests[0])
+            either = expression(OR, expression(IS, CLASSES, INT_CLASS), expression(IS, CLASSES, FLOAT_CLASS))
+            if len(tests) == 1:
+                either[1] = expression(IS, noted, INT_CLASS)
+                guard = either
+            else:
+                guard = expression(AND, expression(IS, noted, *tests[1:]), either)
+            rest = self.chosen_from(operation, unknown, worlds[2:], again, again, slow, is_raw)
+            return expression(IF, guard, self.bare_model(operation, INT, None), rest)
+        return self.chosen_from(operation, unknown, worlds, tests, again, slow, is_raw)
+
+    def chosen_from(self, operation, unknown, worlds, tests, again, slow, is_raw):
+        if not worlds:
+            return slow
+        (assumed, kind), *others = worlds
+        rest = self.chosen_from(operation, unknown, others, again, again, slow, is_raw)
+        if assumed == SINGLE and tests is again and operation.symbol is not TIMES:
+            certain = [each for each, operand in zip(tests, unknown) if not exactly(operand.kind, NUMBER)]
+            tests = certain or tests  # what is a number becomes a float with floats
+        elif assumed == SINGLE and operation.symbol is not TIMES and all(operand.first is operand.later for operand in unknown):
+            certain = [each for each, operand in zip(tests, unknown) if not exactly(operand.kind, NUMBER)]
+            tests = certain or tests
+        guard = self.world_test(assumed, tests, unknown)
+        model = self.bare_model(operation, assumed, None)
+        if self.needs_check(operation, kind):
+            inside = self.finite_test(model, kind)
+            model = RESULT if not raw(kind) or is_raw else self.wrapped(RESULT, kind)
+            return expression(IF, expression(AND, guard, *inside), model, rest)
+        if raw(kind) and not is_raw:
+            model = self.wrapped(model, kind)
+        return expression(IF, guard, model, rest)
+
+    @staticmethod
+    def world_test(assumed, classes, unknown):
+        """A test that the ``classes`` of the ``unknown`` operands are the assumed one."""
+        if assumed == FIXNUM:
+            return expression(AND, expression(IS, *classes, INT_CLASS), fixnum_test(unknown[0].later))
+        return expression(IS, *classes, {INT: INT_CLASS, SINGLE: FLOAT_CLASS, DOUBLE: DOUBLE_CLASS}[assumed])
+
+    def kind_in(self, part, assumed):
+        """The kind of ``part`` when all unknown operands are of the class ``assumed`` and Python's operators give it; else 0."""
+        return self._kind_and_size(part, assumed)[0]
+
+    def _kind_and_size(self, part, assumed):
+        if part.__class__ is Operand:
+            if part.known:
+                return part.kind, part.size
+            return (INT, FIXNUM_BITS) if assumed == FIXNUM else (assumed, FEW_BITS + 1 if assumed == INT else 0)
+        (one, size), (other, other_size) = (self._kind_and_size(each, assumed) for each in part.parts)
+        kind = one and other and bare(part.symbol, one, other, size, other_size)
+        return kind, size + other_size + 2 if kind & INT else 0
+
+    def bare_model(self, part, assumed, used):
+        """The expression of Python's operators. ``used``: the operands that have been evaluated, or ``None`` if all have."""
+        if part.__class__ is Operand:
+            if used is None or part in used:
+                model = part.later
+            else:
+                used.add(part)
+                model = part.first
+            return self.call("float", model) if assumed == DOUBLE and not part.known else model
+        return expression(OPERATORS[part.symbol], *(self.bare_model(each, assumed, used) for each in part.parts))
+
+    def needs_check(self, operation, kind):
+        """Whether a result of ``kind`` may be infinite because of a product."""
+        if not kind & FLOATS:
+            return False
+        if not kind & (DOUBLE | ODD) and operation.symbol not in (TIMES, DIVIDE):
+            return False
+        products = [each for each in operations_of(operation) if each.symbol is TIMES]
+        if len(products) == 1 and all(each.__class__ is Operand for each in products[0].parts):
+            return sum(magnitude(each.node) for each in products[0].parts) > FEW_BITS
+        return bool(products)
+
+    @staticmethod
+    def finite_test(model, kind):
+        """The tests that ``model``, which they note as the result, is finite."""
+        noted = expression(SETX, RESULT, model)
+        if kind & ODD:
+            return [expression(IS, class_of(noted), FLOAT_CLASS), expression(word("<="), -LARGEST, RESULT, LARGEST)]
+        return [expression(word("<="), -LARGEST, noted, LARGEST)]
+
+    def finite(self, guard, model, slow, kind=SINGLE):
+        """``model`` if ``guard`` holds and it is finite, else what the generic functions say to it."""
+        tests = self.finite_test(model, kind)
+        if guard is not TRUE:
+            tests.insert(0, guard)
+        return expression(IF, tests[0] if len(tests) == 1 else expression(AND, *tests), RESULT, slow)
+
+    def sum_of_numbers(self, operation, operands):
+        """A sum or difference of which one operand surely is a number: with an integer or a float it needs no other test.
+
+        (A ratio plus an integer is never whole, and contagion to a float or a double is Python's too.)
+        """
+        if operation.symbol is not PLUS and operation.symbol is not MINUS or len(operands) < 2:
+            return None
+        one, other = operation.parts
+        if one.known or other.known or one.raw or other.raw:
+            return None
+        slow = self.generic(operation)
+        if exactly(one.kind, NUMBER) and one.first is one.later:
+            tested, models = other, [one.later, other.later]
+        elif exactly(other.kind, NUMBER):
+            tested, models = one, [one.later, other.first]
+            if other.first is not other.later:
+                slow = self.positioned(expression(ARITHMETIC[operation.symbol], one.later, other.first), operation.node)
+        else:
+            return None
+        noted, again = self.noted_class(tested.first)
+        test = expression(OR, expression(IS, noted, INT_CLASS), expression(IS, again, FLOAT_CLASS))
+        return expression(IF, test, expression(OPERATORS[operation.symbol], *models), slow)
+
+    # -------------------------------------------------------------------------------------------------------- comparisons
+
+    def comparison(self, node, symbol, arguments):
+        """The Python test of a comparison of two operands."""
+        operands = self.operands(arguments)
+        one, other = operands
+        operator = COMPARISONS[symbol]
+        if exactly(one.kind, MACHINE) and exactly(other.kind, MACHINE):
+            return expression(operator, one.first, other.first)
+        slow = expression(IS_NOT, self.generic(Operation(symbol, node, operands)), NONE)
+        if any(operand.kind and not operand.kind & (NUMBER | THING) for operand in operands):
+            self.settle(operands)
+            return slow
+        quick = expression(operator, one.later, other.later)
+        unsure = [operand for operand in operands if not exactly(operand.kind, MACHINE)]
+        if len(unsure) == 2 and not (one.raw or other.raw):
+            return expression(IF, self.same_class(one, other), quick, slow)
+        if len(unsure) == 2 or any(operand.first is not operand.later for operand in operands if operand is not unsure[0]):
+            self.settle(operands)
+        return expression(IF, expression(AND, *map(self.real_test, unsure)) if len(unsure) > 1 else self.real_test(unsure[0]), quick, slow)
+
+    def real_test(self, operand):
+        """A test that an operand is of a class whose values Python compares as Lisp does."""
+        noted, again = self.noted_class(operand.first)
+        classes = [INT_CLASS, FLOAT_CLASS] if operand.kind & INT or not operand.raw else [FLOAT_CLASS]
+        if not operand.raw:
+            classes.append(DOUBLE_CLASS)
+        tests = [expression(IS, noted if index == 0 else again, each) for index, each in enumerate(classes)]
+        return tests[0] if len(tests) == 1 else expression(OR, *tests)
+
+    def same_class(self, one, other):
+        """A test that both operands are of one class whose values Python compares as Lisp does."""
+        if one.later is other.later:
+            return self.real_test(one)
+        second = other.first
+        if second.__class__ is Symbol:
+            first, second = expression(SETX, CLASSES, self.class_of(one.first)), self.class_of(second)
+        else:
+            first, second = self.class_of(one.first), expression(SETX, CLASSES, self.class_of(second))
+        classes = (INT_CLASS, FLOAT_CLASS, DOUBLE_CLASS)
+        return expression(AND, expression(IS, first, second), expression(OR, *(expression(IS, CLASSES, each) for each in classes)))
+
+
+def nameable_node(node):
+    """Whether evaluating ``node`` does nothing and cannot fail."""
+    if node.__class__ is nodes.LocalVariable:
+        return not (node.variable.captured and node.variable.assigned)
+    return node.__class__ is nodes.Constant
+
+
+def _never_ratio(node, divisor):
+    """Whether a quotient fails nowhere and is not one of integers."""
+    return _certain_divisor(divisor) and not (divisor.value.__class__ is int and kind_of(node) & INT)
+
+
+def _certain_divisor(node):
+    return node.__class__ is nodes.Constant and node.value.__class__ in (int, float, DoubleFloat) and node.value != 0
+
+
+def operations_of(part):
+    """All operations in ``part``."""
+    if part.__class__ is Operation:
+        yield part
+        for each in part.parts:
+            yield from operations_of(each)

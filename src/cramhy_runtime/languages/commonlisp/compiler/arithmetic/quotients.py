@@ -1,0 +1,82 @@
+"""Quotients: ``/`` of two operands, where the divisor may be zero and a quotient of integers is a ratio, unless it is whole."""
+
+from __future__ import annotations
+
+from ..core import expression, word
+from .operations import AND, ARITHMETIC, FIXNUM, IF, INT_CLASS, IS, ArithmeticGenerator, Operand
+from ..kinds import DIVIDE, DOUBLE, FLOATS, INT, NUMBER, ODD, OTHER, SINGLE, THING, exactly, raw
+
+OVER, WHOLE_OVER, REST, NOT = map(word, "/ // % not".split())
+
+
+class QuotientGenerator(ArithmeticGenerator):
+    """The part of the `Generator` that divides."""
+
+    @staticmethod
+    def may_fail(one, other):
+        """Whether a quotient needs a look at the numbers: at the divisor for zero, at integers for a ratio."""
+        if other.__class__ is Operand and other.later.__class__ in (int, float) and other.later:
+            return one.__class__ is Operand and one.kind & INT and exactly(other.kind, INT) and not one.raw
+        return True
+
+    def divided(self, operation, operands, is_raw):
+        """A quotient by what is not a constant, or of integers."""
+        one, other = operation.parts
+        generic = self.generic(operation)
+        slow = self.unwrapped(generic, 0) if is_raw else generic
+        unknown = [operand for operand in operands if not operand.known]
+        zero = other.later.__class__ in (int, float) and not other.later
+        if len(operands) < 2 or zero or any(operand.kind and not operand.kind & (NUMBER | THING) for operand in operands):
+            self.settle(operands)
+            return slow
+        if not unknown and self.kind_in(operation, 0):
+            return self.known_quotient(operation, one, other, is_raw, slow)
+        self.settle(operands)
+        if all(operand.kind & INT and not operand.raw for operand in operands):
+            slow = self.whole_quotient(one, other, unknown, slow)
+        known = 0
+        for operand in operands:
+            if operand.known:
+                known |= operand.kind
+        if not unknown:
+            return slow
+        declared = any(exactly(operand.kind, FLOATS | OTHER) for operand in unknown)
+        worlds = (DOUBLE, SINGLE) if declared else (SINGLE, DOUBLE)
+        if known & (FLOATS | ODD):
+            worlds = (DOUBLE if known & (DOUBLE | ODD) else SINGLE, *((FIXNUM,) if len(unknown) == 1 else ()))
+        for assumed in reversed(worlds):
+            kind = self.kind_in(operation, assumed)
+            if kind and raw(kind) >= is_raw:
+                test = self.world_test(assumed, [self.class_of(operand.later) for operand in unknown], unknown)
+                model = self.bare_model(operation, assumed, None)
+                if raw(kind) and not is_raw:
+                    model = self.wrapped(model, kind)
+                slow = expression(IF, self.nonzero([test], other), model, slow)
+        return slow
+
+    @staticmethod
+    def nonzero(tests, divisor):
+        """A test that all of ``tests`` hold and the divisor is not 0."""
+        if divisor.later.__class__ not in (int, float):
+            tests = [*tests, divisor.later]
+        return tests[0] if len(tests) == 1 else expression(AND, *tests)
+
+    def whole_quotient(self, one, other, unknown, slow):
+        """The quotient of two integers, of which ``unknown`` are yet to be tested, if it is whole."""
+        tests = [expression(IS, *(self.class_of(operand.later) for operand in unknown), INT_CLASS)] if unknown else []
+        if other.later.__class__ is not int:
+            tests.append(other.later)
+        tests.append(expression(NOT, expression(REST, one.later, other.later)))
+        return expression(
+            IF, tests[0] if len(tests) == 1 else expression(AND, *tests), expression(WHOLE_OVER, one.later, other.later), slow
+        )
+
+    def known_quotient(self, operation, one, other, is_raw, slow):
+        """A quotient of a float by what is not 0."""
+        if one.first is not one.later and other.first is not other.later:
+            self.settle([one, other])
+        elif one.first is not one.later:  # the divisor is asked first; only one of the branches is run
+            dividend = self.wrapped(one.first, one.kind) if one.raw else one.first
+            slow = self.positioned(expression(ARITHMETIC[DIVIDE], dividend, self.generic(other)), operation.node)
+            slow = self.unwrapped(slow, 0) if is_raw else slow
+        return expression(IF, other.first, expression(OVER, one.first, other.later), slow)

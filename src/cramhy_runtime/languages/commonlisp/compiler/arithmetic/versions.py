@@ -1,0 +1,137 @@
+"""A second body of a function, for arguments of the classes that it seems to be written for.
+
+What a function's arguments are is not known before it is called. But one that counts up to ``n`` is nearly always called with an
+integer, and one that multiplies ``x`` by ``0.5d0`` with a double. So its body is made twice: once for such arguments, with the kinds
+(``kinds.py``) that follow from them, and once for any. A test at the entry chooses. That pays where a body computes much; `guesses`
+says where, and what the arguments seem to be.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+
+from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.ground.packages import sym
+from .. import nodes
+from ..facts import OPERANDS_OF, find_kinds, walk
+from ..kinds import DIVIDE, DOUBLE, FLOATS, INFINITE, INT, MACHINE, NONE_YET, OTHER, SINGLE, SMOOTH, SQRT, exactly, kind_of
+
+WHOLE_ARGUMENTS = {sym(name) for name in "MOD REM EVENP ODDP LOGAND LOGIOR LOGXOR ASH GCD LCM ISQRT".split()}
+INDEXED = {sym(name) for name in "AREF SVREF ELT".split()}
+COMPARISONS = {sym(name) for name in "< > <= >= =".split()}
+MAKE_ARRAY = sym("MAKE-ARRAY")
+LARGEST, FEW, MANY = 500, 4, 12
+"""The most nodes of a body that is made twice; the least number of operations in one that is run often, by a loop or by calling itself,
+and in any other one."""
+FIXNUM_BITS = 62
+
+
+def guesses(node):
+    """Parameter → kind, for the parameters of the `Lambda` ``node`` for which a second body pays; empty if none does."""
+    candidates = {
+        variable: set()
+        for variable in node.parameters.required
+        if variable.operand_uses and not variable.captured and (variable.proven is None or variable.proven == FLOATS | OTHER)
+    }
+    if not candidates or not node.scope.loops and sum(variable.operand_uses for variable in candidates) < FEW - 1:
+        return {}
+    size = operations = 0
+    often = False
+    for item in walk([node.body]):
+        kind = item.__class__
+        size += 1
+        if kind is nodes.Lambda or size > LARGEST:
+            return {}
+        if kind is nodes.TagbodyNode:
+            often = True
+        elif kind is nodes.Let:
+            for variable, value in item.bindings:  # another name of a parameter
+                if value.__class__ is nodes.LocalVariable and value.variable in candidates and not isinstance(variable, Symbol):
+                    if not variable.writes and not value.variable.writes:
+                        candidates[variable] = candidates[value.variable]
+        elif kind is nodes.Call:
+            operations += item.symbol in OPERANDS_OF
+            often = often or item.symbol is node.name
+            _note(item, candidates)
+    if operations < (FEW if often else MANY):
+        return {}
+    found = {variable: _guess(variable, candidates[variable]) for variable in node.parameters.required if variable in candidates}
+    return {variable: kind for variable, kind in found.items() if kind}
+
+
+def _note(call, candidates):
+    """Note what ``call`` says about the parameters among its arguments."""
+    symbol, arguments = call.symbol, call.arguments
+    for index, argument in enumerate(arguments):
+        if argument.__class__ is nodes.LocalVariable and argument.variable in candidates:
+            if symbol in WHOLE_ARGUMENTS or symbol in INDEXED and index or symbol is MAKE_ARRAY and not index:
+                candidates[argument.variable].add("whole")
+            elif symbol in COMPARISONS and any(
+                other.__class__ is nodes.LocalVariable and other.variable.kind == INT for other in arguments if other is not argument
+            ):
+                candidates[argument.variable].add("whole")
+    if symbol in OPERANDS_OF:
+        leaves = call.arguments if symbol is DIVIDE else list(_leaves(call))
+        signs = set()
+        for leaf in leaves:
+            if leaf.__class__ is nodes.Constant:
+                signs.add({INT: "number", SINGLE: "single", DOUBLE: "double"}.get(kind_of(leaf), "other"))
+            elif exactly(kind_of(leaf), MACHINE) and kind_of(leaf) != INT:
+                signs.add("double" if kind_of(leaf) & DOUBLE else "single")
+            elif leaf.__class__ is not nodes.LocalVariable or leaf.variable not in candidates:
+                signs.add("other")
+        if symbol is DIVIDE or symbol is SQRT or symbol in SMOOTH:
+            signs.add("other")
+        for leaf in leaves:
+            if leaf.__class__ is nodes.LocalVariable and leaf.variable in candidates:
+                candidates[leaf.variable] |= signs
+
+
+def _leaves(call):
+    for argument in call.arguments:
+        if argument.__class__ is not nodes.Call or argument.symbol not in OPERANDS_OF:
+            yield argument
+        elif argument.symbol is not DIVIDE:  # which says nothing about its operands
+            yield from _leaves(argument)
+
+
+def _guess(variable, signs):
+    if variable.proven is not None:
+        return DOUBLE
+    if "whole" in signs:
+        return INT
+    if "double" in signs:
+        return DOUBLE
+    if "single" in signs:
+        return SINGLE
+    return INT if signs == {"number"} else 0
+
+
+def bounded(node, variable):
+    """Whether the test at the entry of ``node`` asks whether an integer is a fixnum: where a loop makes it worth its time."""
+    return node.scope.loops and not variable.writes
+
+
+_FACTS = "kind", "raw", "bits", "never_negative", "name", "proven"
+
+
+@contextmanager
+def assumed(node, found):
+    """While it lasts, the parameters in ``found`` are of the kinds there, and the other variables of what follows from them."""
+    bound = []
+    for item in walk([node.body]):
+        if item.__class__ is nodes.Let:
+            bound += [variable for variable, _ in item.bindings if not isinstance(variable, Symbol)]
+    saved = [(variable, [getattr(variable, name) for name in _FACTS]) for variable in (*bound, *found)]
+    for variable in bound:
+        variable.kind, variable.raw, variable.bits, variable.never_negative = NONE_YET, False, None, None
+    for variable, kind in found.items():
+        variable.kind, variable.proven, variable.never_negative = kind, None, False
+        variable.bits = FIXNUM_BITS if kind == INT and bounded(node, variable) else INFINITE
+    try:
+        find_kinds([*bound, *found])
+        yield
+    finally:
+        for variable, facts in saved:
+            for name, value in zip(_FACTS, facts, strict=True):
+                setattr(variable, name, value)
