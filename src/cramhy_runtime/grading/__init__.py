@@ -10,10 +10,10 @@ things and where its turtle drives (`performing`, `recording`). What it answers 
 the run again (`replay`) and compares (`judging`). So the expected answers are never where the submission is, and what it prints is not
 looked at.
 
-Where the parts are: ``exercise``, ``expressions``, ``paths``, ``troubles`` (what an exercise says) · ``jobs``, ``processes``, ``nursery``,
-``cage`` (the process of a submission) · ``performing``, ``recording``, ``tests_inside`` (what happens in it) · ``told``, ``replay``,
-``drawings``, ``judging``, ``forms`` (the verdict) · ``grader``, ``report``, ``formats`` (points and words) · ``similar`` (submissions
-that are alike) · ``problems`` (errors of exercises).
+Where the parts are: ``exercise``, ``expressions``, ``paths``, ``troubles`` (what an exercise says) · ``jobs``, ``processes``,
+``nursery``, ``cage`` (the process of a submission), ``here`` (without one) · ``performing``, ``recording``, ``tests_inside`` (what
+happens in it) · ``told``, ``replay``, ``drawings``, ``judging``, ``forms`` (the verdict) · ``grader``, ``report``, ``formats`` (points
+and words) · ``similar`` (submissions that are alike) · ``problems`` (errors of exercises).
 """
 
 from .grader import Grader, grade

@@ -11,6 +11,7 @@ from pathlib import Path
 from . import judging
 from .exercise import Check, Exercise, find
 from .forms import source_faults
+from .here import Here
 from .jobs import job
 from .problems import ExerciseError
 from .processes import Lost, Nursery
@@ -44,11 +45,14 @@ def grade(exercise: str | Path, submission: str | Path, seeds: int | None = None
 
 
 class Grader:
-    """Grades submissions. seeds: with how many seeds checks are tried that name a number of them, ``None`` for that number."""
+    """Grades submissions. seeds: with how many seeds checks are tried that name a number of them, ``None`` for that number.
 
-    def __init__(self, seeds: int | None = None):
-        self.seeds = seeds
-        self.nurseries: dict[tuple[str, ...], Nursery] = {}
+    apart: whether a submission runs in a process of its own. If not, nothing protects this process from it (`Here`).
+    """
+
+    def __init__(self, seeds: int | None = None, apart: bool = True):
+        self.seeds, self.apart = seeds, apart
+        self.nurseries: dict[tuple[str, ...], Nursery | Here] = {}
 
     def __enter__(self) -> Grader:
         return self
@@ -117,10 +121,10 @@ class Grader:
             return judging.of_tests(check, told), output, told.held, False
         return judging.of_run(check, work, values, told), output, told.held, False
 
-    def _nursery(self, exercise: Exercise) -> Nursery:
+    def _nursery(self, exercise: Exercise) -> Nursery | Here:
         key = (*exercise.systems, "lisp-unit", "fiveam")
         if key not in self.nurseries:
-            self.nurseries[key] = Nursery(list(key))
+            self.nurseries[key] = Nursery(list(key)) if self.apart else Here()
         return self.nurseries[key]
 
 
