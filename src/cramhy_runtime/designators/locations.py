@@ -9,6 +9,7 @@ Source: designators.md section 8.
 from __future__ import annotations
 
 from cramhy_runtime.kernel.images import per_image
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from cramhy_runtime import kernel
 
 from ..cpl.task_variables import inherit
@@ -27,6 +28,9 @@ from .classes import LocationDesignator
 from .failure_causes import because, note_causes
 from .protocol import designator_solutions_equal, next_solution
 from .symbols import sym
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 ACCEPT, UNKNOWN, MAYBE_REJECT = keyword("ACCEPT"), keyword("UNKNOWN"), keyword("MAYBE-REJECT")
 MAX_RETRIES = special(sym("DESIG::*LOCATION-GENERATOR-MAX-RETRIES*"), 30)
@@ -324,8 +328,8 @@ def location_prolog_generator(designator):
     return from_iterator(_places_by_prolog(designator))
 
 
-def _places_by_prolog(designator):
-    causes = {}
+def _places_by_prolog(designator: LocationDesignator) -> Iterator[object]:
+    causes: dict[object, object] = {}
     for (value,) in ask(LOCATION_GROUNDING, designator, Var(), causes=causes):
         yield value
     if causes and isinstance(designator, LocationDesignator):

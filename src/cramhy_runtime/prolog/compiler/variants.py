@@ -16,12 +16,19 @@ and if it cannot be written any more, it calls the predicate itself.
 from __future__ import annotations
 
 from cramhy_runtime.ground.data import Cons, Symbol, list_from, list_parts
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
 
 from ..engine.database import Clause, Predicate, find_predicate, functors, traced
 from ..engine.services import SERVICES
 from ..symbols import sym
 from ..terms.terms import Var
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Container
+
+    from ..engine.database import Functor
+    from ..engine.machine import Machine
 
 _LEAST, _MOST = 3, 24
 """The number of conses of an argument that is worth a variant."""
@@ -31,7 +38,7 @@ _CALLS = 60
 _UNIFIES, _FILTER = sym("CRAM-PROLOG::=="), sym("CRAM-PROLOG::FILTER-BINDINGS")
 
 
-def variant_of_call(goal, here, later):
+def variant_of_call(goal: Any, here: Container[object], later: Container[object]) -> tuple[Variant, list[object]] | tuple[None, None]:
     """A `Variant` for ``goal``, a call in a clause, and the list of its arguments there; ``(None, None)`` if none is worth it.
 
     ``here``: the variables of the clause that have occurred; ``later``: those of the goals after this one.
@@ -41,9 +48,10 @@ def variant_of_call(goal, here, later):
     if not positions or traced or not (positions := _staying(goal.car, len(arguments), positions)):
         return None, None
     counts = _occurrences(goal.cdr, {})
-    patterns, live = [None] * len(arguments), {}
+    patterns: list[object] = [None] * len(arguments)
+    live: dict[object, Symbol] = {}
 
-    def known(item):
+    def known(item: Any) -> object:
         if not variable(item) or item is ANONYMOUS:
             return item
         if counts[item] == 1 and item not in here and item not in later:
@@ -64,13 +72,13 @@ class Variant(Predicate):
 
     __slots__ = ("general", "patterns", "live", "calls")
 
-    def __init__(self, general, patterns, live):
+    def __init__(self, general: Any, patterns: list[object], live: list[Symbol]):
         self.general, self.patterns, self.live = general, patterns, live
         self.calls = 0
         super().__init__(general.functor, patterns.count(None) + len(live))
         general.variants.add(self)
 
-    def compile_and_call(self, m, step):
+    def compile_and_call(self, m: Machine, step: tuple[Any, ...]) -> Any:
         """The first calls go to the predicate itself."""
         self.calls += 1
         if self.calls <= _CALLS:
@@ -78,7 +86,7 @@ class Variant(Predicate):
         self.compile()
         return self.call(m, (self.call, *step[1:]))
 
-    def compile(self):
+    def compile(self) -> None:
         """Make the code now, if the clauses allow for it."""
         general, positions = self.general, {i for i, pattern in enumerate(self.patterns) if pattern is not None}
         if (traced and self.functor in traced) or _staying(self.functor, general.arity, positions) != positions:
@@ -87,7 +95,7 @@ class Variant(Predicate):
         clauses = [self._clause(clause) for clause in functors[self.functor].clauses if len(clause.head.cdr or ()) == general.arity]
         self.call, self._relation = SERVICES.compile_clauses(self, clauses)
 
-    def call_general(self, m, step):
+    def call_general(self, m: Machine, step: tuple[Any, ...]) -> tuple[Any, ...]:
         """The call function that calls the predicate itself."""
         given = iter(step[2:])
         arguments = [None if pattern is not None else next(given) for pattern in self.patterns]
@@ -97,11 +105,11 @@ class Variant(Predicate):
                 arguments[i] = _replaced(pattern, lambda item: values.get(item) if item in values else Var() if variable(item) else item)
         return (self.general.call, step[1], *arguments)
 
-    def _clause(self, clause):
+    def _clause(self, clause: Clause) -> VariantClause:
         head = list(clause.head.cdr)
         known = {head[i]: pattern for i, pattern in enumerate(self.patterns) if pattern is not None}
 
-        def goal(form):
+        def goal(form: Any) -> Any:
             if form.__class__ is Cons and form.car is self.functor:
                 given = [item for item, pattern in zip(form.cdr, self.patterns, strict=True) if pattern is None]
                 return Cons(form.car, list_from([*given, *self.live]))
@@ -118,15 +126,15 @@ class VariantClause(Clause):
 
     __slots__ = ("original",)
 
-    def __init__(self, head, goals, original):
+    def __init__(self, head: Any, goals: list[Any] | None, original: Clause):
         super().__init__(head, goals, original.group, original.origin)
         self.original = original
 
 
-def _staying(functor, arity, positions):
+def _staying(functor: Any, arity: int, positions: set[int]) -> set[int]:
     """Those of ``positions`` whose arguments stay the same and are used once, in all clauses of a predicate."""
     entry = functors.get(functor)
-    if not _plain(entry) or len(entry.clauses) > _CLAUSES or functor in traced:
+    if entry is None or not _plain(entry) or len(entry.clauses) > _CLAUSES or functor in traced:
         return set()
     left = set(positions)
     for clause in entry.clauses:
@@ -140,12 +148,12 @@ def _staying(functor, arity, positions):
     return left
 
 
-def _plain(entry):
+def _plain(entry: Functor | None) -> bool:
     """Whether a functor has clauses of users and nothing else."""
     return entry is not None and bool(entry.clauses) and not (entry.native or entry.handler or entry.native_group or entry.compiler)
 
 
-def _uses(clause, functor, arity, head, left):
+def _uses(clause: Clause, functor: Any, arity: int, head: list[Any], left: set[int]) -> bool:
     """Take from the set ``left`` the positions whose variables a clause uses otherwise. Returns False if none can be known."""
     others, own = [head], []
     for goal in clause.goals or ():
@@ -172,7 +180,7 @@ def _uses(clause, functor, arity, head, left):
     return True
 
 
-def _occurrences(item, counts):
+def _occurrences(item: Any, counts: dict[object, int]) -> dict[object, int]:
     """Symbol → how often it stands in Lisp data."""
     waiting = [item]
     while waiting:
@@ -185,9 +193,10 @@ def _occurrences(item, counts):
     return counts
 
 
-def _conses(item):
+def _conses(item: Any) -> int:
     """The number of conses of Lisp data with variables, or 0 if it has none."""
-    count, waiting, open_ = 0, [item], False
+    waiting: list[Any] = [item]
+    count, open_ = 0, False
     while waiting and count <= _MOST:
         item = waiting.pop()
         while item.__class__ is Cons and count <= _MOST:
@@ -198,7 +207,7 @@ def _conses(item):
     return count if open_ or count > _MOST else 0
 
 
-def _replaced(item, leaf):
+def _replaced(item: Any, leaf: Callable[[Any], Any]) -> Any:
     """Lisp data with ``leaf(part)`` for each part that is not a cons."""
     if item.__class__ is not Cons:
         return leaf(item)

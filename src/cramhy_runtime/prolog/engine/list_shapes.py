@@ -14,9 +14,15 @@ from functools import lru_cache
 
 from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol
 from cramhy_runtime.ground.equality import equal_key
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.utilities.generated_functions import generated_function
 
 from ..terms.terms import Var, value_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    Row = Any  # a tuple of values, or the only value
 
 FEW = 8
 """So many rows are tried one by one."""
@@ -28,7 +34,7 @@ _CONS, _ATOM, _UNKNOWN = "c", "a", "?"
 _BY_VALUE = frozenset([int, str, float, DoubleFloat])
 
 
-def index_key(atom):
+def index_key(atom: Any) -> Any:
     """The key of ``atom`` in an index, equal for atoms that are `same_atom`. ``NotImplemented`` for objects that are compared otherwise."""
     kind = atom.__class__
     if kind is Symbol or kind is Keyword or atom is None:
@@ -36,16 +42,16 @@ def index_key(atom):
     return equal_key(atom) if kind in _BY_VALUE or atom is True else NotImplemented  # `t` is Python's True, which is 1 in a dict
 
 
-class ListedRows(list):
+class ListedRows(list[Any]):
     """The rows for one key of a table, in order: tuples, or the values themselves if the table keeps one column."""
 
     __slots__ = ("tables",)
 
-    def __init__(self, rows):
+    def __init__(self, rows: Iterable[Row]):
         super().__init__(rows)
-        self.tables = {}
+        self.tables: dict[str, dict[Any, list[Row]] | None] = {}
 
-    def narrowed(self, *terms):
+    def narrowed(self, *terms: object) -> Sequence[Row]:
         """The rows that may match ``terms``, one for each column that is kept, in order. Others may be among them."""
         shape, key = _described(terms)
         table = self.tables.get(shape, self)
@@ -56,9 +62,12 @@ class ListedRows(list):
         return self if table is None else table.get(key, ())
 
 
-def _described(terms):
+def _described(terms: tuple[object, ...]) -> tuple[str, tuple[Any, ...]]:
     """The shape of ``terms``, and their atoms."""
-    shape, key, waiting, room = [], [], [*reversed(terms)], _CONSES
+    shape: list[str] = []
+    key: list[object] = []
+    waiting: list[Any] = [*reversed(terms)]
+    room = _CONSES
     while waiting:
         term = waiting.pop()
         kind = term.__class__
@@ -84,7 +93,7 @@ def _described(terms):
 
 
 @lru_cache(200)
-def sorter(shape, count):
+def sorter(shape: str, count: int) -> Callable[[Iterable[Row]], dict[Any, list[Row]] | None]:
     """A function that sorts rows of ``count`` columns for terms of a shape.
 
     It returns a dict from keys to the rows that may match, or ``None`` if a row has an atom there that has no key.

@@ -16,11 +16,20 @@ from functools import lru_cache
 from itertools import islice
 
 from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.utilities.generated_functions import generated_function
 
 from .list_shapes import FEW, ListedRows, index_key
 from .machine import fail
 from ..terms.terms import UNSET, Var, deref, unify
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from .database import Clause
+    from .machine import Machine
+
+    Rows = Sequence[Any]  # tuples of values, or the values of the only column
 
 _SYMBOLS = {Symbol, Keyword}
 _OWN_KEYS = {Symbol, Keyword, int, str, type(None)}
@@ -31,7 +40,7 @@ _CONSTANTS = {int, str, float, DoubleFloat, type(None), bool}
 """The kinds of atoms that are never variables."""
 
 
-def column_key(term):
+def column_key(term: Any) -> Any:
     """As `index_key`. Lists that begin with the same symbol have the same key."""
     if term.__class__ is Cons:
         first = deref(term.car)
@@ -45,7 +54,7 @@ class Relation:
     The rows are kept by columns, since Python looks through a list of 100,000 values in a hundredth of the time of a loop over rows.
     """
 
-    def __init__(self, columns, count, kinds):
+    def __init__(self, columns: Sequence[list[Any]], count: int, kinds: list[set[type]]):
         """``columns``: for each argument the list of its values in all ``count`` rows; ``kinds``: the set of their classes."""
         self.columns, self.count = columns, count
         self.arity = len(columns)
@@ -55,9 +64,9 @@ class Relation:
         self.keyed = [keys is column or NotImplemented not in keys for keys, column in zip(self.keys, columns, strict=True)]
         self.lists = [Cons in found for found in kinds]
         self.exact = all(self.keyed) and not any(self.lists)
-        self._tables = {}
+        self._tables: dict[tuple[int, tuple[int, ...] | None], Any] = {}
 
-    def table(self, mask, kept=None):
+    def table(self, mask: int, kept: tuple[int, ...] | None = None) -> Any:
         """A dict: known values → for each row that fits, a tuple with the values of the columns ``kept`` (default: the unknown ones).
 
         Bit i of ``mask`` is set if argument i is known. A single known or kept value stands without a tuple.
@@ -75,7 +84,7 @@ class Relation:
             self._tables[mask, kept] = table
         return table
 
-    def _table(self, known, kept):
+    def _table(self, known: list[int], kept: Sequence[int]) -> Any:
         if not known:
             return {(): self._listed([*_side_by_side([self.columns[i] for i in kept], self.count)])}
         keys = [self.keys[i] for i in known]
@@ -93,10 +102,10 @@ class Relation:
                 table[key] = self._listed(rows)
         return table
 
-    def _listed(self, rows):
+    def _listed(self, rows: Any) -> Any:
         return rows if self.exact or len(rows) <= FEW else ListedRows(rows)
 
-    def call_general(self, m, step):
+    def call_general(self, m: Machine, step: Any) -> Any:
         """The call function for any goal."""
         terms, mask, keys = [], 0, []
         for i, term in enumerate(step[2:]):
@@ -116,7 +125,7 @@ class Relation:
             return _unify_one(m, step[1], rows, terms[0], 0)
         return _unify_rows(m, step[1], rows, terms, 0)
 
-    def call_function(self):
+    def call_function(self) -> Callable[[Machine, Any], Any]:
         """The call function, written for this relation if it is simple enough."""
         if not self.arity:
             return _constant(self.count)
@@ -124,7 +133,7 @@ class Relation:
             return self._written()
         return self.call_general
 
-    def _written(self):
+    def _written(self) -> Callable[[Machine, Any], Any]:
         arguments = ", ".join(f"a{i}" for i in range(self.arity))
         lines = [f"_, k, {arguments} = step"]
         for i in range(self.arity):
@@ -140,7 +149,7 @@ class Relation:
                 f"    if k{i} is NotImplemented: return general(m, step)",
             ]
 
-        def tests(i, known, lists, depth):
+        def tests(i: int, known: Any, lists: Any, depth: int) -> Any:
             indent = "    " * depth
             if i == self.arity:
                 lines.extend(indent + line for line in self._leaf(known, lists))
@@ -175,7 +184,7 @@ class Relation:
         }
         return generated_function("call of a relation", "call", ["m", "step"], lines, space)
 
-    def _leaf(self, known, lists):
+    def _leaf(self, known: Any, lists: Any) -> Iterable[str]:
         """The lines for goals of which the arguments ``known`` are known, and ``lists`` among them are lists."""
         unknown = [j for j in range(self.arity) if j not in known]
         for n, j in enumerate(unknown):
@@ -197,14 +206,14 @@ class Relation:
             yield f"return set_{min(len(unknown), 3)}(m, k, rows, {f'[{terms}]' if len(unknown) > 2 else terms})"
 
 
-def _side_by_side(columns, count):
+def _side_by_side(columns: Sequence[list[Any]], count: int) -> Iterable[Any]:
     """Iterate over the ``count`` rows of ``columns``: tuples, or the values of a single column."""
     if len(columns) == 1:
         return columns[0]
     return zip(*columns) if columns else [()] * count
 
 
-def relation_of(clauses, arity):
+def relation_of(clauses: Sequence[Clause], arity: int) -> Relation | None:
     """The `Relation` of clauses that are all facts with ``arity`` arguments without variables. ``None`` if some are not, or may not be."""
     columns = columns_of(arity)(clauses)
     if columns is None:
@@ -214,7 +223,7 @@ def relation_of(clauses, arity):
 
 
 @lru_cache(50)
-def columns_of(arity):
+def columns_of(arity: int) -> Callable[[Sequence[Clause]], list[list[Any]] | None]:
     """A function that takes facts apart: it returns a list of the values of each argument, or ``None`` if a clause is not such a fact."""
     lines = [f"v{i} = []; append{i} = v{i}.append" for i in range(arity)]
     lines += ["for clause in clauses:", "    if clause.goals is not None: return None", "    cell = clause.head.cdr"]
@@ -224,13 +233,13 @@ def columns_of(arity):
     return generated_function("columns of facts", "columns", ["clauses"], lines, {"Cons": Cons})
 
 
-def relation_of_rows(rows):
+def relation_of_rows(rows: Sequence[Sequence[Any]]) -> Relation:
     """The `Relation` of ground facts, each the list of its arguments."""
     columns = [[row[i] for row in rows] for i in range(len(rows[0]))]
     return Relation(columns, len(rows), [set(map(type, column)) for column in columns])
 
 
-def _constants(column, kinds):
+def _constants(column: list[Any], kinds: set[type]) -> bool:
     """Whether all values, which are of these ``kinds``, are known to be without variables."""
     unlike = kinds - _CONSTANTS
     if Cons in unlike:
@@ -243,9 +252,9 @@ def _constants(column, kinds):
     return not unlike or not any(value.name[:1] == "?" for value in set(column) if value.__class__ in _SYMBOLS)
 
 
-def _ground(cell):
+def _ground(cell: Any) -> bool:
     """Whether a list is known to be without variables."""
-    waiting = []
+    waiting: list[Any] = []
     while True:
         while cell.__class__ is Cons:
             item = cell.car
@@ -266,7 +275,7 @@ def _ground(cell):
 # ---------------------------------------------------------------------------- the rows that fit, one after the other
 
 
-def _set_one(m, k, rows, variable):
+def _set_one(m: Machine, k: Any, rows: Rows, variable: Var) -> Any:
     trail = m.trail
     if len(rows) > 1:
         m.choices.append([_next_one, k, len(trail), rows, 1, variable])
@@ -275,7 +284,7 @@ def _set_one(m, k, rows, variable):
     return k
 
 
-def _next_one(m, step):
+def _next_one(m: Machine, step: Any) -> Any:
     _, k, _, rows, i, variable = step
     variable.ref = rows[i]
     m.trail.append(variable)
@@ -287,7 +296,7 @@ def _next_one(m, step):
     return k
 
 
-def _set_two(m, k, rows, first, second):
+def _set_two(m: Machine, k: Any, rows: Rows, first: Var, second: Var) -> Any:
     trail = m.trail
     if len(rows) > 1:
         m.choices.append([_next_two, k, len(trail), rows, 1, first, second])
@@ -296,7 +305,7 @@ def _set_two(m, k, rows, first, second):
     return k
 
 
-def _next_two(m, step):
+def _next_two(m: Machine, step: Any) -> Any:
     _, k, _, rows, i, first, second = step
     first.ref, second.ref = rows[i]
     m.trail += (first, second)
@@ -308,7 +317,7 @@ def _next_two(m, step):
     return k
 
 
-def _set_many(m, k, rows, variables):
+def _set_many(m: Machine, k: Any, rows: Rows, variables: list[Var]) -> Any:
     if len(rows) > 1:
         m.choices.append([_next_many, k, len(m.trail), rows, 1, variables])
     for variable, value in zip(variables, rows[0]):
@@ -317,7 +326,7 @@ def _set_many(m, k, rows, variables):
     return k
 
 
-def _next_many(m, step):
+def _next_many(m: Machine, step: Any) -> Any:
     _, k, _, rows, i, variables = step
     for variable, value in zip(variables, rows[i]):
         variable.ref = value
@@ -330,13 +339,13 @@ def _next_many(m, step):
     return k
 
 
-def _again(m, k, count):
+def _again(m: Machine, k: Any, count: int) -> Any:
     """Succeed ``count`` times."""
     m.choices.append([_next_again, k, len(m.trail), count - 1])
     return k
 
 
-def _next_again(m, step):
+def _next_again(m: Machine, step: Any) -> Any:
     if step[3] == 1:
         m.choices.pop()
     else:
@@ -344,17 +353,17 @@ def _next_again(m, step):
     return step[1]
 
 
-def _constant(count):
+def _constant(count: int) -> Callable[[Machine, Any], Any]:
     """The call function of facts without arguments: succeed once for each."""
     return lambda m, step: _again(m, step[1], count) if count > 1 else step[1]
 
 
-def _retry(m, step):
+def _retry(m: Machine, step: Any) -> Any:
     m.choices.pop()
     return _unify_rows(m, step[1], step[3], step[4], step[5])
 
 
-def _unify_rows(m, k, rows, terms, i):
+def _unify_rows(m: Machine, k: Any, rows: Rows, terms: list[Any], i: int) -> Any:
     """The general case: an argument is a list, or a variable occurs twice. After the last row no choice point is left."""
     trail = m.trail
     height = len(trail)
@@ -374,12 +383,12 @@ def _unify_rows(m, k, rows, terms, i):
     return fail(m)
 
 
-def _retry_one(m, step):
+def _retry_one(m: Machine, step: Any) -> Any:
     m.choices.pop()
     return _unify_one(m, step[1], step[3], step[4], step[5])
 
 
-def _unify_one(m, k, rows, term, i):
+def _unify_one(m: Machine, k: Any, rows: Rows, term: Any, i: int) -> Any:
     """The same for a single argument."""
     trail = m.trail
     height = len(trail)

@@ -336,7 +336,8 @@ class ArithmeticGenerator:
         elif known:
             order = (INT,)
         else:
-            order = (SINGLE, INT, DOUBLE) if products and count > 1 else (INT, SINGLE, DOUBLE)
+            simple = all(operand.first is operand.later for operand in operands)
+            order = (SINGLE, INT, DOUBLE) if products and count > 1 and simple else (INT, SINGLE, DOUBLE)
         found = []
         for assumed in order:
             kind = self.kind_in(operation, assumed)
