@@ -33,7 +33,7 @@ FLOORS = [
     ["languages"],
     ["session"],
     ["chronicle", "ros_tools", "testing", "robot"],
-    ["view", "repl", "swank", "jupyter", "lsp"],
+    ["view", "repl", "swank", "jupyter", "lsp", "grading"],
     ["browser"],
     ["cli", "pytest_plugin", "coverage_plugin", "__init__"],
 ]
@@ -215,6 +215,7 @@ OF_OTHERS = {
     "cramhy_runtime.languages.commonlisp.syntax.macros",  # the macros, which are written in Hy (hy_src)
     "cramhy_runtime.languages.commonlisp.python.python_calls",  # (py:call "math.sqrt" 2): a module of the user's
     "cramhy_runtime.languages.commonlisp.python.python_packages",  # the same, as a package
+    "cramhy_runtime.grading.performing",  # the module that a student hands in
 }
 """Modules that import modules of others by a computed name."""
 

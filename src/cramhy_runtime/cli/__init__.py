@@ -1,5 +1,5 @@
-"""The command line: ``cramhy repl | swank | jupyter | lsp | run | eval | test | turtlesim | teleop | view | replay | browser | ros-shims |
-ros``, ``roslisp_repl``.
+"""The command line: ``cramhy repl | swank | jupyter | lsp | run | eval | test | grade | similar | turtlesim | teleop | view | replay |
+browser | ros-shims | ros``, ``roslisp_repl``.
 
 `options` says which words there are, `servers` what a session opens to the outside, `standalone_commands` has the commands that are no
 session of Lisp's, `start_modules` the bytecode of the modules that a session starts with, `shims` the ROS commands, which `workspace`,
@@ -331,6 +331,18 @@ def _test(options):
     unit_tests.limit_tests(options.limit)
     with ExitStack() as closings:
         return _status(lambda: 0 if session(options, closings, opened=False).test(options.path, options.junit, options.only) else 1)
+
+
+def _grade(options):
+    from . import grading_commands
+
+    return grading_commands.grade(options)
+
+
+def _similar(options):
+    from . import grading_commands
+
+    return grading_commands.similar(options)
 
 
 def _turtlesim(options):

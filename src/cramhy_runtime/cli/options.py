@@ -219,6 +219,51 @@ def _add_jupyter(commands):
     )
 
 
+def _add_grade(commands):
+    grade = commands.add_parser("grade", help="grade a submission: run it in a cage, and tell what failed and how many points it gets")
+    grade.add_argument("exercise", metavar="EXERCISE", help="the folder of an exercise, or the name of one of cramhy's, such as square")
+    grade.add_argument("submission", metavar="SUBMISSION", help="the file that a student hands in, or the folder with the files")
+    grade.add_argument("--seeds", type=_at_least_one, default=None, metavar="N", help="try checks with N seeds (as the exercise says)")
+    grade.add_argument("--json", default=None, metavar="FILE", help="write the result into FILE, too, as JSON (no file)")
+    grade.add_argument("--junit", default=None, metavar="FILE", help="write the result into FILE, too, in JUnit's XML (no file)")
+    grade.add_argument(
+        "--format",
+        choices=["text", "json", "github", "vpl", "coderunner"],
+        default="text",
+        help="what is printed: text for people, or what GitHub Classroom, Moodle's VPL or Moodle's CodeRunner reads (text)",
+    )
+
+
+def _add_similar(commands):
+    similar = commands.add_parser("similar", help="list pairs of submissions that are alike after renaming and reordering")
+    similar.add_argument("folder", metavar="FOLDER", help="a folder with a file or a folder for each submission")
+    similar.add_argument("--given", default=None, metavar="FOLDER", help="what all students were given, which does not count (nothing)")
+    similar.add_argument(
+        "--least", type=_percent, default=40, metavar="PERCENT", help="leave out pairs that have less in common than this (40)"
+    )
+    similar.add_argument("--json", default=None, metavar="FILE", help="write the pairs into FILE, too, as JSON (no file)")
+
+
+def _at_least_one(text):
+    number = int(text)
+    if not 1 <= number <= 1000:
+        raise ValueError
+    return number
+
+
+_at_least_one.__name__ = "number from 1 to 1000"  # what argparse calls it in its complaint
+
+
+def _percent(text):
+    number = float(text)
+    if not 0 <= number <= 100:
+        raise ValueError
+    return number
+
+
+_percent.__name__ = "percentage"
+
+
 def _add_lsp(commands):
     commands.add_parser("lsp", help="a language server for editors, at standard input and output")
 
@@ -310,6 +355,8 @@ _COMMANDS = {
     "run": _add_run,
     "eval": _add_eval,
     "test": _add_test,
+    "grade": _add_grade,
+    "similar": _add_similar,
     "turtlesim": _add_turtlesim,
     "teleop": _add_teleop,
     "view": _add_page,

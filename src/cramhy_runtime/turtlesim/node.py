@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from ..ros.messages import RosMessage
     from ..ros.services import Service
-    from .signatures import Echo, Observer, Stroke, Words
+    from .signatures import Echo, Listener, Observer, Stroke, Words
 
 
 BACKGROUND = (("background_r", 69), ("background_g", 86), ("background_b", 255))
@@ -68,19 +68,33 @@ class Inhabitant:
 
     def _command(self, twist: RosMessage) -> None:
         linear = twist.linear
-        self.turtle.command(wire.as_float(linear.x), wire.as_float(linear.y), wire.as_float(twist.angular.z), kernel.now())
+        velocity = wire.as_float(linear.x), wire.as_float(linear.y), wire.as_float(twist.angular.z)
+        if self.simulator.listener is not None:
+            velocity = self.simulator.listener("command", self.turtle.name, velocity)
+            if velocity is None:
+                return
+        self.turtle.command(*velocity, kernel.now())
 
     def _set_pen(self, request: RosMessage) -> RosMessage:
+        self._tell("set_pen", (request.r, request.g, request.b, request.width, request.off))
         self.turtle.set_pen(request.r, request.g, request.b, request.width, request.off)
         return self.services[0].type.response()
 
     def _teleport_absolute(self, request: RosMessage) -> RosMessage:
-        self.turtle.teleport_absolute(*(wire.as_float(value) for value in request.values()))
+        place = tuple(wire.as_float(value) for value in request.values())
+        self._tell("teleport_absolute", place)
+        self.turtle.teleport_absolute(*place)
         return self.services[1].type.response()
 
     def _teleport_relative(self, request: RosMessage) -> RosMessage:
-        self.turtle.teleport_relative(*(wire.as_float(value) for value in request.values()))
+        way = tuple(wire.as_float(value) for value in request.values())
+        self._tell("teleport_relative", way)
+        self.turtle.teleport_relative(*way)
         return self.services[2].type.response()
+
+    def _tell(self, kind: str, values: tuple[float, ...]) -> None:
+        if self.simulator.listener is not None:
+            self.simulator.listener(kind, self.turtle.name, values)
 
     def publish(self) -> None:
         """Publish the pose and the colour of this tick, if there are subscribers."""
@@ -101,6 +115,11 @@ class Turtlesim(Program):
     """The simulator, ``turtlesim_node``. Arguments: see `Program`.
 
     ``turtles``: the turtles by name. ``canvas``: the paper. ``observers``: functions called at every tick (`observe`).
+
+    ``listener``: ``None``, or a function of what reaches the simulator, called before it counts: ``listener(kind, turtle, values)``. The
+    kinds and their values are "command" (forward, sideways, turn), "set_pen" (r, g, b, width, off), "teleport_absolute" (x, y, heading),
+    "teleport_relative" (linear, angular), "spawn" (x, y, heading), "kill", "clear" and "reset", with units as in `Turtle`. For a command
+    it returns the velocity that counts, or ``None`` if the command is lost. The other results are not used.
     """
 
     name = "turtlesim"
@@ -113,6 +132,7 @@ class Turtlesim(Program):
         self.counter = self.spawned = 0
         self.started = False
         self.observers: tuple[Observer, ...] = ()
+        self.listener: Listener | None = None
         self.history: History | None = None
         for parameter, value in BACKGROUND:
             full = self.node.resolve("~" + parameter)
@@ -221,6 +241,7 @@ class Turtlesim(Program):
         if complaint:
             self.log(rosout.ERROR, f"Exception thrown while processing service call: {complaint}")
             raise Refusal(complaint)
+        self._tell("spawn", name, (x, y, heading))
         turtle = Turtle(name, self.spawned % DRAWINGS, x, y, heading, self.canvas, lambda text: self.log(rosout.WARN, text))
         self.spawned += 1
         self.inhabitants[name] = Inhabitant(self, turtle)
@@ -248,23 +269,30 @@ class Turtlesim(Program):
         if name not in self.inhabitants:
             self.log(rosout.ERROR, f"Tried to kill turtle [{name}], which does not exist")
             raise Refusal("")
+        self._tell("kill", name)
         self.inhabitants[name].leave()
         self.inhabitants = {other: inhabitant for other, inhabitant in self.inhabitants.items() if other != name}
 
     def clear(self) -> None:
         """Fill the paper with the background colour from the present parameters."""
         self.log(rosout.INFO, "Clearing turtlesim.")
+        self._tell("clear", "")
         self._clear()
 
     def reset(self) -> None:
         """Remove all turtles, make one in the centre, and clear the paper."""
         self.log(rosout.INFO, "Resetting turtlesim.")
+        self._tell("reset", "")
         for inhabitant in self.inhabitants.values():
             inhabitant.leave()
         self.inhabitants = {}
         self.counter = 0
         self.spawn("", CENTRE, CENTRE, 0.0)
         self._clear()
+
+    def _tell(self, kind: str, turtle: str, values: tuple[float, ...] = ()) -> None:
+        if self.listener is not None:
+            self.listener(kind, turtle, values)
 
     def _clear(self) -> None:
         values = [(self.number("~" + parameter, default), default) for parameter, default in BACKGROUND]

@@ -41,6 +41,8 @@ class Shape(TypedDict):
 
 
 Observer = Callable[[Turtlesim, list[Stroke]], object]
+Listener = Callable[[str, str, tuple[float, ...]], tuple[float, ...] | None]
+"""Gets the kind, the turtle's name and the values; see `Turtlesim`."""
 
 
 class Page(Protocol):

@@ -89,6 +89,12 @@ class Turtle:
         self.teleports.append((linear, 0.0, angular, False))
         self.at_rest = False
 
+    def push(self, x: float, y: float, angle: float) -> None:
+        """Shove the turtle by (x, y), in metres of the world (y up), and turn it by ``angle`` radians. The pen draws nothing."""
+        self.x, self.y = min(max(self.x + x, 0.0), EXTENT), min(max(self.y - y, 0.0), EXTENT)
+        self.heading = _wrap(self.heading + angle)
+        self._pose, self.at_rest = None, False
+
     def set_pen(self, red: int, green: int, blue: int, width: int, off: object) -> None:
         """Set colour (0 to 255 each) and width (pixels) of the pen, or switch it ``off``.
 

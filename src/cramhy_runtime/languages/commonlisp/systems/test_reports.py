@@ -92,9 +92,9 @@ def write_junit_of_one(path, name, error=None):
     """Write into ``path`` what came of tests that are counted as one, called ``name``: the text of an error, or all was well."""
     from xml.etree.ElementTree import Element, SubElement
 
-    case = Element("testcase", classname="cramhy", name=_clean(name), time="0")
+    case = Element("testcase", classname="cramhy", name=clean_for_xml(name), time="0")
     if error is not None:
-        SubElement(case, "error", message=_clean(error.strip().split("\n")[0])).text = _clean(error)
+        SubElement(case, "error", message=clean_for_xml(error.strip().split("\n")[0])).text = clean_for_xml(error)
     _write(path, [case])
 
 
@@ -104,21 +104,21 @@ def _case(result):
     file, line = (result.test.place or ("", 0))[:2]
     case = Element(
         "testcase",
-        classname=_clean(result.test.package.name),
-        name=_clean(result.test.name),
-        file=_clean(os.path.relpath(file)) if file and not file.startswith("<") else _clean(file),
+        classname=clean_for_xml(result.test.package.name),
+        name=clean_for_xml(result.test.name),
+        file=clean_for_xml(os.path.relpath(file)) if file and not file.startswith("<") else clean_for_xml(file),
         line=str(line),
         time=f"{result.seconds:.3f}",
     )
     if result.kind == "failed":
         failures = result.outcome.failures
-        SubElement(case, "failure", message=_clean(_short(failures[0].text))).text = _clean("\n\n".join(map(shown, failures)))
+        SubElement(case, "failure", message=clean_for_xml(_short(failures[0].text))).text = clean_for_xml("\n\n".join(map(shown, failures)))
     elif result.kind == "skipped":
-        SubElement(case, "skipped", message=_clean("; ".join(result.outcome.skipped)))
+        SubElement(case, "skipped", message=clean_for_xml("; ".join(result.outcome.skipped)))
     return case
 
 
-def _clean(text):
+def clean_for_xml(text):
     """``text`` without the characters that XML cannot hold."""
     return _NOT_IN_XML.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
 
@@ -140,4 +140,4 @@ def _write(path, cases):
 
 _COUNTED = {"failures": "failure", "errors": "error", "skipped": "skipped"}
 
-__all__ = ["Result", "shown", "summary", "write_junit", "write_junit_of_one"]
+__all__ = ["clean_for_xml", "Result", "shown", "summary", "write_junit", "write_junit_of_one"]

@@ -1,0 +1,173 @@
+"""Grading: a submission is read, run in processes of its own, and judged here.
+
+`Grader` keeps a nursery, so that many submissions are graded quickly. `grade` grades one. The checks are tried one after the other, and
+each with its seeds; the first seed with a fault decides. A check gives all of its points or none.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from . import judging
+from .exercise import Check, Exercise, find
+from .forms import source_faults
+from .here import Here
+from .jobs import job
+from .problems import ExerciseError
+from .processes import Lost, Nursery
+from .report import CheckResult, Report
+from .told import Told
+
+LARGEST = 200_000
+"""Bytes of a file of a submission."""
+KEPT_OUTPUT = 2000
+NOISE = "[(ROSLISP TOP) INFO]"
+"""What roslisp prints when a node starts, which says nothing about a submission."""
+SIGNALS = {
+    4: "illegal instruction",
+    6: "abort",
+    7: "bus error",
+    8: "arithmetic error",
+    9: "kill",
+    11: "segmentation fault",
+    15: "terminate",
+}
+
+
+def grade(exercise: str | Path, submission: str | Path, seeds: int | None = None) -> Report:
+    """Grade a submission, a file or a folder. exercise: a folder, or the name of one of cramhy's. seeds: see `Grader`.
+
+    Raises `ExerciseError` if the exercise cannot be used, or if there is no such submission.
+    """
+    found = find(str(exercise))
+    with Grader(seeds) as grader:
+        return grader.grade(found, submission)
+
+
+class Grader:
+    """Grades submissions. seeds: with how many seeds checks are tried that name a number of them, ``None`` for that number.
+
+    apart: whether a submission runs in a process of its own. If not, nothing protects this process from it (`Here`).
+    """
+
+    def __init__(self, seeds: int | None = None, apart: bool = True):
+        self.seeds, self.apart = seeds, apart
+        self.nurseries: dict[tuple[str, ...], Nursery | Here] = {}
+
+    def __enter__(self) -> Grader:
+        return self
+
+    def __exit__(self, *problem: object) -> None:
+        for nursery in self.nurseries.values():
+            nursery.close()
+
+    def grade(self, exercise: Exercise, submission: str | Path) -> Report:
+        """The `Report` of a submission, a file or a folder."""
+        return self.grade_texts(exercise, submitted_files(exercise, Path(submission)))
+
+    def grade_texts(self, exercise: Exercise, submitted: dict[str, str | None]) -> Report:
+        """The `Report` of a submission whose files are given as texts, by name; ``None`` for a file that is no text."""
+        missing = [name for name in exercise.submission if submitted.get(name) is None]
+        if missing:
+            words = [
+                f"The file {name} is not there." if name not in submitted else f"The file {name} is not UTF-8 text, or too large."
+                for name in missing
+            ]
+            return Report(exercise.title, [CheckResult(each.title, 0, each.points, words) for each in exercise.checks], "", [])
+        results, output, held = [], "", []
+        lost: list[str] | None = None
+        for check in exercise.checks:
+            wrong: list[str] = []
+            if check.kind == "source":
+                wrong = source_faults(check.table["source"], submitted)
+            elif lost is not None:
+                wrong = lost
+            else:
+                seeds = self.seeds if self.seeds is not None and check.seeds > 1 else check.seeds
+                for seed in range(1, seeds + 1):
+                    wrong, printed, locks, hopeless = self._try(exercise, check, seed, submitted)
+                    held = held or locks
+                    if wrong:
+                        if seeds > 1:
+                            wrong = [f"With seed {seed}:", *wrong]
+                        output = output or printed
+                        lost = wrong if hopeless else None
+                        break
+            results.append(CheckResult(check.title, 0 if wrong else check.points, check.points, wrong, check.table.get("hint")))
+        if any(check.kind == "source" for check in exercise.checks) and not any(
+            result.passed for check, result in zip(exercise.checks, results) if check.kind != "source"
+        ):  # a text alone is worth nothing
+            results = [result._replace(points=0) for result in results]
+        return Report(exercise.title, results, output[-KEPT_OUTPUT:], held)
+
+    def _try(self, exercise: Exercise, check: Check, seed: int, submitted: dict[str, str | None]):
+        """What is wrong with a check for a seed, what was printed, the locks, and whether other checks cannot be better."""
+        work, values = job(exercise, check, seed, submitted)
+        try:
+            answer = self._nursery(exercise).answer(work)
+        except Lost:
+            return ["The program ended the process that grades it."], "", [], True
+        told = Told(answer["reports"], work["nonce"])
+        output = "".join(line for line in answer["output"].splitlines(True) if not line.startswith(NOISE))
+        if told.error and told.doing in ("load", "before"):
+            if "TIME-LIMIT" in told.error["types"]:
+                return [f"Loading {told.what} never ended, and was stopped."], output, told.held, told.doing == "load"
+            return [f"{told.what} cannot be used:\n{told.error['text']}"], output, told.held, told.doing == "load"
+        if not told.done:
+            return [_unfinished(told, answer, exercise)], output, told.held, told.doing in ("begin", "load")
+        if check.kind == "ask":
+            return judging.of_answers(check, work, values, told), output, told.held, False
+        if check.kind == "tests":
+            return judging.of_tests(check, told), output, told.held, False
+        return judging.of_run(check, work, values, told), output, told.held, False
+
+    def _nursery(self, exercise: Exercise) -> Nursery | Here:
+        key = (*exercise.systems, "lisp-unit", "fiveam")
+        if key not in self.nurseries:
+            self.nurseries[key] = Nursery(list(key)) if self.apart else Here()
+        return self.nurseries[key]
+
+
+def _unfinished(told, answer, exercise):
+    """The sentence for a run that did not come to its end."""
+    doing = {"load": f"Loading {told.what}", "do": told.what, "ask": told.what, "before": told.what, "tests": "The tests"}
+    what = doing.get(told.doing, "The program")
+    limits = exercise.limits
+    reasons = {
+        "time": f"took more than {limits['time']:g} s of processor time, and was stopped. Is there a loop that never ends?",
+        "idle": "waited for something that never came, and was stopped. Wait with the plan's clock: (cpl:sleep 1).",
+        "long": "took too long, and was stopped.",
+        "output": f"printed more than {limits['output']:g} kB, and was stopped.",
+        "memory": f"used more than {limits['memory']:g} MB of memory, and was stopped.",
+        "disk": "wrote too many files, and was stopped.",
+    }
+    if answer["ended"] in reasons:
+        return f"{what} {reasons[answer['ended']]}"
+    if answer["signal"]:
+        return f"{what} ended the process by a signal ({SIGNALS.get(answer['signal'], answer['signal'])})."
+    return f"{what} ended the process before it was over."
+
+
+def submitted_files(exercise: Exercise, place: Path) -> dict[str, str | None]:
+    """The texts of the files that were handed in, by name; ``None`` for one that is no text. Raises `ExerciseError` if nothing is there.
+
+    place: a folder, or the file itself if one file is handed in.
+    """
+    if place.is_dir():
+        paths = {name: place / name for name in exercise.submission}
+    elif place.is_file() and len(exercise.submission) == 1:
+        paths = {exercise.submission[0]: place}
+    elif place.is_file():
+        raise ExerciseError(f"{place} is one file, but {', '.join(exercise.submission)} are handed in. Name their folder.")
+    else:
+        raise ExerciseError(f"There is no file or folder {place}.")
+    found: dict[str, str | None] = {}
+    for name, path in paths.items():
+        if not path.is_file() or (place.is_dir() and place.resolve() not in path.resolve().parents):  # a link to somewhere else
+            continue
+        try:
+            data = path.read_bytes() if path.stat().st_size <= LARGEST else None
+            found[name] = None if data is None else data.decode("utf-8-sig")
+        except (OSError, UnicodeDecodeError):
+            found[name] = None
+    return found

@@ -1,0 +1,11 @@
+(in-package :tut)
+
+(defun draw-dashes (number)
+  (dotimes (dash number)
+    (call-set-pen 255 255 255 3 0)
+    (send-vel-cmd 0.5 0)
+    (wait-duration 1.1)
+    (call-set-pen 255 255 255 3 1)
+    (send-vel-cmd 0.5 0)
+    (wait-duration 1.1))
+  (call-set-pen 255 255 255 3 0))

@@ -1,0 +1,34 @@
+"""Without processes, as in a browser, a submission gets the same points."""
+
+from __future__ import annotations
+
+import pytest
+
+from cramhy_runtime.grading import Grader
+from cramhy_runtime.grading.exercise import find
+
+from .submissions import cases
+
+NAMES = [
+    "solution of first-lisp",
+    "solution of dry-pen",
+    "start of dry-pen",
+    "broken",
+    "quit in the plan",
+    "prints that it is right",
+    "teleports",
+]
+
+
+@pytest.fixture(scope="module")
+def grader():
+    with Grader(apart=False) as made:
+        yield made
+
+
+@pytest.mark.parametrize("case", [case for case in cases() if case.name in NAMES], ids=lambda case: case.name)
+def test_the_points_are_the_same(case, grader):
+    exercise = find(case.exercise)
+    report = grader.grade_texts(exercise, case.texts)
+    assert report.points == (exercise.points if case.points is None else case.points), report.text()
+    assert case.words in report.text() and report.held == []

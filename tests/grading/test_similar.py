@@ -1,0 +1,125 @@
+"""Submissions that are alike after renaming and reordering are found, and others are not."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from cramhy_runtime.cli import main
+from cramhy_runtime.grading.exercise import own_exercises
+from cramhy_runtime.grading.problems import ExerciseError
+from cramhy_runtime.grading.similar.pairs import similar_pairs
+from cramhy_runtime.grading.similar.shapes import shapes_of
+
+from .submissions import SOLUTIONS
+
+ANN = """
+(in-package :tut)
+
+(defun corner (x y right up)
+  "A corner."
+  (make-3d-vector (+ x right) (+ y up) 0))
+
+(defun draw-square (size)
+  (top-level
+    (with-fields (x y) (value *turtle-pose*)
+      (dolist (step (list (list size 0) (list size size) (list 0 size) (list 0 0)))
+        (move-to (corner x y (first step) (second step)))))))
+"""
+BOB = """
+(in-package :tut)
+; my own work!
+(defun draw-square (laenge)
+  (top-level
+    (with-fields (x y) (value *turtle-pose*)
+      (dolist (stueck (list (list laenge 0) (list laenge laenge) (list 0 laenge) (list 0 0)))
+        (move-to (ecke x y (first stueck) (second stueck)))))))
+
+(defun ecke (a b rechts hoch) (make-3d-vector (+ rechts a) (+ hoch b) 0))
+"""
+CARL = """
+(in-package :tut)
+(defun draw-square (size)
+  (top-level
+    (dotimes (side 4)
+      (send-vel-cmd size 0)
+      (wait-duration 1.1)
+      (send-vel-cmd 0 (/ pi 2))
+      (wait-duration 1.1))))
+"""
+DORA = (SOLUTIONS / "square" / "square.lisp").read_text()
+
+
+def folder(path, **texts):
+    for name, text in texts.items():
+        (path / name).mkdir(parents=True)
+        (path / name / "square.lisp").write_text(text)
+    return path
+
+
+def test_a_renamed_and_reordered_copy_is_found_and_the_others_are_not(tmp_path):
+    found = similar_pairs(folder(tmp_path, ann=ANN, bob=BOB, carl=CARL, dora=DORA))
+    assert [(pair.one, pair.other) for pair in found] == [("ann", "bob")]
+    assert found[0].share > 0.9
+    assert [(part.one, part.other, part.head) for part in found[0].parts][0] == (
+        "square.lisp:8",
+        "square.lisp:4",
+        "(defun draw-square ...)",
+    )
+
+
+def test_what_all_were_given_does_not_count(tmp_path):
+    start = own_exercises()["square"] / "start"
+    given = (start / "square.lisp").read_text()
+    folder(tmp_path, ann=given + ANN, carl=given + CARL)
+    assert similar_pairs(tmp_path, least=0.1)
+    assert not similar_pairs(tmp_path, start, least=0.1)
+
+
+def test_what_most_of_them_have_does_not_count(tmp_path):
+    helper = "(defun twice (x y) (list (+ x x) (+ y y) (* x y) (- x y)))\n"
+    texts = {
+        f"student{number}": helper
+        + f'(defun own ({" ".join("abcdefghijkl"[:number])}) (format t "a" {" ".join("abcdefghijkl"[:number])} {number} 1 2 3 4))'
+        for number in range(1, 13)
+    }
+    assert not similar_pairs(folder(tmp_path, **texts))
+
+
+def test_the_order_of_arguments_counts_where_it_means_something():
+    def shapes(text):
+        return set(shapes_of(f"(defun f (a b c d e) {text})", "a.lisp"))
+
+    assert shapes("(+ (sin a) (cos b) (tan c) d e)") == shapes("(+ e d (tan c) (cos b) (sin a))")
+    assert shapes("(list (sin a) (cos b) (tan c))") != shapes("(list (tan c) (cos b) (sin a))")
+    assert shapes("(- a b c d e)") != shapes("(- a b c d d)")
+
+
+def test_programs_in_hy_and_python_are_compared_too(tmp_path):
+    one = "def draw(size):\n    for side in range(4):\n        drive(size)\n        turn(90 + side * 0)\n    return size\n"
+    for name, text in (("a", one), ("b", one.replace("size", "laenge").replace("side", "i")), ("c", "print('hello', 1, 2, 3, 4, 5, 6)\n")):
+        (tmp_path / f"{name}.py").write_text(text)
+    assert [(pair.one, pair.other) for pair in similar_pairs(tmp_path)] == [("a.py", "b.py")]
+
+
+def test_the_command_lists_the_pairs(tmp_path, capsys):
+    place = folder(tmp_path / "all", ann=ANN, bob=BOB, carl=CARL)
+    assert main(["similar", str(place), "--json", str(tmp_path / "pairs.json")]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].endswith("ann  bob") and "(defun draw-square ...)" in lines[1]
+    assert json.loads((tmp_path / "pairs.json").read_text())[0]["one"] == "ann"
+    assert main(["similar", str(folder(tmp_path / "few", ann=ANN, carl=CARL))]) == 0
+    assert capsys.readouterr().out == "No two submissions are alike.\n"
+    assert main(["similar", str(tmp_path / "nothing")]) == 2
+    assert "There is no folder" in capsys.readouterr().err
+
+
+def test_one_submission_alone_is_told(tmp_path):
+    with pytest.raises(ExerciseError, match="there are no two submissions"):
+        similar_pairs(folder(tmp_path, ann=ANN))
+
+
+def test_broken_texts_are_compared_as_far_as_they_go(tmp_path):
+    folder(tmp_path, ann=ANN.rstrip()[:-5], bob=BOB + "(((", carl="\x00\x01 ) ) (", dora='"' * 99)
+    assert [(pair.one, pair.other) for pair in similar_pairs(tmp_path)] == [("ann", "bob")]

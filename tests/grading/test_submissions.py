@@ -1,0 +1,111 @@
+"""Submissions get the points that they must get, twice alike, and harm nothing. A part of them here, all of them in ``make soak``."""
+
+from __future__ import annotations
+
+import os
+import resource
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from systems import linux, takes_long
+
+from cramhy_runtime.grading import Grader
+from cramhy_runtime.grading.exercise import Exercise, own_exercises
+
+from .submissions import SHORT, cases, hand_in
+
+pytestmark = linux
+
+
+@pytest.fixture(scope="module")
+def grader():
+    with Grader() as made:
+        yield made
+
+
+@pytest.fixture(scope="module")
+def exercises(tmp_path_factory):
+    """A copy of the exercises, which a submission may try to delete."""
+    folder = tmp_path_factory.mktemp("exercises")
+    for name, place in own_exercises().items():
+        shutil.copytree(place, folder / name)
+    return folder
+
+
+def graded(grader, exercises, case, folder, seconds=None):
+    exercise = Exercise.read(exercises / case.exercise)
+    if seconds is not None:
+        exercise = exercise._replace(limits={**exercise.limits, "time": seconds})
+    return exercise, grader.grade(exercise, hand_in(case, folder))
+
+
+def check(case, exercise, report):
+    text = report.text()
+    assert report.points == (exercise.points if case.points is None else case.points), text
+    assert case.words in text
+    assert case.points == 0 or report.held, "nothing has run"
+
+
+@pytest.mark.parametrize("case", [case for case in cases() if case.name in SHORT], ids=lambda case: case.name)
+def test_a_submission_gets_its_points(case, grader, exercises, tmp_path):
+    if case.name == "deletes the exercise":
+        case = next(each for each in cases(str(exercises), str(tmp_path)) if each.name == case.name)
+    before = sorted((path, path.stat().st_mode, path.stat().st_size) for path in exercises.rglob("*"))
+    exercise, report = graded(grader, exercises, case, tmp_path, 1 if "loop" in case.name else None)
+    check(case, exercise, report)
+    assert sorted((path, path.stat().st_mode, path.stat().st_size) for path in exercises.rglob("*")) == before
+    assert [path for path in Path(tmp_path).rglob("*") if path.is_file() and path.parent.name != case.name.replace(" ", "-")] == []
+
+
+def test_the_lists_of_cases_are_whole():
+    names = [case.name for case in cases()]
+    assert len(names) == len(set(names)) >= 60
+    assert SHORT <= set(names)
+    assert len(own_exercises()) >= 15
+
+
+@takes_long
+@pytest.mark.timeout(3000)  # on a busy machine the wall clock says little; the processor time is checked below
+def test_sixty_submissions_are_graded_twice_alike_in_two_minutes(exercises, tmp_path):
+    reports = []
+    for number in range(2):
+        with Grader() as grader:
+            found = []
+            for case in cases(str(exercises), str(tmp_path)):
+                exercise, report = graded(grader, exercises, case, tmp_path / str(number))
+                check(case, exercise, report)
+                found.append((case.name, report.points, [(result.title, result.points) for result in report.checks]))
+            reports.append(found)
+    assert reports[0] == reports[1]
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert used.ru_utime + used.ru_stime < 240  # of two processors in two minutes
+
+
+def run(*words, cwd=None):
+    return subprocess.run([sys.executable, "-m", "cramhy_runtime.cli", *map(str, words)], capture_output=True, text=True, cwd=cwd)
+
+
+def test_the_command_writes_its_reports_and_says_by_its_status_what_came_of_it(tmp_path):
+    good, bad = (next(case for case in cases() if case.name == name) for name in ("solution of dry-pen", "no text"))
+    done = run("grade", "dry-pen", hand_in(good, tmp_path), "--json", tmp_path / "r.json", "--junit", tmp_path / "r.xml", "--seeds", 1)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("A pen that dries: 6 of 6 points\n\npassed  1/1  ")
+    assert '"points": 6' in (tmp_path / "r.json").read_text() and 'failures="0"' in (tmp_path / "r.xml").read_text()
+    done = run("grade", "square", hand_in(bad, tmp_path), "--format", "vpl")
+    assert done.returncode == 1 and done.stdout.endswith("Grade :=>> 0\n")
+    done = run("grade", "nothing", tmp_path)
+    assert done.returncode == 2 and done.stderr.startswith("cramhy: There is no folder nothing, and no exercise of that name. cramhy has ")
+    done = run("grade", "square", tmp_path / "nothing.lisp")
+    assert done.returncode == 2 and "There is no file or folder" in done.stderr
+
+
+def test_a_link_to_somewhere_else_is_not_followed(tmp_path, exercises, grader):
+    (tmp_path / "secret").write_text("(secret)")
+    place = tmp_path / "submission"
+    place.mkdir()
+    os.symlink(tmp_path / "secret", place / "square.lisp")
+    report = grader.grade(Exercise.read(exercises / "square"), place)
+    assert report.points == 0 and "The file square.lisp is not there." in report.text() and "secret" not in report.text()

@@ -1,0 +1,4 @@
+(in-package :tut)
+
+(defun drive-through (from to)
+  (list from to))

@@ -1,0 +1,6 @@
+(in-package :tut)
+
+(defun go-in-time (x y seconds)
+  (top-level
+    (move-to (make-3d-vector x y 0))
+    :arrived))
