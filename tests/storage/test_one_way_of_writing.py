@@ -27,6 +27,15 @@ WRITERS = {
 }
 RENAMERS = {"replace", "rename", "renames", "link"}
 EXCEPT = {
+    ("browser/pyodide_files.py", "write_bytes"): "into the folder of a site that is being made, which appears as a whole",
+    ("browser/site.py", "write_bytes"): "as above",
+    ("browser/site.py", "write_text"): "as above",
+    ("browser/site.py", "copy2"): "as above",
+    ("grading/cage/folders.py", "open"): "a folder, to allow it: nothing is written",
+    ("grading/here.py", "write_text"): "the files of a submission, in a folder that goes after it",
+    ("grading/nursery.py", "mkdtemp"): "the folder of a submission, which goes after it",
+    ("grading/nursery.py", "write_text"): "as above",
+    ("grading/tests_inside.py", "write_text"): "as above",
     ("cli/process_environment.py", "open"): "the null device, in place of a stream that is closed",
     (
         "languages/commonlisp/files/file_streams.py",

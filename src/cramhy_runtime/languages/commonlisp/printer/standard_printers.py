@@ -191,7 +191,9 @@ def _local_name(function):
     if not name.startswith(("LFUNCTION", "<")):
         return f"(FLET {name}{inside})"
     parameters = " ".join(symbol_name(item) for item in PORTS.definitions.lambda_list(function) or ())
-    parameters = parameters.replace("&REST LKEYS &KEY &ALLOW-OTHER-KEYS", "&KEY ...")  # the code looks for its keywords itself
+    for rest in ("&REST LKEYS", "&REST LGIVEN"):  # the code takes any keywords, and looks at them itself
+        required, found, _ = parameters.partition(rest)
+        parameters = f"{required}&KEY ..." if found else parameters
     return f"(LAMBDA {f'({parameters})' if parameters or PRINT_PRETTY.value is not None else 'NIL'}{inside})"
 
 
