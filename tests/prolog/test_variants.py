@@ -49,11 +49,11 @@ def variants_of(name, arity):
         ("((found ?a) (findall ?b (mem (h ?b) ((h 1) (h 2))) ?a))", "(and (found ?l) (member ?a ?l))", "1 2"),
         ("((found ?a) (not (mem (h ?a) ((k 1)))) (== ?a none))", "(found ?a)", "NONE"),
         ("((found ?a) (-> (mem (h ?b) ((h 1) (h 2))) (== ?a ?b) (== ?a 0)))", "(found ?a)", "1"),
-        ("((found ?a) (forall (mem (h ?b) ((h 1) (h 2))) (lisp-pred numberp ?b)) (== ?a all))", "(found ?a)", "ALL"),
+        ("((found ?a) (forall (mem (h ?b) ((h 1) (h 2))) (lisp-pred is-a-number ?b)) (== ?a all))", "(found ?a)", "ALL"),
     ],
 )
 def test_answers(clause, goal, answers):
-    read("numberp").function = lambda value: True if isinstance(value, int) else None
+    read("is-a-number").function = lambda value: True if isinstance(value, int) else None
     group("all", *LISTS, *NEXT, clause)
     for _ in range(2):
         found = [show(answer[read("?a")]) if read("?a") in answer else "?" for answer in query.solve(read(goal))]
