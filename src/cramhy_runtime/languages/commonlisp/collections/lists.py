@@ -494,17 +494,8 @@ def mapc(function, lst, *lists):
         for items in _lockstep((lst, *lists)):
             function(*items)
     else:
-        cell = lst
-        while cell.__class__ is Cons:
-            for _ in STRETCH:
-                function(cell.car)
-                cell = cell.cdr
-                if cell.__class__ is not Cons:
-                    break
-            else:
-                checkpoint()
-        if cell is not None and cell is not False:
-            not_a_list(cell)
+        for cell in cells(lst):
+            function(cell.car)
     return lst
 
 

@@ -203,10 +203,6 @@ def _choice(symbol, arguments):
     return kind if not kind & (BOOLEAN | THING) else kind & ~BOOLEAN
 
 
-def _whole(symbol, arguments):
-    return INT
-
-
 def _smooth(symbol, arguments):
     if not arguments or len(arguments) > 2:
         return ANY
@@ -278,8 +274,7 @@ CALLS = {
     **dict.fromkeys(STEPS, _step),
     **dict.fromkeys((MOD, REM), _rest),
     **dict.fromkeys((MAX, MIN), _choice),
-    **dict.fromkeys(INTEGERS, _integer),
-    **dict.fromkeys(WHOLE, _whole),
+    **dict.fromkeys(INTEGERS | WHOLE, _integer),
     **dict.fromkeys(SMOOTH, _smooth),
     **dict.fromkeys((SQRT, LOG, ASIN, ACOS), _root),
     ABS: _abs,
@@ -309,9 +304,9 @@ _RULES = {
 
 # ------------------------------------------------------------------------------------------------------------------ sizes
 
-FEW_BITS, COUNTED, INFINITE = 1000, 64, math.inf
-"""An integer of fewer bits fits into a float. A sum that grows by one amount in every turn of a loop, however often, has ``COUNTED``
-more bits than the amount."""
+FIXNUM_BITS, FEW_BITS, COUNTED, INFINITE = 62, 1000, 64, math.inf
+"""An integer of fewer than ``FEW_BITS`` bits fits into a float. A sum that grows by one amount in every turn of a loop, however often, has
+``COUNTED`` more bits than the amount."""
 
 
 def bits(node):
@@ -324,7 +319,7 @@ def bits(node):
     if not kind_of(node) & INT:
         return 0
     if kind is nodes.Checked:
-        return 62 if node.type is FIXNUM else bits(node.value)
+        return FIXNUM_BITS if node.type is FIXNUM else bits(node.value)
     if kind is nodes.SetLocal:
         return bits(node.value)
     if kind is nodes.If:
@@ -337,7 +332,7 @@ def bits(node):
     if symbol is TIMES:
         return sum(map(bits, arguments))
     if symbol in SIZES:
-        return 62
+        return FIXNUM_BITS
     if symbol in _NOT_LARGER and exactly(kind_of(node), INT) and all(exactly(kind_of(each), INT) for each in arguments):
         return max(map(bits, arguments))
     return INFINITE
@@ -359,7 +354,7 @@ def _bits_of_variable(variable):
         if not (variable.proven or variable.kind) & INT:
             return 0
         if variable.proven and variable.type is FIXNUM:
-            return 62
+            return FIXNUM_BITS
         variable.bits = INFINITE  # while it is found out: so is a variable that depends on itself otherwise than by steps
         known = variable.bits = _bits_of_values(variable)
     return known

@@ -25,6 +25,7 @@ from ..kinds import (
     DIVIDE,
     DOUBLE,
     FEW_BITS,
+    FIXNUM_BITS,
     FLOATS,
     INT,
     MACHINE,
@@ -66,7 +67,7 @@ INT_CLASS, FLOAT_CLASS, DOUBLE_CLASS = word("Lint"), word("Lfloat"), word("Ldoub
 CLASS, CLASSES, RESULT = word("__class__"), word("Lc"), word("Lr")
 IS, IS_NOT, AND, OR, IF, DOT, SETX = map(word, "is is-not and or if . setx".split())
 MOST_LEAVES, MOST_OPERATIONS = 5, 8
-FIXNUM, FIXNUM_BITS = 1 << 10, 62
+FIXNUM = 1 << 10
 """That what is not known is assumed to be a fixnum, which needs a look at its size as well."""
 
 

@@ -14,16 +14,15 @@ from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.packages import sym
 from .. import nodes
 from ..facts import OPERANDS_OF, find_kinds, walk
-from ..kinds import DIVIDE, DOUBLE, FLOATS, INFINITE, INT, MACHINE, NONE_YET, OTHER, SINGLE, SMOOTH, SQRT, exactly, kind_of
+from .operations import COMPARISONS
+from ..kinds import DIVIDE, DOUBLE, FIXNUM_BITS, FLOATS, INFINITE, INT, MACHINE, NONE_YET, OTHER, SINGLE, SMOOTH, SQRT, exactly, kind_of
 
 WHOLE_ARGUMENTS = {sym(name) for name in "MOD REM EVENP ODDP LOGAND LOGIOR LOGXOR ASH GCD LCM ISQRT".split()}
 INDEXED = {sym(name) for name in "AREF SVREF ELT".split()}
-COMPARISONS = {sym(name) for name in "< > <= >= =".split()}
 MAKE_ARRAY = sym("MAKE-ARRAY")
 LARGEST, FEW, MANY = 500, 4, 12
 """The most nodes of a body that is made twice; the least number of operations in one that is run often, by a loop or by calling itself,
 and in any other one."""
-FIXNUM_BITS = 62
 
 
 def guesses(node):
