@@ -32,9 +32,8 @@ EXCEPT = {
     ("browser/site.py", "write_text"): "as above",
     ("browser/site.py", "copy2"): "as above",
     ("grading/cage/folders.py", "open"): "a folder, to allow it: nothing is written",
-    ("grading/here.py", "write_text"): "the files of a submission, in a folder that goes after it",
     ("grading/nursery.py", "mkdtemp"): "the folder of a submission, which goes after it",
-    ("grading/nursery.py", "write_text"): "as above",
+    ("grading/performing.py", "write_text"): "the files of a submission, in this folder",
     ("grading/tests_inside.py", "write_text"): "as above",
     ("cli/process_environment.py", "open"): "the null device, in place of a stream that is closed",
     (

@@ -11,7 +11,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from .performing import perform
+from .performing import lay_out, perform
 
 
 class Here:
@@ -30,10 +30,7 @@ class Here:
             reports.append(f"{job['nonce']} {json.dumps({'kind': kind, **facts})}")
 
         with tempfile.TemporaryDirectory(prefix="cramhy-") as folder:
-            for name, text in job["files"].items():
-                place = Path(folder, name)
-                place.parent.mkdir(parents=True, exist_ok=True)
-                place.write_text(text, encoding="utf-8", newline="")
+            lay_out(job, folder)
             try:
                 with Image():
                     perform(job, folder, tell)

@@ -133,7 +133,7 @@ def _live(job, folder, telling, printing):
 
 
 def _prepare_to_tell(job, folder, telling, printing):
-    from . import cage
+    from . import cage, performing
 
     os.setsid()
     _die_with_parent()
@@ -147,10 +147,7 @@ def _prepare_to_tell(job, folder, telling, printing):
     os.environ.update(HOME=folder, TMPDIR=folder, PATH="/usr/bin:/bin", LANG="C.UTF-8", CRAMHY_TIME="virtual")
     tempfile.tempdir = folder
     signal.signal(signal.SIGXCPU, signal.SIG_DFL)
-    for name, text in job["files"].items():
-        place = Path(folder, name)
-        place.parent.mkdir(parents=True, exist_ok=True)
-        place.write_text(text, encoding="utf-8", newline="")
+    performing.lay_out(job, folder)
     held = cage.close(folder, job["seconds"], job["megabytes"])
     nonce, write = job["nonce"], os.write
 

@@ -25,6 +25,14 @@ class _Ended(Exception):
     """A step failed, and the failure has been told; what comes after it makes no sense."""
 
 
+def lay_out(job, folder):
+    """Write the files of a job into ``folder``."""
+    for name, text in job["files"].items():
+        place = Path(folder, name)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_text(text, encoding="utf-8", newline="")
+
+
 def perform(job, folder, tell):
     """Do what ``job`` says. folder: where its files are, as text. tell: see above. The last report is "done", unless something was lost."""
     from cramhy_runtime.session.session import Session
