@@ -109,7 +109,8 @@ def main():
                         ratio = line(row, backend, 3 * options.seconds)
                 except Failed as why:
                     print(f"{row.name + ' (' + backend[0] + ')':56} not in both: {why}")
-                    teams.pop(backend, None)
+                    for worker in teams.pop(backend, ()):  # perhaps one of them ended
+                        worker.close()
                     continue
                 if options.fail and ratio > options.fail:
                     slower.append(row.name)

@@ -11,7 +11,7 @@ from pathlib import Path
 from plan_text import plan_text
 from programs import programs
 
-from . import Row
+from . import Row, peers
 
 
 _numbers = itertools.count(os.getpid() * 1000)  # so that each file is new
@@ -30,18 +30,6 @@ def calling(program):
         return work
 
     return prepare
-
-
-def in_sbcl(program):
-    """What SBCL needs for the program's call, in milliseconds, as a text."""
-
-    def told():
-        from lisp_bench import sbcl
-
-        figure = sbcl(program.lisp, program.call, 3)
-        return "" if figure is None else f"SBCL {figure:.2f} ms"
-
-    return told
 
 
 def peer(program):
@@ -75,7 +63,7 @@ def loading(again):
 
 ROWS = [
     *(
-        Row(program.name, calling(program), 1, program.goal, "times", times=peer(program), others=in_sbcl(program))
+        Row(program.name, calling(program), 1, program.goal, "times", times=peer(program), others=peers.sbcl(program))
         for program in programs()
     ),
     Row("400 lines of plans read and compiled", loading(False), 1, unit="ms", slow=True),

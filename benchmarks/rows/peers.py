@@ -6,7 +6,9 @@ Each function gives a text, or "" where its library is missing. ``make bench`` i
 from __future__ import annotations
 
 import functools
+import shutil
 import statistics
+import subprocess
 import time
 
 
@@ -124,5 +126,27 @@ def swi(goal):
     def told():
         rate = _swi().get(goal)
         return f"SWI {1e6 / rate:,.1f} us" if rate else ""
+
+    return told
+
+
+def sbcl(program):
+    """A function that tells what SBCL needs for the call of one of ``programs``, the least of three times."""
+
+    def told():
+        if not shutil.which("sbcl"):
+            return "sbcl is not installed"
+        text = f"""(progn (declaim (sb-ext:muffle-conditions warning compiler-note)) {program.lisp}
+(let ((best nil) (inner 200))
+  (dotimes (i 3)
+    (let ((before (get-internal-run-time)))
+      (dotimes (k inner) {program.call})
+      (let ((used (- (get-internal-run-time) before))) (when (or (null best) (< used best)) (setq best used)))))
+  (format t "~f" (/ best internal-time-units-per-second inner 0.001))))"""
+        done = subprocess.run(["sbcl", "--noinform", "--non-interactive", "--eval", text], capture_output=True, text=True)
+        try:
+            return f"SBCL {float(done.stdout.split()[-1]):.3f} ms"
+        except (ValueError, IndexError):
+            return ""
 
     return told
