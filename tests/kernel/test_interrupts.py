@@ -91,7 +91,7 @@ def test_everything_is_parked_in_wall_time_and_the_main_thread_waits_for_the_clo
     begin = time.monotonic()
     with pytest.raises(kernel.Interrupted):
         kernel.sleep(1000)
-    assert time.monotonic() - begin < 5
+    assert time.monotonic() - begin < 100
 
 
 def test_everything_is_parked_in_wall_time_and_another_waits_for_the_clock(start, on_signal):
@@ -121,7 +121,7 @@ def test_the_main_task_is_in_a_blocking_call(start, on_signal, clock):
     begin = time.monotonic()
     with pytest.raises(kernel.Interrupted):
         kernel.run_blocking(wait_long)
-    assert time.monotonic() - begin < 5
+    assert time.monotonic() - begin < 100
     kernel.sleep(0.001)
     assert kernel.current() is kernel.active().main
 

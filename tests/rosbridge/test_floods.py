@@ -142,7 +142,7 @@ def test_too_many_clients_are_refused_and_the_others_stay(serve, outside):
         )
         assert all(wire.call("/rosapi/get_ros_version")["result"] for wire in wires)
         wires.pop().socket.close()
-        deadline = time.monotonic() + 20
+        deadline = time.monotonic() + 100
         while True:
             try:
                 Wire(server.address)
@@ -161,7 +161,7 @@ def test_connections_that_say_nothing_do_not_use_up_the_server(serve, outside):
         with Wire(server.address) as wire:
             assert wire.call("/clear")["result"]
         for each in silent:
-            each.settimeout(20)
+            each.settimeout(100)
             try:
                 assert each.recv(1) == b""
             except ConnectionResetError:

@@ -59,9 +59,9 @@ kept = [driving("one"), driving("two")]
 send({number})
 began = time.monotonic()
 try:
-    time.sleep(20)
+    time.sleep(200)
 finally:
-    print("at once" if time.monotonic() - began < 10 else "late", flush=True)
+    print("at once" if time.monotonic() - began < 100 else "late", flush=True)
 """,
         number,
     )
