@@ -86,6 +86,18 @@ def aside() -> Iterator[None]:
         budget.renew()
 
 
+@contextmanager
+def time_limited(seconds: float) -> Iterator[None]:
+    """Let the active kernel have this time limit during the block, counted from now (see `start`). Then its own counts again."""
+    kernel = ACTIVE.value or _none()
+    before = kernel.time_limit, kernel._limit
+    kernel.time_limit, kernel._limit = seconds, kernel.now() + seconds
+    try:
+        yield
+    finally:
+        kernel.time_limit, kernel._limit = before
+
+
 _idle: Cell[Kernel | None] = Cell(None, fresh=True)
 
 
