@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import re
 
 import pytest
 
 from cramhy_runtime.course import contents, reading
 
-from .walking import Walk, solution
+from .walking import Walk
 
 WRONG = [
     # task, language, what stands in the solution, what stands there instead

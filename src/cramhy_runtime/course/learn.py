@@ -184,10 +184,12 @@ def _in_work_folder(way, top):
     if place is None:
         yield
         return
+    sys.path.insert(0, str(place))
     try:
         yield
     finally:
         os.chdir(before)
+        sys.path.remove(str(place))
         for name, module in list(sys.modules.items()):
             places = [getattr(module, "__file__", None), *getattr(module, "__path__", [])]
             if any(str(each).startswith(f"{place}{os.sep}") for each in places):

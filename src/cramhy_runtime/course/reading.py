@@ -7,8 +7,9 @@ a block with ``title="NAME"``                    a file (`File`)
 ``<!-- task: NAME`` TOML ``-->``                 below a heading: the rest, up to the next heading, is a `Task`; the TOML has its checks
 a block with ``title="Begin with"``              in a task: the code to begin with
 ``<details><summary>Hint</summary>`` ...         in a task: a hint
-``<!-- installed -->`` ... ``<!-- anywhere -->``  what only concerns those who read the page beside their own terminal; the course leaves
-                                                 it out
+``<!-- installed -->`` ... ``<!-- anywhere -->``  what only concerns those who read the page beside a terminal of their own; the course
+                                                 leaves it out
+``<!-- in the course`` ... ``-->``               text that the course has in its place
 ===============================================  ==========================================================================
 
 All else is text.
@@ -28,6 +29,7 @@ START = "Begin with"
 FENCE = re.compile(r"^```(\w*)(?: title=\"(.*?)\")?\n(.*?)^```$", re.M | re.S)
 PROMPT = re.compile(r"^(?:[A-Z][A-Z-]*> |\d+\] |=> )", re.M)
 _APART = re.compile(r"^<!-- installed -->$.*?^<!-- anywhere -->$\n?", re.M | re.S)
+_INSTEAD = re.compile(r"^<!-- in the course\n(.*?)^-->$\n?", re.M | re.S)
 _TABS = re.compile(r"^<!-- tabs -->\s*\Z", re.M)
 _TASK = re.compile(
     r"^#+ (?:Task: )?(?P<title>[^\n]*)\n+<!-- task: (?P<name>[\w-]+)\n(?P<toml>.*?)^-->$\n(?P<body>.*?)(?=^#+ |\Z)", re.M | re.S
@@ -55,7 +57,7 @@ def page(name: str) -> Page:
 
 def read(name: str, text: str) -> Page:
     """The page of a text. Raises `PageError`."""
-    title, text = _title(name, _APART.sub("", text))
+    title, text = _title(name, _INSTEAD.sub(r"\1", _APART.sub("", text)))
     parts: list[Part] = []
     end = 0
     for match in _TASK.finditer(_without_code(text)):

@@ -8,6 +8,7 @@ as they are.
 from __future__ import annotations
 
 import json
+import re
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -27,6 +28,10 @@ from .told import Told
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+_MISSING = re.compile(
+    r"(?P<form>\(.*) ended with an error:\n\s*(?:The function (?P<lisp>\S+) is undefined|name '(?P<hy>\S+)' is not defined$)", re.S
+)
+"""The report of a form with a function that may not be there."""
 NO_TURTLE = "There is no turtle yet. Start it as the page says, and check again."
 
 
@@ -51,19 +56,20 @@ class _Evaluator:
 def faults(title: str, tables: list[dict[str, Any]], evaluate: Callable[[str], list[Any]]) -> list[str]:
     """What is wrong, as sentences for the student; nothing if all checks pass.
 
-    title: of the exercise. tables: its checks, as below ``[[check]]``. evaluate: gives the values of a text's last form, in the language
-    of the checks. Raises `ExerciseError`.
+    title: of the exercise. tables: its checks, as below ``[[check]]``; ``say`` takes the place of all that would be told of a check.
+    evaluate: gives the values of a text's last form, in the language of the checks. Raises `ExerciseError`, and `Interruption` after
+    Ctrl-C.
     """
     looks, others = [table for table in tables if _looks(table)], [table for table in tables if not _looks(table)]
     wrong = [sentence for table in looks for sentence in _as_it_is(table)]
     if wrong or not others:
         return wrong
-    exercise = of_checks(title, others)
-    for check in exercise.checks:
+    exercise = of_checks(title, [{key: value for key, value in table.items() if key != "say"} for table in others])
+    for check, table in zip(exercise.checks, others):
         for seed in range(1, check.seeds + 1):
             wrong = _tried(exercise, check, seed, evaluate)
             if wrong:
-                return [*wrong, *([check.table["hint"]] if "hint" in check.table else [])]
+                return [table["say"]] if "say" in table else [*wrong, *([table["hint"]] if "hint" in table else [])]
     return []
 
 
@@ -113,7 +119,18 @@ def _tried(exercise: Exercise, check: Check, seed: int, evaluate):
     told = Told(reports, work["nonce"])
     if told.error and told.doing == "before":
         return [f"{told.what} cannot be used:\n{told.error['text']}"]
-    return judging.of_answers(check, work, values, told) if check.kind == "ask" else judging.of_run(check, work, values, told)
+    wrong = judging.of_answers(check, work, values, told) if check.kind == "ask" else judging.of_run(check, work, values, told)
+    return [_plainer(sentence) for sentence in wrong]
+
+
+def _plainer(sentence):
+    """A sentence for a student who has not defined the function yet; any other ``sentence`` as it is."""
+    match = _MISSING.match(sentence)
+    if match is None:
+        return sentence
+    missing = (match["hy"] or match["lisp"].rpartition(":")[2]).lower().replace("_", "-")
+    called = re.search(rf"\({re.escape(missing)}[\s)]", match["form"].lower().replace("_", "-"))
+    return sentence if called is None else f"There is no function {missing} yet."
 
 
 # ------------------------------------------------------------------------------------------------------------------- as it is

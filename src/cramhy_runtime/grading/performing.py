@@ -143,11 +143,16 @@ def _described(problem):
         return {"types": ["TIME-LIMIT"], "text": ""}
     condition = condition_of(problem)
     names = []
-    for kind in type(condition).__mro__:
+    kinds = type(condition).__mro__
+    for kind in kinds:
         try:
-            names.append(str(getattr(class_name(kind), "name", kind.__name__)).upper())
+            name = str(getattr(class_name(kind), "name", kind.__name__)).upper()
         except Exception:  # a class of Python alone
-            names.append(kind.__name__.upper())
+            name = kind.__name__.upper()
+        names.append(name)
+    for place, (name, above) in enumerate(zip(names, names[1:])):
+        if name == above:  # a class of the student's in Python or Hy, which has no name in Lisp but that of its parent
+            names[place] = kinds[place].__name__.upper()
     return {"types": names[:30], "text": explanation(condition)[:MOST_TEXT]}
 
 
