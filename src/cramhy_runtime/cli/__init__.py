@@ -29,8 +29,10 @@ def session(options, closings, opened=True):
     from cramhy_runtime.languages.commonlisp.tools import backtrace
     from cramhy_runtime.repl.session import Session
     from cramhy_runtime.session import time_setting
+    from cramhy_runtime.session.session import packages_above
     from .options import DEFAULT_TIMES
 
+    packages_above["COURSE"] = _define_course
     backtrace.show(options.backtrace)
     check_for_session(options.backend)
     made = Session(
@@ -73,6 +75,12 @@ def session(options, closings, opened=True):
     elif options.command != "run":
         evaluate_forms(made, options.forms)
     return made
+
+
+def _define_course():
+    from cramhy_runtime.course import package
+
+    package.define()
 
 
 def offer_swank(made, port):

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import sys
+
 from cramhy_runtime.grading import in_session
+from cramhy_runtime.ground.packages import near_names
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 from .parts import Task
@@ -20,7 +23,8 @@ def task(name: str) -> Task:
     """The task of that name. Raises `PageError`."""
     tasks = {each.name: each for page in pages() for each in page.tasks}
     if name not in tasks:
-        raise PageError(f"There is no task {name}. There are {', '.join(tasks)}.")
+        near = near_names(name, tasks)
+        raise PageError(f"There is no task {name}. " + (f"Did you mean {near[0]}?" if near else f"There are {', '.join(tasks)}."))
     return tasks[name]
 
 
@@ -57,12 +61,13 @@ def _lisp_evaluator(session):
 
 
 def _hy_evaluator():
-    import sys
+    from cramhy_runtime.jupyter.cells import MODULE
 
-    for name in ("__console__", "__main__"):
-        if hasattr(sys.modules.get(name), "_hy_repl"):
-            return hy_evaluator(sys.modules[name])
-    raise PageError("There is no prompt of Hy in which something could have been typed.")
+    for name in (MODULE, "__console__", "__main__"):
+        module = sys.modules.get(name)
+        if module is not None and (name == MODULE or hasattr(module, "_hy_repl")):
+            return hy_evaluator(module)
+    raise PageError("Nothing was typed in Hy: there is no prompt of Hy, and no cell.")
 
 
 def hy_evaluator(module: Any) -> Callable[[str], list[Any]]:

@@ -31,9 +31,11 @@ PROMPT = re.compile(r"^(?:[A-Z][A-Z-]*> |\d+\] |=> )", re.M)
 _APART = re.compile(r"^<!-- installed -->$.*?^<!-- anywhere -->$\n?", re.M | re.S)
 _INSTEAD = re.compile(r"^<!-- in the course\n(.*?)^-->$\n?", re.M | re.S)
 _TABS = re.compile(r"^<!-- tabs -->\s*\Z", re.M)
-_TASK = re.compile(
-    r"^#+ (?:Task: )?(?P<title>[^\n]*)\n+<!-- task: (?P<name>[\w-]+)\n(?P<toml>.*?)^-->$\n(?P<body>.*?)(?=^#+ |\Z)", re.M | re.S
+TASK = re.compile(
+    r"^#+ (?:Task: )?(?P<title>[^\n]*)\n+(?P<comment><!-- task: (?P<name>[\w-]+)\n(?P<toml>.*?)^-->$\n)(?P<body>.*?)(?=^#+ |\Z)",
+    re.M | re.S,
 )
+"""A task, in the text of a page in which code is blank."""
 _HINT = re.compile(r"^<details><summary>[^\n]*</summary>\n(.*?)^</details>$\n?", re.M | re.S)
 
 
@@ -60,7 +62,7 @@ def read(name: str, text: str) -> Page:
     title, text = _title(name, _INSTEAD.sub(r"\1", _APART.sub("", text)))
     parts: list[Part] = []
     end = 0
-    for match in _TASK.finditer(_without_code(text)):
+    for match in TASK.finditer(_without_code(text)):
         parts += _parts(text[end : match.start()])
         parts.append(_task(name, match["title"], match["name"], text[slice(*match.span("toml"))], text[slice(*match.span("body"))]))
         end = match.end()

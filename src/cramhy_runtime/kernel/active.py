@@ -14,7 +14,7 @@ from . import images, signals
 from .budget import budget
 from .clocks import make_clock
 from .endings import CLEANUP_LIMIT
-from .errors import KernelError, Terminated
+from .errors import KernelError, Terminated, TimeLimit
 from .images import Cell
 from .throttle import Pace, TimeWanted
 from .scheduler import Kernel
@@ -88,14 +88,17 @@ def aside() -> Iterator[None]:
 
 @contextmanager
 def time_limited(seconds: float) -> Iterator[None]:
-    """Let the active kernel have this time limit during the block, counted from now (see `start`). Then its own counts again."""
-    kernel = ACTIVE.value or _none()
-    before = kernel.time_limit, kernel._limit
-    kernel.time_limit, kernel._limit = seconds, kernel.now() + seconds
+    """Raise `TimeLimit` in the current task after ``seconds``, unless the block is over by then. Cleanup in the block gets as long again.
+
+    The limit of `start` ends the main task; this one ends any task. A task that computes is not disturbed, only one that waits.
+    """
+    task = current()
+    limit = TimeLimit(f"It took longer than {seconds:g} s.")
+    timer = call_every(seconds, lambda: task.end_wait(limit))
     try:
         yield
     finally:
-        kernel.time_limit, kernel._limit = before
+        timer.cancel()
 
 
 _idle: Cell[Kernel | None] = Cell(None, fresh=True)
