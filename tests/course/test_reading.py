@@ -82,6 +82,8 @@ Two.
 
 </details>
 
+Behind the task.
+
 ## And then
 
 The end.
@@ -103,7 +105,7 @@ def test_the_parts_of_a_page():
     assert task == Task(
         "do-it", "Do it", "Do it.", {"lisp": "(defun f () 0)\n", "hy": "(defn f [] 0)\n"}, ("One.", "Two."), ({"ask": [["(f)", "1"]]},)
     )
-    assert end == Text("## And then\n\nThe end.")
+    assert end == Text("Behind the task.\n\n## And then\n\nThe end.")
 
 
 def test_two_blocks_of_one_language_are_two_parts():
