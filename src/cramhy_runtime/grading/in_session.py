@@ -76,17 +76,20 @@ def faults(title: str, tables: list[dict[str, Any]], evaluate: Callable[[str], l
 
 @contextmanager
 def _fast():
-    """In the block virtual time passes as fast as the machine computes."""
+    """In the block virtual time passes as fast as the machine computes, though a page has slowed it down or paused it."""
     pace = kernel.pace()
-    speed = pace.speed
-    if not pace.virtual or speed is None:
+    speed, paused = pace.speed, pace.paused
+    if not pace.virtual:
         yield
         return
     pace.set_speed(None)
+    pace.resume()
     try:
         yield
     finally:
         pace.set_speed(speed)
+        if paused:
+            pace.pause()
 
 
 def _looks(table):
