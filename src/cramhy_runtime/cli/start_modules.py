@@ -16,7 +16,7 @@ import marshal
 import os
 import struct
 import sys
-from importlib.machinery import SourceFileLoader
+from importlib.machinery import ModuleSpec, SourceFileLoader
 from pathlib import Path
 
 import cramhy_runtime
@@ -24,7 +24,7 @@ from cramhy_runtime.storage.checksummed_code import Unusable, trusted_bytes
 from cramhy_runtime.storage.kept_files import keep as keep_file
 from cramhy_runtime.storage.kept_files import kept_path
 
-FIRST_LINE = b"# cramhy start modules 1\n"
+FIRST_LINE = b"# cramhy start modules 2\n"
 _PACKAGE = cramhy_runtime.__name__
 _HEADER = 16  # bytes before the code in a file of bytecode
 
@@ -44,7 +44,8 @@ class _Loader(SourceFileLoader):
 class Finder:
     """Finds the modules of cramhy that are kept. Python asks it first, as one of ``sys.meta_path``.
 
-    root: the folder of cramhy's package. modules: name → (path of the source below ``root``, the file of bytecode).
+    root: the folder of cramhy's package. modules: name → (path of the source below ``root``, where Python keeps its bytecode, the bytes
+    that are there).
     """
 
     def __init__(self, root, modules):
@@ -55,18 +56,19 @@ class Finder:
         kept = self.modules.get(name)
         if kept is None:
             return None
-        place, bytecode = kept
-        origin = os.path.join(self.root, place)
+        place, cached, bytecode = kept
+        origin = f"{self.root}{os.sep}{place}"
         try:
             if bytecode[:_HEADER] != _header(os.stat(origin)):
                 raise FileNotFoundError
         except OSError:
             self.outdated = True
             return None
-        inside = [os.path.dirname(origin)] if place.endswith("__init__.py") else None
-        return importlib.util.spec_from_file_location(
-            name, origin, loader=_Loader(name, origin, bytecode), submodule_search_locations=inside
-        )
+        spec = ModuleSpec(name, _Loader(name, origin, bytecode), origin=origin)
+        spec.has_location, spec.cached = True, cached  # Python would put the second together anew
+        if place.endswith("__init__.py"):
+            spec.submodule_search_locations = [os.path.dirname(origin)]
+        return spec
 
 
 def _header(status):
@@ -88,7 +90,7 @@ def _source():
 
 
 def _maker(root):
-    return f"{sys.version} {sys.flags.optimize} {root}"
+    return f"{sys.version} {sys.flags.optimize} {sys.pycache_prefix} {root}"
 
 
 def install():
@@ -132,7 +134,7 @@ def keep():
 
 
 def _bytecode(finder, name):
-    """What is kept of the module ``name``: the path of its source, and its bytecode as Python has written it; ``None`` if there is none."""
+    """What is kept of the module ``name`` (see `Finder`), with its bytecode as Python has written it; ``None`` if there is none."""
     module = sys.modules.get(name)
     if module is None:
         return finder.modules.get(name)  # of another command
@@ -140,7 +142,7 @@ def _bytecode(finder, name):
     try:
         bytecode = Path(spec.cached).read_bytes()
         if isinstance(spec.loader, SourceFileLoader) and bytecode[:_HEADER] == _header(os.stat(spec.origin)):
-            return os.path.relpath(spec.origin, finder.root), bytecode
+            return os.path.relpath(spec.origin, finder.root), spec.cached, bytecode
     except (OSError, TypeError, ValueError, AttributeError):
         pass
     return None
