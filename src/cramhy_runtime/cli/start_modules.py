@@ -24,7 +24,7 @@ from cramhy_runtime.storage.checksummed_code import Unusable, trusted_bytes
 from cramhy_runtime.storage.kept_files import keep as keep_file
 from cramhy_runtime.storage.kept_files import kept_path
 
-FIRST_LINE = b"# cramhy start modules 2\n"
+FIRST_LINE = b"# cramhy start modules 3\n"
 _PACKAGE = cramhy_runtime.__name__
 _HEADER = 16  # bytes before the code in a file of bytecode
 
@@ -37,7 +37,7 @@ class _Loader(SourceFileLoader):
         self._bytecode = bytecode
 
     def get_code(self, fullname):
-        code, self._bytecode = marshal.loads(memoryview(self._bytecode)[_HEADER:]), None
+        code, self._bytecode = marshal.loads(self._bytecode[_HEADER:]), None
         return code
 
 
@@ -104,13 +104,12 @@ def install():
 
 def _read(root):
     try:
-        data = trusted_bytes(kept_path(_source()))
-        begin = len(FIRST_LINE) + 8
-        content = memoryview(data)[begin:]
-        if data.startswith(FIRST_LINE) and len(content) == int.from_bytes(data[begin - 8 : begin], "little"):
-            maker, modules = marshal.loads(content)
+        data = memoryview(trusted_bytes(kept_path(_source()), mapped=True))
+        begin, end = len(FIRST_LINE) + 8, len(data)
+        if data[: begin - 8] == FIRST_LINE and end - begin == int.from_bytes(data[begin - 8 : begin], "little"):
+            maker, index = marshal.loads(data[begin:])
             if maker == _maker(root):
-                return modules
+                return {name: (place, cached, data[end - start : end - stop]) for name, (place, cached, start, stop) in index.items()}
     except (Unusable, OSError, ValueError, EOFError, TypeError):
         pass
     return {}
@@ -149,7 +148,12 @@ def _bytecode(finder, name):
 
 
 def _written(root, modules):
-    content = marshal.dumps((_maker(root), modules))
+    """The file. An index tells of each module where its bytecode begins and ends, counted from the end of the file."""
+    left, index = sum(len(bytecode) for _, _, bytecode in modules.values()), {}
+    for name, (place, cached, bytecode) in modules.items():
+        index[name] = place, cached, left, left - len(bytecode)
+        left -= len(bytecode)
+    content = marshal.dumps((_maker(root), index)) + b"".join([bytecode for _, _, bytecode in modules.values()])
     return FIRST_LINE + len(content).to_bytes(8, "little") + content
 
 
