@@ -5,8 +5,8 @@ half of the time that a session takes to start. `install` lets Python find the m
 the bytecode that Python itself would have read, and is used under the same condition: the source has still the date and the size that
 stand in it. All else is as ever: each module has its own file, loader and text.
 
-`note` says that the start is over: those modules are kept that are there by then. `keep` writes them, when the session ends, if the file
-lacks one of them. A file that is cut off, or was made by another Python, is as good as none.
+`note` says that the start is over, or how far it is: those modules are kept that are there by then. `keep` writes them, when the session
+ends, if the file lacks one of them. A file that is cut off, or was made by another Python, is as good as none.
 """
 
 from __future__ import annotations
@@ -115,10 +115,11 @@ def _read(root):
     return {}
 
 
-def note():
-    """The session has started."""
-    if _Start.finder is not None and _Start.wanted is None:
-        sys.meta_path.remove(_Start.finder)  # what comes later is not in the file
+def note(over=True):
+    """The session has started. over: whether it has all that it starts with."""
+    if _Start.finder in sys.meta_path:
+        if over:
+            sys.meta_path.remove(_Start.finder)  # what comes later is not in the file
         _Start.wanted = [name for name in sys.modules if name.startswith(f"{_PACKAGE}.")]
 
 
