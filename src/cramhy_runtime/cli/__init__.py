@@ -145,12 +145,12 @@ def _main(arguments):
 
         words = arguments or ["repl"]  # what Emacs types for a Lisp: its name alone
         options = parser(words).parse_args(words)
-        if hasattr(options, "time") and (complaint := _wrong_time()):
-            print(f"cramhy: {complaint}", file=sys.stderr)
-            return 2
         if options.command in DEFAULT_TIMES:
             start_modules.install()
             gc.disable()  # looking for garbage takes a twelfth of the time that a session takes to start, and there is none
+        if hasattr(options, "time") and (complaint := _wrong_time()):
+            print(f"cramhy: {complaint}", file=sys.stderr)
+            return 2
         return globals()[f"_{options.command.replace('-', '_')}"](options) or 0
     except Terminated as ended:
         return ended.code
