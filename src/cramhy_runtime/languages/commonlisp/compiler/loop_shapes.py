@@ -176,7 +176,16 @@ def _reads(statements, variable):
     return sum(item.__class__ is nodes.LocalVariable and item.variable is variable for item in walk(statements))
 
 
-_CALLS = (nodes.CallLocal, nodes.CallValue, nodes.CallSetf, nodes.CallSpread, nodes.Support, nodes.UnwindProtect, nodes.Catching)
+_CALLS = (
+    nodes.CallLocal,
+    nodes.CallValue,
+    nodes.CallSetf,
+    nodes.CallSpread,
+    nodes.Support,
+    nodes.UnwindProtect,
+    nodes.Catching,
+    nodes.Handling,
+)
 
 
 def _quick(statements):
