@@ -10,18 +10,20 @@ Exits are in ``generate_exits.py``, function definitions in ``generate_functions
 from __future__ import annotations
 
 from cramhy_runtime.ground.data import DoubleFloat, Symbol, UndefinedFunction
+from cramhy_runtime.ground.dispatch.reached_slots import written_attribute
 from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym
 from . import core, nodes
 from .constants import Constants, float_model
 from .core import expression, word
 from .destinations import EFFECT, FIRST_OF_VALUES, NONE, RAW, TRUE, VALUE, VALUES, Destination
 from .facts import study, walk
-from .generate_calls import CallGenerator, written_attribute
+from .generate_calls import CallGenerator
 from .generate_exits import ERROR, ExitGenerator
 from .generate_functions import FunctionGenerator
 from .arithmetic.functions import NUMBER_FUNCTIONS
 from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS, OperatorGenerator
 from .generate_texts import TextGenerator
+from .loop_shapes import CHANGES
 from .kinds import BOOLEAN, MAX, MIN, MINUS, OPERATORS, PI, PLUS, STEPS, THING, WHOLE, kind_of
 
 
@@ -282,6 +284,8 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
                 return self.finish(model, nodes.Constant(None), destination)
         if symbol is ERROR and self.cases and self.cases[-1][-1] is self.scope and arguments and self.standard(symbol):
             return self.error_in_case(node, arguments, destination)
+        if symbol in CHANGES and len(arguments) == 2 and self.standard(symbol):
+            return self.by_statements(node, destination, lambda inner: self.pushed(node, arguments, inner))
         if symbol is FORMAT:
             model = self.text(node, arguments)
             if model is not None:

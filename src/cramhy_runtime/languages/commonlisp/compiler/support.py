@@ -354,6 +354,7 @@ NAMESPACE = {
     "Lceil": math.ceil,
     "Lfloor": math.floor,
     "Lvector": list,
+    "Lany_vector": Vector,
     **{f"L{name}": getattr(math, name) for name in "sin cos tan atan exp sqrt log asin acos".split()},
     "Lwrapped": wrapped,
     "Lunwrapped": unwrapped,
