@@ -437,7 +437,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
             return true if not kind & THING else expression(word("and"), true, expression(word("is-not"), value, word("False")))
         model = self.gen(node, FIRST_OF_VALUES)
         if model.__class__ is not core.Expression:
-            return self.call("truth", model)
+            return self.call("truth", model if node.single else self.call("one", model))
         value = word("Lv")
         true = [expression(word("is-not"), expression(word("setx"), value, model), NONE), expression(word("is-not"), value, word("False"))]
         if not node.single:
