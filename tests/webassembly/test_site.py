@@ -6,6 +6,7 @@ Making the site takes half a minute of the processor, so `make soak` runs these;
 from __future__ import annotations
 
 import contextlib
+import gzip
 import os
 import re
 import signal
@@ -186,6 +187,25 @@ def test_the_site_is_of_one_origin_and_without_inline_code(made):
     assert re.findall(r'(?:src|href)="(?:https?:)?//', index) == []
     listed = set(re.findall(r'^ "([^"]+)": "[0-9a-f]{16}"', (made / "offline.js").read_text(encoding="utf-8"), re.M))
     assert listed == {file.relative_to(made).as_posix() for file in made.rglob("*") if file.is_file()} - {"offline.js"}
+
+
+@takes_long
+def test_the_first_visit_fetches_less_than_nine_megabytes_from_a_host_that_packs_nothing_or_only_texts(made):
+    texts = (".js", ".mjs", ".css", ".html", ".json", ".svg")
+    sizes = {file: (file.stat().st_size, len(gzip.compress(file.read_bytes()))) for file in made.rglob("*") if file.is_file()}
+    assert sum(packed if file.suffix in texts else plain for file, (plain, packed) in sizes.items()) < 9_000_000
+    assert sum(plain for plain, _ in sizes.values()) < 10_500_000
+
+
+@takes_long
+def test_what_is_not_in_a_tab_is_told_and_what_programs_use_of_pythons_library_is_there(visit):
+    page, _ = visit
+    assert enter(page, '(py:call "statistics.mean" (list 1 2 3))').splitlines()[-1] == "2"
+    told = enter(page, '(ros-load:load-system "cram-location-costmap")')
+    assert "cramhy_runtime.robot_world.costmaps is not there in a browser's tab: it needs MuJoCo or numpy" in told
+    page.locator("#repl-in").fill("0")
+    page.locator("#repl-in").press("Enter")
+    wait_for_prompt(page)
 
 
 # ---------------------------------------------------------------------------------------------------------------- the command

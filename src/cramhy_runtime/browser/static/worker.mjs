@@ -1,6 +1,7 @@
 // The worker of a tab: Python, a session in it, and its two connections with the page. By postMessage go the prompt's lines, what is
 // printed, and Ctrl-C; by a port of its own go the operations of rosbridge, for the views.
 
+import { packages } from "./unpacking.mjs";
 import { loadPyodide } from "./pyodide/pyodide.mjs";
 import { host } from "./stacks.mjs";
 
@@ -87,16 +88,8 @@ function restored() {
   });
 }
 
-async function unpacked(path) {
-  const answer = await fetch(path);
-  if (!answer.ok) throw new Error(`${path} cannot be fetched (${answer.status})`);
-  const bytes = new Uint8Array(await answer.arrayBuffer());
-  if (bytes[0] !== 0x1f || bytes[1] !== 0x8b) return bytes; // a host has said that gzip is its encoding, and the browser has unpacked it
-  return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer());
-}
-
 async function begin() {
-  const packages = unpacked("./cramhy.tar.gz");
+  const unpack = packages("./packages.zst");
   python = await loadPyodide({ env: { HOME, PYTHONHASHSEED: "0", ROS_PACKAGE_PATH: `${PACKAGES}/cramhy_runtime/tutorials` } });
   tell("python");
   const decoder = new TextDecoder();
@@ -110,15 +103,14 @@ async function begin() {
   python.setStdout(out);
   python.setStderr(out);
   python.registerJsModule("cramhy_host", { host });
-  python.FS.writeFile("/tmp/cramhy.tar", await packages);
+  await unpack(python);
   await restored();
   const speed = new URLSearchParams(location.search).get("speed");
   const main = python.runPython(`
-import os, tarfile
-with tarfile.open("/tmp/cramhy.tar") as archive:  # by Python's own, which keeps the times: compiled Lisp is stamped with them
-    archive.extractall("${PACKAGES}", filter="fully_trusted")
-os.remove("/tmp/cramhy.tar")
+import os
 os.chdir("${HOME}")
+from cramhy_runtime.browser import left_out
+left_out.install()
 from cramhy_runtime.browser.tab import main
 main`);
   tell("imported");
