@@ -1,16 +1,17 @@
 """Random programs mean the same to the compiler and to an interpreter of a page.
 
-The programs mix binding, assignment, closures, loops, local functions and exits in all nestings, also in argument position,
+The programs mix binding, assignment, closures, loops, local functions, exits and handlers in all nestings, also in argument position,
 where the compiler must save what was evaluated before. The interpreter below follows the standard and knows nothing of Python's
 statements, so it cannot make the compiler's mistakes.
 """
 
 from __future__ import annotations
 
-import os
+from systems import SOAK
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import Cons
 from cramhy_runtime.repl.session import Session
 
@@ -18,13 +19,13 @@ from cramhy_runtime.repl.session import Session
 
 
 class Names:
-    """What is in scope: variables, blocks, functions of one argument, catch tags."""
+    """What is in scope: variables, blocks, functions of one argument, catch tags, operators that signal what is handled around."""
 
-    def __init__(self, variables=(), blocks=(), functions=(), tags=()):
-        self.variables, self.blocks, self.functions, self.tags = variables, blocks, functions, tags
+    def __init__(self, variables=(), blocks=(), functions=(), tags=(), signals=()):
+        self.variables, self.blocks, self.functions, self.tags, self.signals = variables, blocks, functions, tags, signals
 
     def plus(self, **more):
-        fields = {name: getattr(self, name) for name in ("variables", "blocks", "functions", "tags")}
+        fields = {name: getattr(self, name) for name in ("variables", "blocks", "functions", "tags", "signals")}
         return Names(**{name: (*value, *more.get(name, ())) for name, value in fields.items()})
 
 
@@ -46,8 +47,9 @@ def programs(draw, names=Names(), depth=4):
         kinds = (
             simple
             + """+ + list progn if let let let* dotimes dolist block block flet labels lambda unwind-protect catch when and
-            or remember values tagbody < do""".split()
+            or remember values tagbody < do handler-case handler-case handler-bind ignore-errors""".split()
         )
+        kinds += ["signal"] * 4 * bool(names.signals)
         kinds += ["setq"] * 4 * bool(names.variables) + ["return-from"] * 3 * bool(names.blocks)
         kinds += ["call"] * 2 * bool(names.functions) + ["throw"] * bool(names.tags)
         kind = draw(st.sampled_from(kinds))
@@ -106,12 +108,33 @@ def programs(draw, names=Names(), depth=4):
             return ("push", ("lambda", (), draw(programs(Names(names.variables, (), (), ()), depth - 1))), "closures")
         case "values":
             return ("multiple-value-bind", (new, "d"), ("values", *body()), *body(names.plus(variables=(new, "d"))))
+        case "handler-case":
+            types = draw(st.lists(st.sampled_from(list(CONDITIONS)), min_size=1, max_size=3, unique=True))
+            form = expression(names.plus(signals=("error", "signal", "fails") if "trouble" in types else ()))
+            return ("handler-case", form, *(handler(type_, new, body(names.plus(variables=(new,)))) for type_ in types))
+        case "ignore-errors":
+            return ("ignore-errors", *body(names.plus(signals=("error", "signal", "fails"))))
+        case "handler-bind":
+            types = draw(st.lists(st.sampled_from(list(CONDITIONS)), min_size=1, max_size=2))
+            function = [("lambda", *handler(type_, new, body(names.plus(variables=(new,))))[1:]) for type_ in types]
+            return ("handler-bind", tuple(zip(types, function)), *body(names.plus(signals=("signal",))))
+        case "signal":
+            return (draw(st.sampled_from(names.signals)), ("quote", draw(st.sampled_from(list(CONDITIONS)))), ":value", expression())
         case "tagbody":
             step = ("setq", "e", ("+", "e", 1))
             back = ("if", ("<", "e", draw(st.integers(0, 4))), ("go", "again"))
             onward = ("if", expression(), ("funcall", ("lambda", (), ("go", "end"))))
             parts = (step, *statements(), "again", step, *statements(), back, onward, *statements(), "end")
             return ("let", (("e", 0),), ("tagbody", *parts), "e")
+
+
+CONDITIONS = {"trouble": ("trouble",), "small-trouble": ("small-trouble", "trouble"), "other-trouble": ("other-trouble", "trouble")}
+"""The classes of conditions of the programs, each with those that are above it."""
+
+
+def handler(type_, variable, forms):
+    """A clause of ``handler-case``, in which ``variable`` is the value in the condition."""
+    return (type_, ("c",), ("let", ((variable, ("value-of", "c")),), *forms))
 
 
 # --------------------------------------------------------------------------------------------------------- the interpreter
@@ -129,7 +152,7 @@ class Go(Exit):
 def run(form, env):
     """The value of ``form``; ``env`` maps ("variable" | "block" | "function" | "tag", name) to cells, tokens or functions."""
     if isinstance(form, str):
-        return None if form == "nil" else env["variable", form][0]
+        return None if form == "nil" else form if form[0] == ":" else env["variable", form][0]
     if not isinstance(form, tuple):
         return form
     return first(values(form, env))
@@ -162,6 +185,39 @@ def exits(env, name, thunk, kind="block"):
 
 def function(parameters, forms, env):
     return lambda *given: sequence(forms, binding(env, parameters, given))
+
+
+class Signalled:
+    """A condition."""
+
+    def __init__(self, name, value):
+        self.name, self.value = name, value
+
+
+handlers = []  # in force, the innermost last: a list of (type, function of the condition)
+
+
+def with_handlers(cluster, thunk):
+    handlers.append(cluster)
+    try:
+        return thunk()
+    finally:
+        handlers.pop()
+
+
+def signal(condition):
+    """Ask the handlers, the innermost first; each runs with only those around its cluster in force."""
+    global handlers
+    asked = handlers
+    for index in reversed(range(len(asked))):
+        for type_, function in asked[index]:
+            if type_ == "error" or type_ in CONDITIONS[condition.name]:
+                handlers = asked[:index]
+                try:
+                    function(condition)
+                finally:
+                    handlers = asked
+    return [None]
 
 
 class TooLong(BaseException):
@@ -271,6 +327,36 @@ def values(form, env):
             return [0]
         case "quote":
             return [rest[0]]
+        case "handler-case":
+            token = object()
+
+            def leave(clause):
+                def handle(condition):
+                    raise Exit(token, (clause, condition))
+
+                return handle
+
+            try:
+                return with_handlers([(clause[0], leave(clause)) for clause in rest[1:]], lambda: values(rest[0], env))
+            except Exit as exit_:
+                if exit_.target is not token:
+                    raise
+                (_, parameters, *forms), condition = exit_.value
+            return sequence(forms, binding(env, parameters, [condition]))
+        case "ignore-errors":
+            token = object()
+
+            def leave(condition):
+                raise Exit(token, [None, condition])
+
+            try:
+                return with_handlers([("error", leave)], lambda: sequence(rest, env))
+            except Exit as exit_:
+                if exit_.target is not token:
+                    raise
+                return exit_.value
+        case "handler-bind":
+            return with_handlers([(type_, run(function, env)) for type_, function in rest[0]], lambda: sequence(rest[1:], env))
     given = [run(item, env) for item in rest]
     match head:
         case "+":
@@ -283,6 +369,10 @@ def values(form, env):
             return [given]
         case "funcall":
             return given[0](*given[1:])
+        case "value-of":
+            return [given[0].value]
+        case "error" | "signal" | "fails":
+            return signal(Signalled(given[0], given[2]))
     return env["function", head](*given)
 
 
@@ -299,6 +389,8 @@ def plain(value):
     """Lisp data as lists, to compare."""
     if isinstance(value, Cons):
         return [plain(item) for item in value]
+    if isinstance(value, Condition):
+        return type(value).__name__.lower()
     return "function" if callable(value) and value is not True else value
 
 
@@ -306,6 +398,7 @@ def reference(program):
     """The value of ``program``, and those of the closures that it remembered."""
     global steps
     steps = 0
+    handlers.clear()
     env = {("variable", "closures"): [[]]}
     result = run(program, env)
     return [lists(result), lists([first(closure()) for closure in env["variable", "closures"][0]])]
@@ -314,18 +407,23 @@ def reference(program):
 def lists(value):
     if isinstance(value, list):
         return [lists(item) for item in value] if value else None
+    if isinstance(value, Signalled):
+        return value.name.replace("-", "")
     return "function" if callable(value) and value is not True else value
 
 
 _session = []
 
 
-@settings(max_examples=150 if "CRAMHY_SOAK" in os.environ else 50, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=150 if SOAK else 50, deadline=None, suppress_health_check=list(HealthCheck))
 @given(programs())
 def test_the_compiler_and_the_interpreter_agree(program):
     if not _session:
         _session.append(Session(time="virtual", turtlesim=False))
         _session[0].evaluate_text("(defun n (x) (if (integerp x) x 0))")
+        _session[0].evaluate_text("""(define-condition trouble (error) ((value :initarg :value :reader value-of)))
+            (define-condition small-trouble (trouble) ()) (define-condition other-trouble (trouble) ())
+            (defun fails (&rest arguments) (apply #'error arguments))""")
         _session[0].evaluate_text("(defmacro remember (closure list) `(progn (push ,closure ,list) 0))")
     try:
         wanted = reference(program)

@@ -16,7 +16,7 @@ import marshal
 import os
 import struct
 import sys
-from importlib.machinery import SourceFileLoader
+from importlib.machinery import ModuleSpec, SourceFileLoader
 from pathlib import Path
 
 import cramhy_runtime
@@ -24,7 +24,7 @@ from cramhy_runtime.storage.checksummed_code import Unusable, trusted_bytes
 from cramhy_runtime.storage.kept_files import keep as keep_file
 from cramhy_runtime.storage.kept_files import kept_path
 
-FIRST_LINE = b"# cramhy start modules 1\n"
+FIRST_LINE = b"# cramhy start modules 3\n"
 _PACKAGE = cramhy_runtime.__name__
 _HEADER = 16  # bytes before the code in a file of bytecode
 
@@ -37,14 +37,15 @@ class _Loader(SourceFileLoader):
         self._bytecode = bytecode
 
     def get_code(self, fullname):
-        code, self._bytecode = marshal.loads(memoryview(self._bytecode)[_HEADER:]), None
+        code, self._bytecode = marshal.loads(self._bytecode[_HEADER:]), None
         return code
 
 
 class Finder:
     """Finds the modules of cramhy that are kept. Python asks it first, as one of ``sys.meta_path``.
 
-    root: the folder of cramhy's package. modules: name → (path of the source below ``root``, the file of bytecode).
+    root: the folder of cramhy's package. modules: name → (path of the source below ``root``, where Python keeps its bytecode, the bytes
+    that are there).
     """
 
     def __init__(self, root, modules):
@@ -55,18 +56,19 @@ class Finder:
         kept = self.modules.get(name)
         if kept is None:
             return None
-        place, bytecode = kept
-        origin = os.path.join(self.root, place)
+        place, cached, bytecode = kept
+        origin = f"{self.root}{os.sep}{place}"
         try:
             if bytecode[:_HEADER] != _header(os.stat(origin)):
                 raise FileNotFoundError
         except OSError:
             self.outdated = True
             return None
-        inside = [os.path.dirname(origin)] if place.endswith("__init__.py") else None
-        return importlib.util.spec_from_file_location(
-            name, origin, loader=_Loader(name, origin, bytecode), submodule_search_locations=inside
-        )
+        spec = ModuleSpec(name, _Loader(name, origin, bytecode), origin=origin)
+        spec.has_location, spec.cached = True, cached  # Python would put the second together anew
+        if place.endswith("__init__.py"):
+            spec.submodule_search_locations = [os.path.dirname(origin)]
+        return spec
 
 
 def _header(status):
@@ -88,7 +90,7 @@ def _source():
 
 
 def _maker(root):
-    return f"{sys.version} {sys.flags.optimize} {root}"
+    return f"{sys.version} {sys.flags.optimize} {sys.pycache_prefix} {root}"
 
 
 def install():
@@ -102,13 +104,12 @@ def install():
 
 def _read(root):
     try:
-        data = trusted_bytes(kept_path(_source()))
-        begin = len(FIRST_LINE) + 8
-        content = memoryview(data)[begin:]
-        if data.startswith(FIRST_LINE) and len(content) == int.from_bytes(data[begin - 8 : begin], "little"):
-            maker, modules = marshal.loads(content)
+        data = memoryview(trusted_bytes(kept_path(_source()), mapped=True))
+        begin, end = len(FIRST_LINE) + 8, len(data)
+        if data[: begin - 8] == FIRST_LINE and end - begin == int.from_bytes(data[begin - 8 : begin], "little"):
+            maker, index = marshal.loads(data[begin:])
             if maker == _maker(root):
-                return modules
+                return {name: (place, cached, data[end - start : end - stop]) for name, (place, cached, start, stop) in index.items()}
     except (Unusable, OSError, ValueError, EOFError, TypeError):
         pass
     return {}
@@ -132,7 +133,7 @@ def keep():
 
 
 def _bytecode(finder, name):
-    """What is kept of the module ``name``: the path of its source, and its bytecode as Python has written it; ``None`` if there is none."""
+    """What is kept of the module ``name`` (see `Finder`), with its bytecode as Python has written it; ``None`` if there is none."""
     module = sys.modules.get(name)
     if module is None:
         return finder.modules.get(name)  # of another command
@@ -140,14 +141,19 @@ def _bytecode(finder, name):
     try:
         bytecode = Path(spec.cached).read_bytes()
         if isinstance(spec.loader, SourceFileLoader) and bytecode[:_HEADER] == _header(os.stat(spec.origin)):
-            return os.path.relpath(spec.origin, finder.root), bytecode
+            return os.path.relpath(spec.origin, finder.root), spec.cached, bytecode
     except (OSError, TypeError, ValueError, AttributeError):
         pass
     return None
 
 
 def _written(root, modules):
-    content = marshal.dumps((_maker(root), modules))
+    """The file. An index tells of each module where its bytecode begins and ends, counted from the end of the file."""
+    left, index = sum(len(bytecode) for _, _, bytecode in modules.values()), {}
+    for name, (place, cached, bytecode) in modules.items():
+        index[name] = place, cached, left, left - len(bytecode)
+        left -= len(bytecode)
+    content = marshal.dumps((_maker(root), index)) + b"".join([bytecode for _, _, bytecode in modules.values()])
     return FIRST_LINE + len(content).to_bytes(8, "little") + content
 
 

@@ -27,7 +27,8 @@ Where the parts are:
 * `timers`, `clocks`, `throttle` (of virtual time for spectators), `budget` (the count of checkpoints), `reports` (for people), `errors`
 * `waiting`    tasks that wait for a change, made of the functions below
 * `backends`   stacks: threads of the operating system, greenlets, or WebAssembly's; `depth` how deep code may recurse on them
-* `active`     the functions below, which act on the active kernel; `typing_names`, `signatures` the names in their annotations
+* `active`     the functions below, which act on the active kernel; `typing_names`, `signatures` the names in their annotations;
+  `late_patterns` regular expressions that are compiled when they are used
 * `images`     global state, in cells and tables, and how the state of one image takes the place of another's
 
 From trio come cancellation at checkpoints, the shield, a clock that jumps, and the deadlock as an error with a text, but
@@ -65,6 +66,7 @@ from .active import (
     start,
     stop,
     time_held,
+    time_limited,
     time_wanted,
     unpark,
     woken_by,
@@ -86,5 +88,6 @@ __all__ = [
     "Timer", "VirtualClock", "WaitEnded", "Waiting", "WallClock", "active", "allow_deep_recursion", "aside", "at_hand", "call_at",
     "call_every", "checkpoint", "choice_point", "cleanup", "cleanup_here", "current", "describe_frame", "install_reporter", "interrupt",
     "interrupt_over", "limit_by", "now", "outside_source", "pace", "park", "post", "refill", "run_blocking", "set_clock", "settle",
-    "shield", "sleep", "slice_over", "spawn", "start", "stop", "time_held", "time_wanted", "unhandled", "unpark", "woken_by", "yield_",
+    "shield", "sleep", "slice_over", "spawn", "start", "stop", "time_held", "time_limited", "time_wanted", "unhandled", "unpark",
+    "woken_by", "yield_",
 ]  # fmt: skip

@@ -358,13 +358,13 @@ def prompt_of(repl):
     return repl.lisp
 
 
-def attend(repl, session=None):
+def attend(repl, session=None, kind=HyPrompt):
     """Let the plans of ``session`` go on while ``repl`` waits for a line, and let Ctrl-C end them and not the REPL.
 
-    session: a `Session`; by default the one that is there, or a new one in wall time.
+    session: a `Session`; by default the one that is there, or a new one in wall time. kind: the class of the prompt.
     """
     if getattr(repl, "lisp", None) is None:
-        repl.lisp = HyPrompt(repl, session or session_of_prompt())
+        repl.lisp = kind(repl, session or session_of_prompt())
         if repl.output_fn is hy.repr:  # and not what the user has chosen
             repl.output_fn = repl.lisp.shown_in_hy
         name_as_later_releases(hy.repl)
@@ -389,10 +389,10 @@ def go_on_in_hy(repl):
     prompt_of(repl).change_back()
 
 
-def run(make_session, banner=None):
+def run(make_session, banner=None, kind=HyPrompt, farewell=None):
     """``cramhy repl --hy``: a REPL of Hy with the macros of the plan language. Returns the exit status.
 
-    banner: the lines to begin with, or ``None`` for Hy's.
+    banner: the lines to begin with, or ``None`` for Hy's. kind: the class of the prompt. farewell: what is said at the end, or ``None``.
     """
     try:
         session = make_session()
@@ -401,9 +401,9 @@ def run(make_session, banner=None):
         return 1
     try:
         repl = hy.REPL()
-        attend(repl, session)
+        attend(repl, session, kind)
         repl.runsource("(require cramhy *)")
-        repl.interact = functools.partial(_interact, repl)
+        repl.interact = functools.partial(_interact, repl, farewell=farewell)
         if banner is not None:
             repl.banner = lambda: banner
         return repl.run()
@@ -414,10 +414,10 @@ def run(make_session, banner=None):
         kernel.stop()
 
 
-def _interact(repl, banner):
+def _interact(repl, banner, farewell=None):
     """The loop of ``repl``. What is typed is kept in our file. That of Hy's prompts has what was typed in the session that ended last."""
     with repl.lisp.input.keep(History(place("hy-history"))) if "readline" in sys.modules else nullcontext():
-        type(repl).interact(repl, banner)
+        type(repl).interact(repl, banner, farewell)
 
 
 # --------------------------------------------------------------------------------------------------------------------- a pipe

@@ -14,6 +14,7 @@ import re
 import sys
 from contextlib import contextmanager, nullcontext
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime import kernel
 from cramhy_runtime.cpl import current_task
 from cramhy_runtime.ground import conditions
@@ -45,7 +46,7 @@ def at_the_prompt():
     return kernel.current() is kernel.active().main
 
 
-_TOKEN = re.compile(r"""#?\\.|;[^\n]*|"(?:\\.|[^"\\])*"?|\|[^|]*\|?|[()]""", re.S)
+_TOKEN = late_pattern(r"""#?\\.|;[^\n]*|"(?:\\.|[^"\\])*"?|\|[^|]*\|?|[()]""", re.S)
 
 
 def rest_of(reader, begun=None):

@@ -10,22 +10,24 @@ Exits are in ``generate_exits.py``, function definitions in ``generate_functions
 from __future__ import annotations
 
 from cramhy_runtime.ground.data import DoubleFloat, Symbol, UndefinedFunction
+from cramhy_runtime.ground.dispatch.reached_slots import written_attribute
 from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym
 from . import core, nodes
 from .constants import Constants, float_model
 from .core import expression, word
 from .destinations import EFFECT, FIRST_OF_VALUES, NONE, RAW, TRUE, VALUE, VALUES, Destination
 from .facts import study, walk
-from .generate_calls import CallGenerator, written_attribute
-from .generate_exits import ExitGenerator
+from .generate_calls import CallGenerator
+from .generate_exits import ERROR, ExitGenerator
 from .generate_functions import FunctionGenerator
 from .arithmetic.functions import NUMBER_FUNCTIONS
 from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS, OperatorGenerator
 from .generate_texts import TextGenerator
+from .loop_shapes import CHANGES
 from .kinds import BOOLEAN, MAX, MIN, MINUS, OPERATORS, PI, PLUS, STEPS, THING, WHOLE, kind_of
 
 
-COLLECT, CONS, ERROR, FORMAT, GETHASH = map(sym, "CRAMHY::COLLECT CONS ERROR FORMAT GETHASH".split())
+COLLECT, CONS, FORMAT, GETHASH = map(sym, "CRAMHY::COLLECT CONS FORMAT GETHASH".split())
 KNOWN_SETTERS = {sym(name) for name in "GETHASH AREF SVREF ELT NTH GET CHAR".split()}
 """Functions of Common Lisp whose ``setf`` is a function, which nobody may redefine or give methods."""
 
@@ -46,7 +48,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         self.destinations = {}
         self.jump_codes = {}
         self.class_names = {}  # names of parameters → names of variables that hold their classes
-        self.cases = []  # the names and scopes of the ``handler-case`` forms around
+        self.cases = []  # the ``handler-case`` forms around in which an error is signalled, see `catching`
         self.before = []  # statements that must stand before the definition of the function being generated
 
     # ------------------------------------------------------------------------------------------------------------- output
@@ -280,10 +282,10 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
             model = self.open_call(node, symbol, arguments, destination)
             if model is not None:
                 return self.finish(model, nodes.Constant(None), destination)
-        if symbol is ERROR and self.cases and self.cases[-1][1] is self.scope and arguments and self.standard(symbol):
-            call = self.call("error_in_case", self.cases[-1][0], *self.arguments(arguments))
-            self.emit(word("raise"), self.positioned(call, node))
-            return NONE if destination.kind == "value" else None
+        if symbol is ERROR and self.cases and self.cases[-1][-1] is self.scope and arguments and self.standard(symbol):
+            return self.error_in_case(node, arguments, destination)
+        if symbol in CHANGES and len(arguments) == 2 and self.standard(symbol):
+            return self.by_statements(node, destination, lambda inner: self.pushed(node, arguments, inner))
         if symbol is FORMAT:
             model = self.text(node, arguments)
             if model is not None:

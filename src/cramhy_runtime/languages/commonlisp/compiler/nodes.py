@@ -228,6 +228,15 @@ class Catching(Node):
 
 
 @dataclass
+class Handling(Node):
+    """``handler-bind``: type specifiers, the forms of their functions, and the body."""
+
+    types: list
+    functions: list
+    body: Node
+
+
+@dataclass
 class MultipleValueBind(Node):
     variables: list
     values: Node

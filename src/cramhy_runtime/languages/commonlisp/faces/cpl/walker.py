@@ -355,6 +355,15 @@ def _catching(walk, form, env):
     return Cons(form.car, Cons(kinds, Cons(walk.form(rest.car, env), list_from(clauses))))
 
 
+@special("CRAMHY::HANDLING")
+def _handling(walk, form, env):
+    bindings, body = _two(form)
+    walked = [
+        lisp_list(binding.car, walk.form(binding.cdr.car, env)) for binding in _items(bindings)
+    ]  # only macros of ours write this form
+    return Cons(form.car, Cons(list_from(walked), _body(walk, body, env)))
+
+
 # ------------------------------------------------------------------------------------------------- special forms: functions
 
 
