@@ -9,11 +9,11 @@ from cramhy_runtime import storage
 
 def run(options):
     """Write the site; the exit status."""
-    from cramhy_runtime.browser import pyodide_files, site
+    from cramhy_runtime.browser import bundling, pyodide_files, site
 
     try:
         out = site.write(options.out, options.pyodide or pyodide_files.FETCHED / "pyodide")
-    except (site.SiteError, pyodide_files.UnfitPyodide) as problem:
+    except (site.SiteError, pyodide_files.UnfitPyodide, bundling.NoBundle) as problem:
         print(f"cramhy: {problem}", file=sys.stderr)
         return 1
     except OSError as problem:
