@@ -4,6 +4,7 @@
   repository if its address is known (CRAMHY_REPOSITORY), and else are plain words.
 * Blocks of code below the comment ``<!-- tabs -->`` become tabs, one for each language. Where the languages are the same, the first
   block is for Lisp and the second one for Hy.
+* Hints, which GitHub shows as ``<details>``, are Markdown inside.
 * The first use of a word of the glossary on a page becomes a link to its entry.
 """
 
@@ -44,7 +45,7 @@ def on_page_markdown(markdown, page, config, files):
     text = with_links(markdown, source, place, {file.src_uri for file in files})
     if not place.startswith("reference/") and place not in ("glossary.md", "CHANGELOG.md"):
         text = with_glossary(text, posixpath.relpath("glossary.md", posixpath.dirname(place) or "."))
-    return with_tabs(text)
+    return with_tabs(text.replace("<details><summary>", '<details markdown="1"><summary>'))
 
 
 def with_links(text, source, place, there):

@@ -36,7 +36,9 @@ def needs(module, *names):
 IS_POSIX = os.name == "posix" and "CRAMHY_TEST_HIDDEN" not in os.environ
 """Whether users, modes, links, signals and pipes are those of POSIX. Not in a process of ``tests/without_posix``."""
 posix = pytest.mark.skipif(not IS_POSIX, reason="users, modes, links, signals and pipes of POSIX")
-takes_long = pytest.mark.skipif("CRAMHY_SOAK" not in os.environ, reason="it takes long: make soak runs it")
+SOAK = bool(os.environ.get("CRAMHY_SOAK"))
+"""Whether `make soak` runs the tests: all of them, and in their long form."""
+takes_long = pytest.mark.skipif(not SOAK, reason="it takes long: make soak runs it")
 linux = pytest.mark.skipif(sys.platform != "linux" or not IS_POSIX, reason="/proc, /dev/full and limits of Linux")
 needs_terminals = pytest.mark.skipif(not has_module("termios"), reason="this system has no terminals of POSIX")
 needs_deep_stacks = pytest.mark.skipif(

@@ -34,6 +34,7 @@ FLOORS = [
     ["session"],
     ["chronicle", "ros_tools", "testing", "robot"],
     ["view", "repl", "swank", "jupyter", "lsp", "grading"],
+    ["course"],
     ["browser"],
     ["cli", "pytest_plugin", "coverage_plugin", "__init__"],
 ]

@@ -3,7 +3,7 @@
 A page gives a notebook in Common Lisp, and one in Hy (``NAME-in-hy.ipynb``) if it has sessions in Hy. The sessions in that language become
 cells, one for each thing that is typed; files become cells that write them. The rest of the page stays text, the other language and
 commands of the shell, too. What is typed into the debugger is left out, and the cell before it, which fails, says so to Jupyter with the
-tag ``raises-exception``.
+tag ``raises-exception``. A task's code to begin with is a cell, and so is its check.
 
 A package grows on the pages of the lectures, so their notebooks are in a folder of their own, and are run one after the other. The others
 use the packages of ``tutorials``; those in plain Hy are copied beside them.
@@ -19,6 +19,7 @@ from pathlib import Path
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[2]))
 
+from cramhy_runtime.course.reading import TASK  # noqa: E402
 from tests.docs.pages import COURSE, DOCS, FENCE, LECTURES, Block, Page, exchanges  # noqa: E402
 
 TUTORIALS = DOCS / "tutorials"
@@ -34,9 +35,24 @@ IN_DEBUGGER = re.compile(r"^\d+\] ")
 COMMAND = re.compile(r"^ros\w+ ")
 
 
+CHECK = "check"
+"""The language of a block that `with_checks` has put there."""
+
+
+def with_checks(text):
+    """The text of a page with a block of the language `CHECK` in place of the comment of each task, behind the task's text."""
+    found, end = "", 0
+    for match in TASK.finditer(FENCE.sub(lambda block: re.sub(r"[^\n]", " ", block[0]), text)):
+        comment = slice(match.start("comment"), match.end("comment"))
+        body = slice(match.end("comment"), match.end())
+        found += f"{text[end : comment.start]}{text[body]}\n```{CHECK}\n{match['name']}\n```\n"
+        end = match.end()
+    return found + text[end:]
+
+
 def parts(text):
     """Pieces of a page: texts, and `Block`s of code in their places."""
-    end = 0
+    text, end = with_checks(text), 0
     for match in FENCE.finditer(text):
         yield text[end : match.start()]
         yield Block(match[1], match[2] or None, match[3])
@@ -51,6 +67,13 @@ def cells(text, language="lisp"):
     for part in parts(text):
         if isinstance(part, str):
             found.append(["markdown", part, False])
+        elif part.language == CHECK:
+            task = part.text.strip()
+            in_hy = f'(import cramhy-runtime.course.package [check])\n(check "{task}" "hy")'
+            found.append(["code", in_hy if language == "hy" else f'(course:check "{task}")', False])
+        elif part.kind == "start":
+            if part.language == language:
+                found.append(["code", part.text, False])
         elif part.kind == "file" and part.language in ("lisp", "xml", "hy"):
             found.append(["code", f"%%writefile {part.title}\n{part.text}", False])
         elif part.kind == sessions:

@@ -4,7 +4,8 @@ A block of code says by its first line, its language or its title what it is:
 
 * a block of ``lisp`` that begins with a prompt, or of ``hy`` that begins with ``=> ``, is a piece of a session. All pieces of one
   language on a page are one session in virtual time;
-* a block with a title, as in ``lisp title="spiral.lisp"``, is a file;
+* a block with a title, as in ``lisp title="spiral.lisp"``, is a file; but with the title "Begin with" it is the code that a task of the
+  course begins with, which ``tests/course`` tries;
 * a block of ``python`` is a piece of one program, and a block of ``text`` below it is what this piece prints;
 * a block of ``sh`` that begins with ``$`` is a command and what it prints;
 * a block of ``lisp`` or ``hy`` without a prompt quotes the course's package;
@@ -31,6 +32,7 @@ from functools import cached_property
 from pathlib import Path
 
 from cramhy_runtime.cli import shims
+from cramhy_runtime.course.reading import START
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -66,7 +68,9 @@ class Block:
 
     @property
     def kind(self):
-        """What the block is: session, hy session, file, command, python, text, quotation or shell."""
+        """What the block is: session, hy session, file, command, python, text, quotation, shell, or the beginning of a task's solution."""
+        if self.title == START:
+            return "start"
         if self.title:
             return "file"
         if self.language in ("sh", "console") and self.text.startswith("$ "):

@@ -105,7 +105,7 @@ def test_a_page_whose_blocks_need_more_has_a_test_of_its_own(name):
 
 def test_every_kind_of_block_is_on_some_page():
     kinds = {block.kind for path in PAGES for block in Page(path).blocks}
-    assert kinds == {"session", "hy session", "file", "command", "python", "text", "quotation", "shell"}
+    assert kinds == {"session", "hy session", "file", "command", "python", "text", "quotation", "shell", "start"}
 
 
 def test_a_block_of_another_language_is_refused():

@@ -7,7 +7,7 @@ statements, so it cannot make the compiler's mistakes.
 
 from __future__ import annotations
 
-import os
+from systems import SOAK
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -320,7 +320,7 @@ def lists(value):
 _session = []
 
 
-@settings(max_examples=150 if "CRAMHY_SOAK" in os.environ else 50, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=150 if SOAK else 50, deadline=None, suppress_health_check=list(HealthCheck))
 @given(programs())
 def test_the_compiler_and_the_interpreter_agree(program):
     if not _session:

@@ -6,12 +6,12 @@ Short in ``make test``; with CRAMHY_SOAK=1 (``make soak``) 10,000 forms and 100,
 from __future__ import annotations
 
 import math
-import os
 import random
 import time
 from pathlib import Path
 
 import pytest
+from systems import SOAK
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -35,7 +35,6 @@ from cramhy_runtime.languages.commonlisp.reader.reader import Reader
 from cramhy_runtime.languages.commonlisp.reader.readtables import STANDARD
 from cramhy_runtime.languages.commonlisp.packages.package_errors import PackageLockedError
 
-SOAK = bool(os.environ.get("CRAMHY_SOAK"))
 FORMS, TEXTS, SECONDS_A_TEXT = (10_000, 100_000, 5) if SOAK else (120, 3_000, 5)
 
 

@@ -1,9 +1,9 @@
 """The reader: what texts mean, where forms stand, when a text is complete, and that no text breaks it."""
 
-import os
 import time
 
 import pytest
+from systems import SOAK
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -301,7 +301,7 @@ scraps = st.lists(
 ).map("".join)
 
 
-@settings(max_examples=1500 if "CRAMHY_SOAK" in os.environ else 400, deadline=None)
+@settings(max_examples=1500 if SOAK else 400, deadline=None)
 @given(scraps | st.text(max_size=20))
 def test_no_text_whatsoever_raises_anything_but_a_condition(text):
     reader = Reader(text, filename="x.lisp")

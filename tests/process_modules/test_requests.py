@@ -1,10 +1,10 @@
 """Many requests at once, hooks, restarts, status fluents, and what a request leaves behind (process-modules.md section 4)."""
 
 import gc
-import os
 import re
 
 import pytest
+from systems import SOAK
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime import process_modules as pm
@@ -12,8 +12,6 @@ from cramhy_runtime.cpl.failures.handling import attempt
 from cramhy_runtime.process_modules.modules import ProcessModule, Request
 
 from .test_modules import NAVIGATION, define, motion, with_modules
-
-SOAK = bool(os.environ.get("CRAMHY_SOAK"))
 
 
 def test_two_hundred_calls_from_each_of_four_tasks_get_their_own_results(text):

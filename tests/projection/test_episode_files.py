@@ -1,9 +1,9 @@
 """Saving and loading episodes: projection-and-events.md C1. A file of somebody else's is text, and runs no code."""
 
 import json
-import os
 
 import pytest
+from systems import SOAK
 
 from cramhy_runtime.languages.commonlisp.faces.episodes.values_on_file import BadFile, Reader, Writer
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
@@ -131,7 +131,7 @@ def test_objects_come_back_with_their_slots_and_are_not_initialised(lisp):
     assert read_again(lisp, "(make-instance 'box :size 3)", "(list (size *it*) (slot-boundp *it* 'lid) (notes))") == (
         "(3 NIL (:INITIALISED))"
     )
-    assert read_again(lisp, "(make-cup :owner 'me)", "*it*") == "#S(CUP :FULL T :OWNER ME)"
+    assert read_again(lisp, "(make-cup :owner 'me)", "*it*") == "#S(CUP :SOAK T :OWNER ME)"
     assert read_again(lisp, "(make-condition 'leak :what 'cup)", '(format nil "~a ~a" *it* (typep *it* \'leak))') == '"CUP leaks T"'
     assert (
         read_again(lisp, "(make-condition 'simple-error :format-control \"a ~a\" :format-arguments '(b))", "(princ-to-string *it*)")
@@ -291,7 +291,7 @@ def test_random_damage_is_an_error_or_an_episode_and_never_more(saved, tmp_path)
     from cramhy_runtime.languages.commonlisp.faces.episodes.files import read_episode
     from cramhy_runtime.ground.conditions import SimpleError
 
-    for _ in range(1500 if os.environ.get("CRAMHY_SOAK") else 300):
+    for _ in range(1500 if SOAK else 300):
         place, length = chance.randrange(len(text)), chance.randrange(4)
         damaged = text[:place] + chance.choice(['"', "[", "{", "7", "null", ",", "}", "x", ""]) + text[place + length :]
         try:

@@ -3,10 +3,10 @@
 With ``CRAMHY_SOAK=1`` there are 5,000 programs instead of 200.
 """
 
-import os
 import shutil
 
 import pytest
+from systems import SOAK
 import swi_text
 from prolog_text import RegisteredWarnings, read, show
 from random_programs import Program
@@ -21,7 +21,7 @@ from cramhy_runtime.utilities.patterns import ANONYMOUS, var_value, variable, va
 
 LIMIT = 20
 """Answers that are compared."""
-WANTED = 5000 if os.environ.get("CRAMHY_SOAK") == "1" else 200
+WANTED = 5000 if SOAK else 200
 
 
 def shown(term, names):

@@ -1,8 +1,7 @@
 """``(explain goal)``: which clause came furthest, which goal of it failed, and why; what proves a goal; proofs without end."""
 
-import os
-
 import pytest
+from systems import SOAK
 import textbook
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -358,7 +357,7 @@ def with_cut(goals):
 
 
 @given(programs, with_cut(goals_over(["P1", "P2", "P3"])), st.lists(st.integers(0, 20), max_size=4))
-@settings(max_examples=300 if os.environ.get("CRAMHY_SOAK") else 100, deadline=None)
+@settings(max_examples=300 if SOAK else 100, deadline=None)
 def test_an_explained_proof_finds_the_solutions_of_the_engine(program, goal, cuts):
     kernel.start(clock="virtual")
     clauses = [clause for part in program for clause in part]

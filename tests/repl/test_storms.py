@@ -13,10 +13,10 @@ import signal
 import time
 
 import pytest
+from systems import SOAK
 
 from .terminal import PATIENCE, Terminal
 
-SOAK = bool(os.environ.get("CRAMHY_SOAK"))
 SECONDS, LONGEST = (30, 0.05) if SOAK else (None, 0.02)
 INTERRUPTS = 200
 

@@ -15,11 +15,11 @@ import termios
 import time
 
 import pytest
+from systems import SOAK
 
 from .conftest import environment
 from .terminal import PATIENCE, Terminal
 
-FULL = "CRAMHY_SOAK" in os.environ
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT]
 ENDING = SIGNALS[1:]
 CLOCKS = ["virtual", "wall"]
@@ -27,7 +27,7 @@ BACKENDS = ["threads", "greenlet"]
 
 SESSIONS = (
     [(clock, backend, number) for clock in CLOCKS for backend in BACKENDS for number in ENDING]
-    if FULL
+    if SOAK
     else [
         ("virtual", "threads", signal.SIGTERM),
         ("virtual", "greenlet", signal.SIGHUP),

@@ -1,6 +1,6 @@
 """Whatever nodes do in whatever order, the graph shows who is there, and every message reaches who listened when it was sent."""
 
-import os
+from systems import SOAK
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -81,7 +81,7 @@ class World:
         assert set(self.graph.nodes) == {f"/{name}" for name in self.nodes}
 
 
-@settings(max_examples=2000 if os.environ.get("CRAMHY_SOAK") else 60, deadline=None)
+@settings(max_examples=2000 if SOAK else 60, deadline=None)
 @given(st.lists(actions, max_size=40))
 def test_the_graph_is_what_its_nodes_did(plan):
     world, told = World(), set()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import socket
 import subprocess
 import sys
@@ -11,12 +10,12 @@ import time
 from pathlib import Path
 
 import pytest
+from systems import SOAK
 
 from bridge_clients import Wire
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.asyncio_thread import Share
 
-FULL = os.environ.get("CRAMHY_SOAK") == "1"
 
 FLOODS = {
     "connections": """
@@ -89,7 +88,7 @@ def compute(seconds):
     return time.monotonic() - began
 
 
-@pytest.mark.parametrize("kind", FLOODS if FULL else ["wrong tokens", "messages", "calls"])
+@pytest.mark.parametrize("kind", FLOODS if SOAK else ["wrong tokens", "messages", "calls"])
 def test_a_flood_does_not_slow_the_plan_down(serve, flood, kind):
     """The plan computes without a pause. What the server and its clients' operations cost meanwhile, in time of the processor that the plan
     then does not have (Python runs one thread at a time), is less than 5 percent of what the plan gets."""
@@ -101,7 +100,7 @@ def test_a_flood_does_not_slow_the_plan_down(serve, flood, kind):
     while share.spent < before + 0.02:
         compute(0.1)  # until the flood is there
     compute(0.2)
-    seconds = 5.0 if FULL else 1.5
+    seconds = 5.0 if SOAK else 1.5
     for _ in range(3):  # on a machine that is busy with other things, too, a single operation of the flood may take long
         spent = share.spent
         compute(seconds)
@@ -245,7 +244,7 @@ CLIENTS = Path(__file__).with_name("many_clients.py")
 def test_many_clients_at_60_hertz_lose_nothing(serve, outside, pace):
     """Each client hears a topic of 60 messages a second, and publishes as many on a topic of its own, which it hears again. Nothing is
     missing, nothing is out of order, and plan time keeps its pace."""
-    clients, seconds = (50, 60) if FULL else (10, 3)
+    clients, seconds = (50, 60) if SOAK else (10, 3)
     server = serve(pace)
     if pace == "virtual":
         kernel.pace().set_speed(1.0)

@@ -30,7 +30,6 @@ WAYS = [
 ]
 PAGES = {"/": ["<p>turtle</p>", "text/html"], "/app.js": ["1;", "text/javascript"], "/large": ["x" * 100_000, "text/plain"]}
 WITHIN = 1.0  # s
-FULL = os.environ.get("CRAMHY_SOAK") == "1"
 
 
 @pytest.fixture(scope="module")

@@ -12,9 +12,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from systems import SOAK
 
 ROOT = Path(__file__).parents[2]
-SOAK = bool(os.environ.get("CRAMHY_SOAK"))
 
 ENDLESS = {
     "a function": "(defun endless (n) (+ 1 (endless n)))",

@@ -7,14 +7,13 @@ suspended, nets, callbacks, timers (``plans_for_hours.py``). In the ordinary sui
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from systems import SOAK
 
-SOAK = bool(os.environ.get("CRAMHY_SOAK"))
 PULSES, TASKS = (1_000_000, 100_000) if SOAK else (20_000, 2_000)
 MORE_OBJECTS = 500
 MORE_KILOBYTES = 4_000  # of some 23,000; a hundredth of a kilobyte for each task would be 1,000

@@ -16,10 +16,10 @@ from concurrent.futures import ThreadPoolExecutor
 from statistics import median
 
 import pytest
+from systems import SOAK
 
 from . import typed_lectures as lectures
 
-SOAK = bool(os.environ.get("CRAMHY_SOAK"))
 SEEDS = range(50) if SOAK else range(6)
 TOLERANCE = 1e-3  # turtle's metres, radians and their rates; the plans themselves stop within 0.1
 SECONDS = 2.0

@@ -8,15 +8,13 @@ grows by megabytes in a minute. What grows slowly is found by the second test: i
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-from systems import takes_long
+from systems import SOAK, takes_long
 
-SOAK = bool(os.environ.get("CRAMHY_SOAK"))
 MINUTES = 60.0 if SOAK else 0.7
 MORE_KILOBYTES = 2_000  # after the first five minutes of an hour
 MORE_IN_A_MINUTE = 12_000  # after the first third of it

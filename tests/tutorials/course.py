@@ -16,6 +16,7 @@ from contextlib import contextmanager, nullcontext
 from pathlib import Path
 
 import hy
+from systems import SOAK
 
 from cramhy_runtime import kernel, testing
 from cramhy_runtime.ground.data import one
@@ -30,7 +31,6 @@ from cramhy_runtime.turtlesim.node import running_simulator, start_with_first_no
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "tutorials"
-SOAK = bool(os.environ.get("CRAMHY_SOAK"))
 SEEDS = range(200 if SOAK else 10)
 BACKENDS = ("threads", "greenlet")
 TICK = 0.016

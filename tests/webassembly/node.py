@@ -9,19 +9,19 @@ from __future__ import annotations
 import functools
 import importlib.util
 import json
-import os
 import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
+from systems import SOAK
 
 from cramhy_runtime.browser import pyodide_files, site
 
 ROOT = Path(__file__).parents[2]
 KEPT = pyodide_files.FETCHED / ".cramhy"
 PACKAGES = ("pytest", "_pytest", "pluggy", "iniconfig", "packaging", "pygments", "py", "hy", "hyrule", "funcparserlib")
-LIMIT = 3600 if os.environ.get("CRAMHY_SOAK") else 360  # s
+LIMIT = 3600 if SOAK else 360  # s
 
 
 @functools.cache
@@ -67,7 +67,7 @@ def run_pytest(*arguments, **environment):
             "PYTHONPYCACHEPREFIX": "/compiled",
             "PYTHONHASHSEED": "0",
             "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
-            **({"CRAMHY_SOAK": "1"} if os.environ.get("CRAMHY_SOAK") else {}),
+            **({"CRAMHY_SOAK": "1"} if SOAK else {}),
             **environment,
         },
         "path": ["/cramhy/src", "/cramhy/hy_src", "/packages", "/cramhy/tests"],

@@ -5,16 +5,15 @@ One run of pytest there takes all files, since Pyodide takes seconds to start. `
 
 from __future__ import annotations
 
-import os
 from xml.etree import ElementTree
 
 import pytest
+from systems import SOAK
 from node import KEPT, pyodide, run_pytest
 
 from cramhy_runtime.browser import pyodide_files
 from cramhy_runtime.browser.pyodide_files import UnfitPyodide
 
-SOAK = bool(os.environ.get("CRAMHY_SOAK"))
 LAWS = {
     "kernel": ("test_baton.py", "test_virtual_time.py", "test_deadlock.py", "test_outside.py", "test_interrupts.py", "test_jspi.py"),
     "cpl": ("laws/test_nothing_outlives_its_parent.py", "laws/test_cleanup_laws.py"),

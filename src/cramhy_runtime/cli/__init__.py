@@ -1,5 +1,5 @@
-"""The command line: ``cramhy repl | swank | jupyter | lsp | run | eval | test | grade | similar | turtlesim | teleop | view | replay |
-browser | ros-shims | ros``, ``roslisp_repl``.
+"""The command line: ``cramhy repl | learn | swank | jupyter | lsp | run | eval | test | grade | similar | turtlesim | teleop | view |
+replay | browser | ros-shims | ros``, ``roslisp_repl``.
 
 `options` says which words there are, `servers` what a session opens to the outside, `standalone_commands` has the commands that are no
 session of Lisp's, `start_modules` the bytecode of the modules that a session starts with, `shims` the ROS commands, which `workspace`,
@@ -29,8 +29,10 @@ def session(options, closings, opened=True):
     from cramhy_runtime.languages.commonlisp.tools import backtrace
     from cramhy_runtime.repl.session import Session
     from cramhy_runtime.session import time_setting
+    from cramhy_runtime.session.session import packages_above
     from .options import DEFAULT_TIMES
 
+    packages_above["COURSE"] = _define_course
     backtrace.show(options.backtrace)
     check_for_session(options.backend)
     made = Session(
@@ -57,7 +59,7 @@ def session(options, closings, opened=True):
         except NotPossible as problem:
             print(f"cramhy: {problem}", file=sys.stderr)
             sys.exit(2)
-        if options.command == "repl" and options.view is None:
+        if options.command in ("repl", "learn") and options.view is None:
             live_page.open_with_turtle()
     closings.callback(kernel.stop)
     for system in options.prefer_path:
@@ -68,11 +70,17 @@ def session(options, closings, opened=True):
         made.package = options.package.upper()
     if options.command in ("repl", "swank"):
         offer_swank(made, getattr(options, "swank", None))
-    if options.command == "repl":
+    if options.command in ("repl", "learn"):
         evaluate_before_prompt(made, options.forms)
     elif options.command != "run":
         evaluate_forms(made, options.forms)
     return made
+
+
+def _define_course():
+    from cramhy_runtime.course import package
+
+    package.define()
 
 
 def offer_swank(made, port):
@@ -212,6 +220,12 @@ def _repl(options):
 
             return hy_prompt.run(lambda: session(options, closings), banner.of_hy() if greets else "" if options.quiet else None)
         return Console(lambda: session(options, closings), banner=banner.of_lisp() if greets else "").run()
+
+
+def _learn(options):
+    from . import learn_command
+
+    return learn_command.learn(options) if _checked(options) else 2
 
 
 def _swank(options):

@@ -52,7 +52,15 @@ def _columns():
         return 80
 
 
-DEFAULT_TIMES = {"repl": "wall", "swank": "wall", "jupyter": "virtual", "run": "virtual", "eval": "virtual", "test": "virtual"}
+DEFAULT_TIMES = {
+    "repl": "wall",
+    "learn": "virtual",
+    "swank": "wall",
+    "jupyter": "virtual",
+    "run": "virtual",
+    "eval": "virtual",
+    "test": "virtual",
+}
 """The commands with a session, and the time in which it lives when nothing else is said (see ``session/time_setting.py``)."""
 
 
@@ -219,6 +227,15 @@ def _add_jupyter(commands):
     )
 
 
+def _add_learn(commands):
+    learn = _session(commands, "learn", "the course, step by step at the prompt", _opening_options("on a desktop it opens with the turtle"))
+    learn.add_argument("page", nargs="?", default=None, metavar="PAGE", help="a page by its number or name (the one that was left last)")
+    learn.add_argument(
+        "--language", choices=["lisp", "hy"], default="lisp", help="the language to learn in: Common Lisp, or plain Hy (lisp)"
+    )
+    learn.add_argument("--folder", default=None, metavar="FOLDER", help="where the files of the lectures go (cramhy-course)")
+
+
 def _add_grade(commands):
     grade = commands.add_parser("grade", help="grade a submission: run it in a cage, and tell what failed and how many points it gets")
     grade.add_argument("exercise", metavar="EXERCISE", help="the folder of an exercise, or the name of one of cramhy's, such as square")
@@ -349,6 +366,7 @@ def _add_ros(commands):
 
 _COMMANDS = {
     "repl": _add_repl,
+    "learn": _add_learn,
     "swank": _add_swank,
     "jupyter": _add_jupyter,
     "lsp": _add_lsp,

@@ -11,9 +11,10 @@ the run again (`replay`) and compares (`judging`). So the expected answers are n
 looked at.
 
 Where the parts are: ``exercise``, ``expressions``, ``paths``, ``troubles`` (what an exercise says) · ``jobs``, ``processes``,
-``nursery``, ``cage`` (the process of a submission), ``here`` (without one) · ``performing``, ``recording``, ``tests_inside`` (what
-happens in it) · ``told``, ``replay``, ``drawings``, ``judging``, ``forms`` (the verdict) · ``grader``, ``report``, ``formats`` (points
-and words) · ``similar`` (submissions that are alike) · ``problems`` (errors of exercises).
+``nursery``, ``cage`` (the process of a submission), ``here`` (without one), ``in_session`` (in the session that is there) ·
+``performing``, ``recording``, ``tests_inside`` (what happens in it) · ``told``, ``replay``, ``drawings``, ``judging``, ``forms`` (the
+verdict) · ``grader``, ``report``, ``formats`` (points and words) · ``similar`` (submissions that are alike) · ``problems`` (errors of
+exercises).
 """
 
 from .grader import Grader, grade

@@ -83,6 +83,15 @@ class Exercise(NamedTuple):
             raise ExerciseError(f"{folder / FILE}: {problem}")
 
 
+def of_checks(title: str, tables: list[dict[str, Any]]) -> Exercise:
+    """An exercise without a folder, for a session that is there already: nothing is handed in and nothing loaded.
+
+    tables: its checks, as below ``[[check]]``; one without a title has that of the exercise. Raises `ExerciseError`.
+    """
+    checks = [_check(Path(), {"title": title, **table}, number, {}) for number, table in enumerate(tables, 1)]
+    return Exercise(Path(), title, [], [], None, [], [], dict(LIMITS), checks, {})
+
+
 def whole(number):
     """3 for 3.0, so that points are shown as people write them."""
     return int(number) if float(number).is_integer() else round(number, 2)

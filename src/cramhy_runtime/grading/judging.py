@@ -57,6 +57,11 @@ def _outcome(table, form, values, told):
         yield from _compared(form, table["value"], values, told.value["values"], table.get("within", 1e-6))
 
 
+def of_place(table, values, now):
+    """What is wrong with the paper and the place of the turtle as they are. now: has ``begun``, ``drawing`` and ``place`` as a `Replay`."""
+    return [sentence for judge in (_paper, _at) for sentence in judge(table, values, now, None)]
+
+
 def of_answers(check, job, values, told):
     """What is wrong with the answers to questions."""
     wrong = []

@@ -42,8 +42,14 @@ def perform(job, folder, tell):
         time="virtual", seed=None if job["seed"] == 1 else job["seed"], time_limit=job["turtle_time"], kind=WatchedKernel, cleanup_limit=2.0
     )
     recording = Recording(tuple(job["start"]), job["troubles"], job["seed"])
+    recording.watch()
+    carry_out(job, Path(folder), tell, made, recording)
+
+
+def carry_out(job, folder, tell, made, recording):
+    """As `perform`, in the session ``made``, of which ``load``, ``evaluate_text`` and ``package`` are used. folder: a path."""
     try:
-        _steps(job, Path(folder), tell, made, recording)
+        _steps(job, folder, tell, made, recording)
     except _Ended:
         pass
     if recording.simulator is not None:
@@ -80,11 +86,13 @@ def _steps(job, folder, tell, made, recording):
         faults = _plan_faults(job["faults"])
         recording.begin()
         begun = kernel.now()
-        kernel.active().faults.extend(faults)
+        if faults:  # of which an ordinary kernel knows nothing
+            kernel.active().faults.extend(faults)
         try:
             values = _attempt(tell, lambda: made.evaluate_text(job["do"]), go_on=True)
         finally:
-            kernel.active().faults.clear()
+            if faults:
+                kernel.active().faults.clear()
         took = kernel.now() - begun
         kernel.sleep(job["after"])
         if values is not None:
@@ -135,11 +143,16 @@ def _described(problem):
         return {"types": ["TIME-LIMIT"], "text": ""}
     condition = condition_of(problem)
     names = []
-    for kind in type(condition).__mro__:
+    kinds = type(condition).__mro__
+    for kind in kinds:
         try:
-            names.append(str(getattr(class_name(kind), "name", kind.__name__)).upper())
+            name = str(getattr(class_name(kind), "name", kind.__name__)).upper()
         except Exception:  # a class of Python alone
-            names.append(kind.__name__.upper())
+            name = kind.__name__.upper()
+        names.append(name)
+    for place, (name, above) in enumerate(zip(names, names[1:])):
+        if name == above:  # a class of the student's in Python or Hy, which has no name in Lisp but that of its parent
+            names[place] = kinds[place].__name__.upper()
     return {"types": names[:30], "text": explanation(condition)[:MOST_TEXT]}
 
 

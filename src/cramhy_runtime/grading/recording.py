@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.turtlesim.node import each_simulator
+from cramhy_runtime.turtlesim.node import each_simulator, expect_no_more
 
 from .troubles import Troubles, put
 
@@ -14,7 +14,7 @@ class TooMuch(Exception):
 
 
 class Recording:
-    """The record of the first simulator that starts. start: (x, y, heading) of turtle1. troubles, seed: as of `Troubles`.
+    """The record of the first simulator that starts after `watch`. start: (x, y, heading) of turtle1. troubles, seed: as of `Troubles`.
 
     ``heard``: [tick, kind, turtle, values...] in the order of arrival. ``ticks``: how many have passed. ``begin``: that at which the plan
     began.
@@ -25,7 +25,17 @@ class Recording:
         self.heard = []
         self.ticks = 0
         self.simulator = None
+
+    def watch(self):
+        """Record the first simulator: at once if it runs already, and then it must be as it begins."""
         each_simulator(self._meet)
+
+    def end(self):
+        """Leave the simulator alone."""
+        expect_no_more(self._meet)
+        if self.simulator is not None:
+            self.simulator.listener = None
+            self.simulator.unobserve(self._see)
 
     def _meet(self, simulator):
         if self.simulator is not None:

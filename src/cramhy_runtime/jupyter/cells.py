@@ -140,6 +140,7 @@ class Notebook:
             value = self._evaluated_in_hy(model, module, name)
         if kernel.current() is kernel.active().main:
             kernel.settle()
+        setattr(module, hy.mangle("*1"), value)  # as at a prompt of Hy
         return [] if value is None else [value]
 
     @staticmethod

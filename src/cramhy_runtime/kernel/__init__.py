@@ -65,6 +65,7 @@ from .active import (
     start,
     stop,
     time_held,
+    time_limited,
     time_wanted,
     unpark,
     woken_by,
@@ -86,5 +87,6 @@ __all__ = [
     "Timer", "VirtualClock", "WaitEnded", "Waiting", "WallClock", "active", "allow_deep_recursion", "aside", "at_hand", "call_at",
     "call_every", "checkpoint", "choice_point", "cleanup", "cleanup_here", "current", "describe_frame", "install_reporter", "interrupt",
     "interrupt_over", "limit_by", "now", "outside_source", "pace", "park", "post", "refill", "run_blocking", "set_clock", "settle",
-    "shield", "sleep", "slice_over", "spawn", "start", "stop", "time_held", "time_wanted", "unhandled", "unpark", "woken_by", "yield_",
+    "shield", "sleep", "slice_over", "spawn", "start", "stop", "time_held", "time_limited", "time_wanted", "unhandled", "unpark",
+    "woken_by", "yield_",
 ]  # fmt: skip

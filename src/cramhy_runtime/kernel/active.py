@@ -14,7 +14,7 @@ from . import images, signals
 from .budget import budget
 from .clocks import make_clock
 from .endings import CLEANUP_LIMIT
-from .errors import KernelError, Terminated
+from .errors import KernelError, Terminated, TimeLimit
 from .images import Cell
 from .throttle import Pace, TimeWanted
 from .scheduler import Kernel
@@ -84,6 +84,21 @@ def aside() -> Iterator[None]:
         stop()
         ACTIVE.value = before
         budget.renew()
+
+
+@contextmanager
+def time_limited(seconds: float) -> Iterator[None]:
+    """Raise `TimeLimit` in the current task after ``seconds``, unless the block is over by then. Cleanup in the block gets as long again.
+
+    The limit of `start` ends the main task; this one ends any task. A task that computes is not disturbed, only one that waits.
+    """
+    task = current()
+    limit = TimeLimit(f"It took longer than {seconds:g} s.")
+    timer = call_every(seconds, lambda: task.end_wait(limit))
+    try:
+        yield
+    finally:
+        timer.cancel()
 
 
 _idle: Cell[Kernel | None] = Cell(None, fresh=True)

@@ -364,13 +364,13 @@ def prompt_of(repl):
     return repl.lisp
 
 
-def attend(repl, session=None, lines=None):
+def attend(repl, session=None, kind=HyPrompt):
     """Let the plans of ``session`` go on while ``repl`` waits for a line, and let Ctrl-C end them and not the REPL.
 
-    session: a `Session`; by default the one that is there, or a new one in wall time. lines: as of `HyPrompt`.
+    session: a `Session`; by default the one that is there, or a new one in wall time. kind: the class of the prompt.
     """
     if getattr(repl, "lisp", None) is None:
-        repl.lisp = HyPrompt(repl, session or session_of_prompt(), lines)
+        repl.lisp = kind(repl, session or session_of_prompt())
         if repl.output_fn is hy.repr:  # and not what the user has chosen
             repl.output_fn = repl.lisp.shown_in_hy
         name_as_later_releases(hy.repl)
@@ -395,10 +395,10 @@ def go_on_in_hy(repl):
     prompt_of(repl).change_back()
 
 
-def run(make_session, banner=None):
+def run(make_session, banner=None, kind=HyPrompt, farewell=None):
     """``cramhy repl --hy``: a REPL of Hy with the macros of the plan language. Returns the exit status.
 
-    banner: the lines to begin with, or ``None`` for Hy's.
+    banner: the lines to begin with, or ``None`` for Hy's. kind: the class of the prompt. farewell: what is said at the end, or ``None``.
     """
     try:
         session = make_session()
@@ -406,7 +406,7 @@ def run(make_session, banner=None):
         report(condition_of(problem))
         return 1
     try:
-        return _repl_of(session, banner=banner).run()
+        return _repl_of(session, kind, functools.partial(_interact, farewell=farewell), banner).run()
     except SystemExit as leaving:
         return exit_status(leaving)
     finally:
@@ -419,29 +419,29 @@ def converse(session, lines, text="", begun=lambda repl: None):
 
     text: Hy that is answered first. begun: called with the `hy.REPL` before its first prompt.
     """
-    repl = _repl_of(session, lines, "")
+    repl = _repl_of(session, functools.partial(HyPrompt, lines=lines), banner="")
     begun(repl)
     if text:
         repl.lisp._answer_in_hy(text)
     repl.run()
 
 
-def _repl_of(session, lines=None, banner=None):
-    """A `hy.REPL` with the macros of the plan language."""
+def _repl_of(session, kind=HyPrompt, interact=None, banner=None):
+    """A `hy.REPL` with the macros of the plan language. interact: its loop, a function of the REPL and the banner; by default its own."""
     repl = hy.REPL()
-    attend(repl, session, lines)
+    attend(repl, session, kind)
     repl.runsource("(require cramhy *)")
-    if lines is None:
-        repl.interact = functools.partial(_interact, repl)
+    if interact is not None:
+        repl.interact = functools.partial(interact, repl)
     if banner is not None:
         repl.banner = lambda: banner
     return repl
 
 
-def _interact(repl, banner):
+def _interact(repl, banner, farewell=None):
     """The loop of ``repl``. What is typed is kept in our file. That of Hy's prompts has what was typed in the session that ended last."""
     with repl.lisp.input.keep(History(place("hy-history"))) if "readline" in sys.modules else nullcontext():
-        type(repl).interact(repl, banner)
+        type(repl).interact(repl, banner, farewell)
 
 
 # --------------------------------------------------------------------------------------------------------------------- a pipe

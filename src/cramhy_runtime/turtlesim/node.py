@@ -342,6 +342,13 @@ def each_simulator(callback: Callable[[Turtlesim], object]) -> None:
         callback(simulator)
 
 
+def expect_no_more(callback: Callable[[Turtlesim], object]) -> None:
+    """Undo `each_simulator` for simulators that start later."""
+    expecting = _expecting.get(graph.active(), [])
+    if callback in expecting:
+        expecting.remove(callback)
+
+
 def start_turtlesim(name: str | None = None, namespace: str = "/", echo: Echo = None) -> Turtlesim:
     """Start the simulator in the active graph and return it. Arguments: see `Program`."""
     return Turtlesim(name, namespace, echo=echo)

@@ -8,10 +8,10 @@ back ends, and several faults at once; the ordinary suite a part of them.
 
 from __future__ import annotations
 
-import os
 import random
 
 import pytest
+from systems import SOAK
 
 from cramhy_runtime import kernel
 from cramhy_runtime.testing import faults
@@ -21,7 +21,6 @@ from .harness import check_run, faults_of
 from .plans import PLANS
 from .python_plans import PYTHON_PLANS
 
-SOAK = bool(os.environ.get("CRAMHY_SOAK"))
 RANDOM = 200 if SOAK else 3
 BACKENDS = ["threads", "greenlet"]
 

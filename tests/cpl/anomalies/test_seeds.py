@@ -5,9 +5,9 @@
 
 from __future__ import annotations
 
-import os
 
 import pytest
+from systems import SOAK
 
 from cramhy_runtime.testing import Schedule
 
@@ -16,7 +16,7 @@ from .harness import check_run
 from .plans import PLANS
 from .python_plans import PYTHON_PLANS
 
-SEEDS = 1000 if os.environ.get("CRAMHY_SOAK") else 20
+SEEDS = 1000 if SOAK else 20
 
 
 @pytest.mark.parametrize("plan", [*PLANS, *ACTING_PLANS, *PYTHON_PLANS], ids=lambda plan: plan.name)

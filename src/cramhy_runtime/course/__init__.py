@@ -1,0 +1,17 @@
+"""The course: pages of the tutorials as text, code to type and tasks, for the terminal (``cramhy learn``), a browser and notebooks.
+
+    from cramhy_runtime import course
+
+    course.as_json()                          # all pages as plain data, with HTML (`web`)
+    course.check("rectangle", session)        # {"passed": True, "told": ["Well done: this task is solved."]}
+
+Where the parts are: `contents` (which pages there are), `parts` (what a page is made of), `reading` (takes the Markdown apart),
+`checking` (whether a task is solved), `package` (the same for Lisp), `web` (for a page in a browser) · `learn`, `guide`, `shown`, `files`,
+`progress` (``cramhy learn``: the prompt, the way through a page, text for a terminal, the student's files, how far somebody is).
+"""
+
+from .checking import check, task
+from .reading import PageError, page, pages
+from .web import as_json
+
+__all__ = ["as_json", "check", "page", "pages", "PageError", "task"]

@@ -1,0 +1,84 @@
+"""Checks whether a task of the course is solved, in the session in which the student has typed. The judges are those of exercises."""
+
+from __future__ import annotations
+
+import sys
+
+from cramhy_runtime.grading import in_session
+from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+from .parts import Task
+from .reading import PageError, pages
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from cramhy_runtime.session.session import Session
+
+PASSED = "Well done: this task is solved."
+
+
+def task(name: str) -> Task:
+    """The task of that name. Raises `PageError`."""
+    tasks = {each.name: each for page in pages() for each in page.tasks}
+    if name not in tasks:
+        near = near_names(name, tasks)
+        raise PageError(f"There is no task {name}. " + (f"Did you mean {near[0]}?" if near else f"There are {', '.join(tasks)}."))
+    return tasks[name]
+
+
+def check(
+    name: str, session: Session | None = None, language: str = "lisp", evaluate: Callable[[str], list[Any]] | None = None
+) -> dict[str, Any]:
+    """Whether the task ``name`` is solved: ``{"passed": bool, "told": [str, ...]}``. It is called by the session's main task.
+
+    session: the student's; ``None``: the current one. language: "lisp" or "hy", in which the solution is written. evaluate: gives the
+    values of a text in that language, for Hy in the module where the student types; by default the session evaluates Lisp in its package,
+    and Hy in the module of the prompt. Raises `PageError` for an unknown name, and `Interruption` after Ctrl-C.
+    """
+    wanted = task(name)
+    if evaluate is None:
+        evaluate = _hy_evaluator() if language == "hy" else _lisp_evaluator(session)
+    wrong = in_session.faults(wanted.title, [in_language(table, language) for table in wanted.checks], evaluate)
+    return {"passed": not wrong, "told": wrong or [PASSED]}
+
+
+def in_language(table: dict[str, Any], language: str) -> dict[str, Any]:
+    """The table of a check with what counts in ``language``: the key ``do-hy`` replaces ``do`` in Hy."""
+    common = {key: value for key, value in table.items() if not key.endswith("-hy")}
+    own = {key.removesuffix("-hy"): value for key, value in table.items() if key.endswith("-hy")}
+    return {**common, **own} if language == "hy" else common
+
+
+def _lisp_evaluator(session):
+    from cramhy_runtime.session.session import current
+
+    chosen = session or current()
+    if chosen is None:
+        raise PageError("There is no session in which something could have been typed.")
+    return chosen.evaluate_text
+
+
+def _hy_evaluator():
+    from cramhy_runtime.jupyter.cells import MODULE
+
+    for name in (MODULE, "__console__", "__main__"):
+        module = sys.modules.get(name)
+        if module is not None and (name == MODULE or hasattr(module, "_hy_repl")):
+            return hy_evaluator(module)
+    raise PageError("Nothing was typed in Hy: there is no prompt of Hy, and no cell.")
+
+
+def hy_evaluator(module: Any) -> Callable[[str], list[Any]]:
+    """A function that evaluates texts of Hy in ``module``, and gives the value of the last form in a list."""
+
+    def evaluate(text):
+        import hy
+
+        value = None
+        for model in hy.read_many(text):
+            value = hy.eval(model, module=module)
+        return [value]
+
+    return evaluate

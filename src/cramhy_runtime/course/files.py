@@ -1,0 +1,85 @@
+"""The folders in which a student works, and the files of the pages in them.
+
+The lectures let a package of the student's own grow, which has the name of the one that comes with cramhy. So the lectures have a folder of
+their own, and the other pages find cramhy's package.
+"""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+from cramhy_runtime import storage
+from cramhy_runtime.grading.exercise import own_exercises
+
+from . import contents
+from .parts import Code, File, Page
+from .reading import page as page_of
+
+HY_PACKAGE = "turtlesim_in_hy"
+"""The course's package in plain Hy, which the later pages import."""
+
+
+def work_folder(page: Page, language: str, top: Path) -> Path | None:
+    """The folder for a page below ``top``, made if the page needs files; ``None`` if it needs none."""
+    imports = _imports_hy_package(page) and language == "hy"
+    if not imports and not any(isinstance(part, File) for part in page.parts):
+        return None
+    place = top / ("lectures" if page.name in contents.GROWING else "turtle")
+    place.mkdir(parents=True, exist_ok=True)
+    if imports and not (place / HY_PACKAGE).exists():
+        shutil.copytree(_tutorials() / HY_PACKAGE, place / HY_PACKAGE, ignore=shutil.ignore_patterns("__pycache__"))
+    return place
+
+
+def _imports_hy_package(page):
+    written = HY_PACKAGE.replace("_", "-")
+    return any(written in typed.form for part in page.parts if isinstance(part, Code) for typed in part.hy)
+
+
+def _tutorials():
+    return next(iter(own_exercises().values())).parents[1]
+
+
+def earlier(page: Page, language: str) -> dict[str, str]:
+    """The files of the pages before, by name, that a page goes on with."""
+    found: dict[str, str] = {}
+    if page.name in contents.GROWING:
+        for name in contents.GROWING[: contents.GROWING.index(page.name)]:
+            found |= dict(_files(page_of(name), language))
+    return found
+
+
+def _files(page, language):
+    for part in page.parts:
+        if isinstance(part, File) and (file := getattr(part, language)) is not None:
+            yield file
+
+
+def known_texts(name: str) -> set[str]:
+    """All texts that pages give to the file of that name."""
+    return {
+        text for each in contents.NAMES for language in ("lisp", "hy") for file, text in _files(page_of(each), language) if file == name
+    }
+
+
+def provide(name: str, text: str, over: bool = False) -> str:
+    """Make ``text`` the file ``name`` in the current folder. Returns what happened: "written", "there", or "other".
+
+    A file that is there with another text stays as it is ("other"), unless that text is of the course, or ``over``. Then what was there
+    becomes NAME.old. Errors: `OSError`.
+    """
+    path = Path(name)
+    try:
+        present = path.read_text(encoding="utf-8", errors="replace")
+    except FileNotFoundError:
+        present = None
+    if present == text:
+        return "there"
+    if present is not None and present not in known_texts(name):
+        if not over:
+            return "other"
+        storage.write_whole(path.with_name(path.name + ".old"), present, durable=False)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    storage.write_whole(path, text, durable=False)
+    return "written"

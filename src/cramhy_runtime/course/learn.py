@@ -1,0 +1,196 @@
+"""``cramhy learn``: the course in the terminal. The prompt is that of ``roslisp_repl`` or ``cramhy repl --hy``, with a few commands more.
+
+Each page has an image of its own, so what was defined on one page is not there on another, and answers come as the page shows them. The
+commands begin with a colon. The lines that are typed go by `Guided.read_line`, which carries commands out and lets all others pass.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import sys
+from pathlib import Path
+
+from cramhy_runtime import kernel
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+from cramhy_runtime.repl import hy_prompt, prompt_words
+from cramhy_runtime.repl.console import Console
+from cramhy_runtime.repl.line_input import BROKEN_OFF, Lines
+from cramhy_runtime.repl.listener import Listener, at_the_prompt
+from cramhy_runtime.session import Image
+from cramhy_runtime.session.session import Interruption
+
+from . import contents, files, guide
+from .checking import hy_evaluator
+from .guide import Guide
+from .progress import Progress
+from .reading import PageError
+from .shown import Style
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from cramhy_runtime.session.session import Session
+
+FOLDER = "cramhy-course"
+"""The folder for files of the student, below the one where ``cramhy learn`` was typed."""
+_PROMPT = re.compile(r"\s*(?:[A-Z][A-Z-]*> |=> )")
+
+
+class Guided(Listener):
+    """A listener with a guide, which carries out the commands among the lines."""
+
+    guide: Guide
+    _greeted = False
+
+    def read_line(self, prompt: str) -> Any:
+        """The next line that is not a command; ``None`` when the page is left."""
+        if not self._greeted:
+            self._greeted = True
+            self.say(self.guide.show())
+        while not self.guide.over:
+            if self._begins() and not self.level and (cue := self.guide.cue()):
+                self.say(cue)
+            line = super().read_line(prompt)
+            if line is None or line is BROKEN_OFF or not self._begins():
+                return line
+            line = _PROMPT.sub("", line, count=1)  # copied from the page with what stands before it
+            found = guide.command(line)
+            if found is not None and (line.lstrip().startswith(":") or not self.is_variable(line.split()[0])):
+                self._carry_out(line, *found)
+            elif not self.level and (told := guide.meant(line)):
+                self.say(told)
+            else:
+                return line
+        return None
+
+    def _begins(self):
+        """Whether the line that is read begins a form."""
+        return not getattr(self.input, "before", ())
+
+    def _carry_out(self, line, name, argument):
+        if isinstance(self.input, Lines):
+            self.input.remember(line.strip())
+        try:
+            if name != "check":
+                self.say(self.guide.do(name, argument))
+            elif self.level or not at_the_prompt():
+                self.say("; The debugger is open. Leave it first: q leads back to the prompt. Then check.")
+            else:
+                self.say(self.guide.check(self.evaluator()))
+        except kernel.Terminated:
+            raise
+        except (KeyboardInterrupt, kernel.Abandoned, Interruption):
+            self.interrupted()
+
+    def remember(self, text: str) -> None:
+        super().remember(text)
+        self.guide.typed(text)
+
+    def evaluator(self) -> Callable[[str], list[Any]]:
+        """The function by which a check evaluates texts."""
+        raise NotImplementedError
+
+    def is_variable(self, word: str) -> bool:
+        """Whether the student has given the word a value, so that it is not a command."""
+        raise NotImplementedError
+
+
+class LispPrompt(Guided, Console):
+    """The prompt of Common Lisp."""
+
+    def over(self) -> bool:
+        return self.guide.over
+
+    def evaluator(self):
+        return self.session.evaluate_text
+
+    def is_variable(self, word):
+        return prompt_words.word(word, (word.lower(),)) is None
+
+
+class HyPrompt(Guided, hy_prompt.HyPrompt):
+    """The prompt of Hy. After ``(in-package ...)`` it is one of Lisp, where tasks are checked in Lisp's words."""
+
+    def evaluator(self):
+        return self.session.evaluate_text if self.in_lisp else hy_evaluator(self.repl.module)
+
+    def is_variable(self, word):
+        return word in self.repl.locals
+
+
+def run(
+    make_session: Callable[[contextlib.ExitStack], Session],
+    language: str = "lisp",
+    page: str | None = None,
+    top: Path | None = None,
+    progress: Progress | None = None,
+    style: Style | None = None,
+    lines: Lines | None = None,
+) -> int:
+    """Go through the course from a page on, until the student leaves. Returns the exit status.
+
+    make_session: makes the session of a page; it gets a stack that is closed when the page is left. language: "lisp" or "hy". page: the
+    name of the first page, ``None``: the one that was shown last. top: the folder for files of the student. progress, style: by default
+    those of the user and of the terminal. lines: where lines come from, by default from standard input. Raises `PageError` if there is no
+    such page, or if the folder cannot be used.
+    """
+    progress, style = progress or Progress.kept(), style or Style.of_terminal()
+    name = page or (progress.page if progress.page in contents.NAMES else None) or contents.NAMES[0]
+    top = (top or Path(FOLDER)).absolute()
+    status = 0
+    while name is not None and not status:
+        way = Guide(name, language, progress, style)
+        with Image(), contextlib.ExitStack() as closings:
+            closings.enter_context(_in_work_folder(way, top))
+            status = _go(way, lambda closings=closings: make_session(closings), lines)
+        name = way.leaves_for
+    return status
+
+
+def _go(way, make_session, lines):
+    if way.language == "hy":
+
+        class OfPage(HyPrompt):
+            guide = way
+
+            def __init__(self, repl, session):
+                super().__init__(repl, session)
+                self.input = lines or self.input
+
+        return hy_prompt.run(make_session, "", kind=OfPage, farewell="")
+    prompt = LispPrompt(make_session, lines)
+    prompt.guide = way
+    return prompt.run()
+
+
+@contextlib.contextmanager
+def _in_work_folder(way, top):
+    """Let the current folder be that of the page, with the files of earlier pages. Modules of Python in it are forgotten afterwards."""
+    before = os.getcwd()
+    try:
+        place = files.work_folder(way.page, way.language, top)
+        if place is not None:
+            os.chdir(place)
+            for name, text in files.earlier(way.page, way.language).items():
+                files.provide(name, text)
+    except OSError as problem:
+        os.chdir(before)
+        raise PageError(
+            f"The folder {top} for the files of the course cannot be used ({problem.filename}: {problem.strerror}). Name another one: "
+            "cramhy learn --folder FOLDER"
+        )
+    if place is None:
+        yield
+        return
+    sys.path.insert(0, str(place))
+    try:
+        yield
+    finally:
+        os.chdir(before)
+        sys.path.remove(str(place))
+        for name, module in list(sys.modules.items()):
+            places = [getattr(module, "__file__", None), *getattr(module, "__path__", [])]
+            if any(str(each).startswith(f"{place}{os.sep}") for each in places):
+                del sys.modules[name]

@@ -1,0 +1,80 @@
+"""What a page of the course is made of, once its text is taken apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from cramhy_runtime.kernel.typing_names import Any
+
+LANGUAGES = ("lisp", "hy")
+
+
+@dataclass(frozen=True)
+class Text:
+    """Markdown: paragraphs, headings, lists, tables, pictures, and blocks of code that are not typed at the prompt."""
+
+    markdown: str
+
+
+@dataclass(frozen=True)
+class Typed:
+    """A form that is typed, and what comes of it. ``prompt``: in front of it. ``answer``: ends with a newline, unless it is empty."""
+
+    prompt: str
+    form: str
+    answer: str
+
+    @property
+    def text(self) -> str:
+        """The form without the spaces that put its lines below the first one, behind the prompt."""
+        first, *others = self.form.split("\n")
+        indent = " " * len(self.prompt)
+        return "\n".join([first, *(line.removeprefix(indent) for line in others)])
+
+
+@dataclass(frozen=True)
+class Code:
+    """A piece of a session. ``lisp``, ``hy``: what is typed in each language; empty if there is nothing in that one."""
+
+    lisp: tuple[Typed, ...] = ()
+    hy: tuple[Typed, ...] = ()
+
+
+@dataclass(frozen=True)
+class File:
+    """A file that the student writes. ``lisp``, ``hy``: its name and text in each language, or ``None``."""
+
+    lisp: tuple[str, str] | None = None
+    hy: tuple[str, str] | None = None
+
+
+@dataclass(frozen=True)
+class Task:
+    """A task. ``markdown``: what to do. ``start``: code to begin with, by language. ``hints``: Markdown, from the first to the last.
+
+    ``checks``: tables as below ``[[check]]`` of an exercise (docs/how-to/grading.md). A key that ends in ``-hy`` counts in Hy only.
+    """
+
+    name: str
+    title: str
+    markdown: str
+    start: dict[str, str] = field(default_factory=dict)
+    hints: tuple[str, ...] = ()
+    checks: tuple[dict[str, Any], ...] = ()
+
+
+Part = Text | Code | File | Task
+
+
+@dataclass(frozen=True)
+class Page:
+    """A page: its ``name``, its ``title``, and its ``parts`` in their order."""
+
+    name: str
+    title: str
+    parts: tuple[Part, ...]
+
+    @property
+    def tasks(self) -> list[Task]:
+        """The tasks among the parts."""
+        return [part for part in self.parts if isinstance(part, Task)]

@@ -1,0 +1,125 @@
+"""Markdown of the course's pages as text for a terminal: paragraphs are filled, and marks become bold or go.
+
+Only what the pages use is understood: headings, paragraphs, lists, tables, blocks of code, pictures, links, emphasis and code in a line.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import sys
+import textwrap
+
+from cramhy_runtime.kernel.terminals import draws
+
+WIDEST = 96
+"""Columns of the widest text; longer lines are hard to read."""
+_BLOCK = re.compile(r"^```[^\n]*\n(.*?)^```$", re.M | re.S)
+_ITEM = re.compile(r"([*-]|\d+\.) +")
+_PICTURE = re.compile(r"!\[([^\]]*)\]\([^)]*\)")
+_LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
+_STRONG, _EMPHASIS = re.compile(r"\*\*([^*]+)\*\*"), re.compile(r"(?<![\w*`])\*([^*\s][^*]*)\*(?![\w*])")
+_CODE = re.compile(r"`([^`]+)`")
+BOLD, CODE, PLAIN = "\x1b[1m", "\x1b[36m", "\x1b[0m"
+
+
+class Style:
+    """How text is shown. width: columns. colours: whether the terminal understands them."""
+
+    def __init__(self, width: int = WIDEST, colours: bool = False):
+        self.width, self.colours = width, colours
+
+    @classmethod
+    def of_terminal(cls) -> Style:
+        """What standard output is. The variable NO_COLOR turns colours off (https://no-color.org)."""
+        columns = shutil.get_terminal_size((WIDEST, 24)).columns
+        return cls(max(30, min(columns - 1, WIDEST)), draws(sys.stdout) and not os.environ.get("NO_COLOR"))
+
+    def bold(self, text: str) -> str:
+        return f"{BOLD}{text}{PLAIN}" if self.colours else text
+
+    def code(self, text: str) -> str:
+        return f"{CODE}{text}{PLAIN}" if self.colours else text
+
+
+def text(markdown: str, style: Style) -> str:
+    """Markdown as text. Lines have at most ``style.width`` columns, but for code and tables."""
+    markdown = re.sub(r"<!--.*?-->\n?", "", markdown, flags=re.S)
+    found, end = [], 0
+    for match in _BLOCK.finditer(markdown):
+        found += _paragraphs(markdown[end : match.start()], style)
+        found.append(code(match[1], style))
+        end = match.end()
+    return "\n\n".join([*found, *_paragraphs(markdown[end:], style)])
+
+
+def code(block: str, style: Style) -> str:
+    """A block of code, indented."""
+    return "\n".join(f"    {style.code(line)}" if line else "" for line in block.rstrip("\n").split("\n"))
+
+
+def _paragraphs(markdown, style):
+    for paragraph in re.split(r"\n\s*\n", markdown.strip("\n")):
+        if paragraph.strip():
+            yield _paragraph(paragraph.strip("\n"), style)
+
+
+def _paragraph(paragraph, style):
+    if paragraph.startswith("#"):
+        return style.bold(_marks(paragraph.lstrip("# "), Style()))
+    if paragraph.startswith("|"):
+        return _table(paragraph, style)
+    if _ITEM.match(paragraph):
+        items = re.split(r"\n(?=(?:[*-]|\d+\.) )", paragraph)
+        return "\n".join(_item(item, style) for item in items)
+    picture = _PICTURE.fullmatch(paragraph)
+    if picture:
+        return _filled(f"(The picture shows: {picture[1]})", style)
+    return _filled(paragraph, style)
+
+
+def _item(item, style):
+    mark = _ITEM.match(item)
+    lead = f"  {'*' if mark[1] in '*-' else mark[1]} "
+    return _filled(item[mark.end() :], style, lead, " " * len(lead))
+
+
+def _table(paragraph, style):
+    rows = [[_marks(cell.strip(), Style()) for cell in row.strip("|").split("|")] for row in paragraph.split("\n")]
+    rows = [row for row in rows if not all(re.fullmatch(r":?-+:?", cell) for cell in row)]
+    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+    return "\n".join("  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows)
+
+
+def _marks(line, style):
+    """A line without the marks of Markdown. What was code, or strong, has the colours of the style."""
+    line = _LINK.sub(r"\1", _PICTURE.sub(r"(The picture shows: \1)", line))
+    pieces = re.split(r"(`[^`]+`)", line)  # stars in code are no marks
+    for place, piece in enumerate(pieces):
+        if place % 2:
+            pieces[place] = style.code(piece[1:-1])
+        else:
+            pieces[place] = _EMPHASIS.sub(r"\1", _STRONG.sub(lambda match: style.bold(match[1]), piece))
+    return "".join(pieces)
+
+
+def _filled(paragraph, style, first="", rest=""):
+    """A paragraph filled to the width. Code in it is not broken."""
+    plain = _marks(" ".join(paragraph.split()), Style())
+    lines = textwrap.wrap(plain, style.width, initial_indent=first, subsequent_indent=rest, break_long_words=False, break_on_hyphens=False)
+    if not style.colours:
+        return "\n".join(lines)
+    return _coloured("\n".join(lines), paragraph, style)
+
+
+def _coloured(filled, paragraph, style):
+    """``filled`` with colours at the pieces that are code in ``paragraph``; line ends may have come into them."""
+    start = 0
+    for word in _CODE.findall(" ".join(paragraph.split())):
+        match = re.compile(r"\s+".join(map(re.escape, word.split()))).search(filled, start)
+        if match:
+            shown = "\n".join(re.sub(r"^( *)(.*)$", lambda line: line[1] + style.code(line[2]), line) for line in match[0].split("\n"))
+            filled = filled[: match.start()] + shown + filled[match.end() :]
+            start = match.start() + len(shown)
+    return filled

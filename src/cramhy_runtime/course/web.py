@@ -1,0 +1,90 @@
+"""The pages of the course as plain data with HTML, for the page in a browser. It needs the package ``markdown``, where a site is made."""
+
+from __future__ import annotations
+
+import base64
+import html
+import mimetypes
+import re
+
+from cramhy_runtime.extras import install_command
+from cramhy_runtime.kernel.typing_names import Any
+
+from . import contents
+from .parts import LANGUAGES, Code, File, Task, Typed
+from .reading import pages
+
+_LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|!\[[^\]]*\]\([^)]*\))*)\]\((?![a-z]+:)[^)]*\)")
+_PICTURE = re.compile(r"!\[([^\]]*)\]\(([^)]+)\)")
+
+
+def as_json() -> dict[str, Any]:
+    """All pages as data that `json` can write::
+
+        {"pages": [{"name", "title", "parts": [
+            {"kind": "text", "html"}
+            {"kind": "code", "lisp", "hy", "answer", "answer_hy"}
+            {"kind": "file", "lisp": {"name", "text"}, "hy": {"name", "text"}}
+            {"kind": "task", "name", "title", "html", "start": {"lisp", "hy"}, "hints": [html, ...]}]}]}
+
+    A part of code is what is typed at once, and what is answered; an empty text where there is nothing in a language. A file may be
+    ``None`` in a language. Pictures are inside of the HTML. Links to other pages of the documentation are plain words.
+    """
+    return {
+        "pages": [
+            {"name": page.name, "title": page.title, "parts": [data for part in page.parts for data in _data(part)]} for page in pages()
+        ]
+    }
+
+
+def _data(part):
+    if isinstance(part, Code):
+        return list(_code(part))
+    if isinstance(part, File):
+        return [{"kind": "file", **{language: _file(getattr(part, language)) for language in LANGUAGES}}]
+    if isinstance(part, Task):
+        start = {language: part.start.get(language, "") for language in LANGUAGES}
+        hints = [as_html(hint) for hint in part.hints]
+        return [{"kind": "task", "name": part.name, "title": part.title, "html": as_html(part.markdown), "start": start, "hints": hints}]
+    return [{"kind": "text", "html": as_html(part.markdown)}]
+
+
+def _code(part):
+    """One piece for each form, if both languages have as many; else one for all of them."""
+    none = Typed("", "", "")
+    if len(part.lisp) == len(part.hy) or not (part.lisp and part.hy):
+        count = max(len(part.lisp), len(part.hy))
+        pieces = zip(*(([(each,) for each in typed] or [(none,)] * count) for typed in (part.lisp, part.hy)))
+    else:
+        pieces = [(part.lisp, part.hy)]
+    for lisp, hy in pieces:
+        yield {
+            "kind": "code",
+            "lisp": "\n".join(each.text for each in lisp),
+            "hy": "\n".join(each.text for each in hy),
+            "answer": "".join(each.answer for each in lisp),
+            "answer_hy": "".join(each.answer for each in hy),
+        }
+
+
+def _file(file):
+    return None if file is None else {"name": file[0], "text": file[1]}
+
+
+def as_html(text: str) -> str:
+    """Markdown of a page as HTML."""
+    try:
+        import markdown
+    except ImportError:
+        raise ImportError(f"The pages of the course become HTML with the package markdown. {install_command('docs')}") from None
+    text = _PICTURE.sub(_picture, _LINK.sub(r"\1", re.sub(r"<!--.*?-->\n?", "", text, flags=re.S)))
+    return markdown.markdown(text, extensions=["tables", "fenced_code"])
+
+
+def _picture(match):
+    file = contents.folder() / match[2]
+    if not file.is_file():
+        return match[1]
+    kind = mimetypes.guess_type(file.name)[0] or "image/png"
+    data = base64.b64encode(file.read_bytes()).decode()
+    return f'<img alt="{html.escape(match[1])}" src="data:{kind};base64,{data}">'

@@ -1,0 +1,161 @@
+"""A check of what stands in a session that is there already: the student's own, in which the functions were just typed.
+
+Nothing is loaded and nothing is protected. The turtle of the session drives: a check that lets it drive begins with a clean paper and a
+fresh turtle, and the student sees what is checked. A check with ``paper`` or ``at`` but without ``do`` looks at the paper and the turtle
+as they are.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from contextlib import contextmanager
+from pathlib import Path
+
+from cramhy_runtime import kernel
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+from cramhy_runtime.session.session import Interruption
+from cramhy_runtime.turtlesim.node import running_simulator
+
+from . import judging
+from .exercise import Check, Exercise, of_checks
+from .jobs import job
+from .performing import carry_out
+from .recording import Recording
+from .told import Told
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_MISSING = re.compile(
+    r"(?P<form>\(.*) ended with an error:\n\s*(?:The function (?P<lisp>\S+) is undefined|name '(?P<hy>\S+)' is not defined$)", re.S
+)
+"""The report of a form with a function that may not be there."""
+NO_TURTLE = "There is no turtle yet. Start it as the page says, and check again."
+
+
+class _Evaluator:
+    """Takes the place of a session: its forms are evaluated by a function of a text, which gives values. ``interrupted``: by Ctrl-C."""
+
+    def __init__(self, evaluate, seconds):
+        self.evaluate, self.seconds = evaluate, seconds
+        self.interrupted = False
+
+    def evaluate_text(self, form):
+        if self.interrupted:
+            raise Interruption
+        try:
+            with kernel.time_limited(self.seconds):
+                return self.evaluate(form)
+        except Interruption:
+            self.interrupted = True
+            raise
+
+
+def faults(title: str, tables: list[dict[str, Any]], evaluate: Callable[[str], list[Any]]) -> list[str]:
+    """What is wrong, as sentences for the student; nothing if all checks pass.
+
+    title: of the exercise. tables: its checks, as below ``[[check]]``; ``say`` takes the place of all that would be told of a check.
+    evaluate: gives the values of a text's last form, in the language of the checks. Raises `ExerciseError`, and `Interruption` after
+    Ctrl-C.
+    """
+    looks, others = [table for table in tables if _looks(table)], [table for table in tables if not _looks(table)]
+    wrong = [sentence for table in looks for sentence in _as_it_is(table)]
+    if wrong or not others:
+        return wrong
+    exercise = of_checks(title, [{key: value for key, value in table.items() if key != "say"} for table in others])
+    for check, table in zip(exercise.checks, others):
+        for seed in range(1, check.seeds + 1):
+            wrong = _tried(exercise, check, seed, evaluate)
+            if wrong:
+                return [table["say"]] if "say" in table else [*wrong, *([table["hint"]] if "hint" in table else [])]
+    return []
+
+
+@contextmanager
+def _fast():
+    """In the block virtual time passes as fast as the machine computes."""
+    pace = kernel.pace()
+    speed = pace.speed
+    if not pace.virtual or speed is None:
+        yield
+        return
+    pace.set_speed(None)
+    try:
+        yield
+    finally:
+        pace.set_speed(speed)
+
+
+def _looks(table):
+    return not any(kind in table for kind in ("do", "ask", "tests", "source"))
+
+
+def _tried(exercise: Exercise, check: Check, seed: int, evaluate):
+    work, values = job(exercise, check, seed, {})
+    reports = []
+
+    def tell(kind, **facts):
+        reports.append(f"{work['nonce']} {json.dumps({'kind': kind, **facts})}")
+
+    made = _Evaluator(evaluate, work["turtle_time"])
+    recording = Recording(tuple(work["start"]), work["troubles"], seed)
+    if check.kind == "do":
+        simulator = running_simulator()
+        if simulator is None:
+            return [NO_TURTLE]
+        simulator.reset()
+        recording.watch()
+    debugger = conditions.install_debugger(None)  # an error belongs to the verdict
+    try:
+        with _fast():
+            carry_out(work, Path(), tell, made, recording)
+    finally:
+        conditions.install_debugger(debugger)
+        recording.end()
+    if made.interrupted:
+        raise Interruption
+    told = Told(reports, work["nonce"])
+    if told.error and told.doing == "before":
+        return [f"{told.what} cannot be used:\n{told.error['text']}"]
+    wrong = judging.of_answers(check, work, values, told) if check.kind == "ask" else judging.of_run(check, work, values, told)
+    return [_plainer(sentence) for sentence in wrong]
+
+
+def _plainer(sentence):
+    """A sentence for a student who has not defined the function yet; any other ``sentence`` as it is."""
+    match = _MISSING.match(sentence)
+    if match is None:
+        return sentence
+    missing = (match["hy"] or match["lisp"].rpartition(":")[2]).lower().replace("_", "-")
+    called = re.search(rf"\({re.escape(missing)}[\s)]", match["form"].lower().replace("_", "-"))
+    return sentence if called is None else f"There is no function {missing} yet."
+
+
+# ------------------------------------------------------------------------------------------------------------------- as it is
+
+
+class _Now:
+    """The paper and the turtle as they are, for the judges that else look at a `Replay`."""
+
+    def __init__(self, simulator):
+        self.simulator = simulator
+        self.begun = self.place()
+
+    def drawing(self):
+        """As `Replay.drawing`."""
+        return [(tuple(colour), [(x1, y1), (x2, y2)]) for x1, y1, x2, y2, colour, _ in self.simulator.canvas.strokes()]
+
+    def place(self, name="turtle1"):
+        """As `Replay.place`."""
+        turtle = self.simulator.turtles.get(name)
+        return None if turtle is None else tuple(turtle.pose()[:3])
+
+
+def _as_it_is(table):
+    """What is wrong with the paper and the turtle as they are."""
+    simulator = running_simulator()
+    if simulator is None:
+        return [NO_TURTLE]
+    return judging.of_place(table, {}, _Now(simulator))

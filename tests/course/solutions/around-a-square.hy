@@ -1,0 +1,2 @@
+(setv side 4)
+(setv around (* 4 side))

@@ -1,0 +1,3 @@
+(setf *side* 4)
+(defvar *around* 0)
+(setf *around* (* 4 *side*))

@@ -1,0 +1,6 @@
+(def-fact-group reversing (motion-grounding)
+  (<- (desig:motion-grounding ?desig (drive ?motion))
+    (desig-prop ?desig (:type :reversing))
+    (desig-prop ?desig (:speed ?speed))
+    (lisp-fun - ?speed ?back)
+    (lisp-fun make-turtle-motion :speed ?back ?motion)))

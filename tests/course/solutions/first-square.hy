@@ -1,0 +1,4 @@
+(defn draw-square []
+  (for [i (range 4)]
+    (ahead 2)
+    (turn-left)))

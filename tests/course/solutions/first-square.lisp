@@ -1,0 +1,4 @@
+(defun draw-square ()
+  (dotimes (i 4)
+    (ahead 2)
+    (turn-left)))

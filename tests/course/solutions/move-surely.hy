@@ -1,0 +1,4 @@
+(import turtlesim-in-hy.simple-plans [move-to rotate-to])
+(defn move-surely [goal]
+  (rotate-to goal)
+  (move-to goal))

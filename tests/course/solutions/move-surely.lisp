@@ -1,0 +1,3 @@
+(defun move-surely (goal)
+  (rotate-to goal)
+  (move-to goal))

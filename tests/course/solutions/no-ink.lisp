@@ -1,0 +1,5 @@
+(define-condition no-ink (simple-plan-failure) ())
+(defun need-ink (ink)
+  (when (zerop ink)
+    (fail 'no-ink))
+  ink)

@@ -1,0 +1,2 @@
+(defun rectangle-around (width height)
+  (* 2 (+ width height)))

@@ -1,0 +1,7 @@
+(def-process-module turtlesim-shaking (motion-designator)
+  (destructuring-bind (command motion) (reference motion-designator)
+    (declare (ignore command))
+    (send-vel-cmd 0 (turtle-motion-angle motion))
+    (wait-duration 1)
+    (send-vel-cmd 0 (- (turtle-motion-angle motion)))
+    (wait-duration 1)))

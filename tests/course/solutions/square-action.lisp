@@ -1,0 +1,2 @@
+(defun square-action (?side)
+  (desig:an action (type drawing) (shape rectangle) (width ?side) (height ?side)))

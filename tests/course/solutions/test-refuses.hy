@@ -1,0 +1,6 @@
+(defn test-no-pose []
+  (try
+    (angle-to 1 7 "here")
+    (except [Exception]
+      (return)))
+  (assert False))

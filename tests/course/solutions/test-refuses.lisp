@@ -1,0 +1,2 @@
+(define-test no-pose
+  (assert-error 'error (angle-to 1 7 "here")))

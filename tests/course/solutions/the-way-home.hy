@@ -1,0 +1,2 @@
+(defn go-home []
+  (top-level (drive-to 5.5 5.5)))

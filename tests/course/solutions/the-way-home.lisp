@@ -1,0 +1,2 @@
+(defun go-home ()
+  (top-level (drive-to 5.5 5.5)))

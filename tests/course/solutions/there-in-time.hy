@@ -1,0 +1,4 @@
+(defn there-in-time [goal seconds]
+  (pursue
+    (move-to goal)
+    (sleep seconds)))

@@ -1,0 +1,4 @@
+(def-fact-group limits ()
+  (<- (too-large ?shape)
+    (shape ?shape ?size)
+    (> ?size 5)))

@@ -1,0 +1,17 @@
+(define-condition dry-pen (simple-plan-failure) ())
+(defvar *dry* 2)
+(defun dip-pen ()
+  (sleep 0.2)
+  (when (plusp *dry*)
+    (decf *dry*)
+    (fail 'dry-pen)))
+(defun draw-line ()
+  (with-retry-counters ((again 3))
+    (with-failure-handling
+        ((dry-pen (failure)
+           (declare (ignore failure))
+           (do-retry again
+             (retry))))
+      (dip-pen)))
+  (send-vel-cmd 2 0)
+  (sleep 1))

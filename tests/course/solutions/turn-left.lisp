@@ -1,0 +1,3 @@
+(defun turn-left ()
+  (send-vel-cmd 0 1.57)
+  (sleep 1))

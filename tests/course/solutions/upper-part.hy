@@ -1,0 +1,1 @@
+(setv high (> (fl-funcall (fn [pose] pose.y) turtle-pose) 8))

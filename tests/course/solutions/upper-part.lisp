@@ -1,0 +1,1 @@
+(defparameter *high* (> (fl-funcall #'turtlesim-msg:y *turtle-pose*) 8))

@@ -1,0 +1,5 @@
+(defun visit (points)
+  (dolist (point points)
+    (let ((goal (make-3d-vector (first point) (second point) 0)))
+      (rotate-to goal)
+      (move-to goal))))

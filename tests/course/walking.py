@@ -1,0 +1,92 @@
+"""Walks through a page of ``cramhy learn`` as a student does who types everything, and notes what the checks say.
+
+A solution of the task NAME is in ``solutions/NAME.lisp`` and ``solutions/NAME.hy``. Wrong ones are made of it by `WRONG`.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from pathlib import Path
+
+from cramhy_runtime.course import learn, reading
+from cramhy_runtime.course.guide import steps
+from cramhy_runtime.course.parts import Code, Task
+from cramhy_runtime.course.progress import Progress
+from cramhy_runtime.course.shown import Style
+from cramhy_runtime.repl.line_input import Lines
+from cramhy_runtime.repl.session import Session
+
+SOLUTIONS = Path(__file__).parent / "solutions"
+ENDINGS = {"lisp": ".lisp", "hy": ".hy"}
+
+
+def solution(name, language):
+    return (SOLUTIONS / f"{name}{ENDINGS[language]}").read_text(encoding="utf-8")
+
+
+class Script(Lines):
+    """The lines of a generator, which goes on when the next line is wanted."""
+
+    def __init__(self, lines):
+        super().__init__()
+        self.coming = lines
+
+    def wait(self, prompt):
+        line = next(self.coming, None)
+        print(f"{prompt}{line if line is not None else ''}")
+        return line
+
+    def keep(self, history):
+        return contextlib.nullcontext()
+
+
+class Walk:
+    """What came of a walk. ``verdicts``: (task, "nothing", "start", "wrong" or "solution") → whether the check passed. ``text``: the screen."""
+
+    def __init__(self, page, language, folder, wrong):
+        self.verdicts, self.progress = {}, Progress()
+        self.page, self.language, self.wrong = reading.page(page), language, wrong
+        out = io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(out):
+            self.status = learn.run(
+                lambda closings: Session(time="virtual"), language, page, folder, self.progress, Style(), Script(self._lines())
+            )
+        self.text = out.getvalue()
+
+    def _lines(self):
+        for step in steps(self.page, self.language):
+            if isinstance(step.part, Code):
+                for typed in getattr(step.part, self.language):
+                    yield from typed.form.split("\n")
+            elif isinstance(step.part, Task):
+                yield from self._task(step.part)
+            yield ":next"
+        yield ":quit"
+
+    def _task(self, task):
+        tries = [("nothing", ""), ("start", task.start.get(self.language))]
+        right = solution(task.name, self.language)
+        tries += [("wrong", right.replace(*each)) for name, language, *each in self.wrong if (name, language) == (task.name, self.language)]
+        for number, (kind, text) in enumerate([*tries, ("solution", right)]):
+            if text is None:
+                continue
+            assert kind != "wrong" or text != right, f"{task.name}: what is to be replaced is not in the solution"
+            for line in text.splitlines():
+                if line.strip():
+                    yield line
+            yield ":check"
+            self.verdicts[task.name, kind, number] = task.name in self.progress.solved
+            self.progress.solved.discard(task.name)
+
+
+if __name__ == "__main__":
+    import sys
+    import tempfile
+
+    from tests.course.test_tasks import WRONG
+
+    with tempfile.TemporaryDirectory() as folder:
+        walk = Walk(sys.argv[1], sys.argv[2], Path(folder), WRONG)
+    print(walk.text)
+    print(walk.verdicts)
