@@ -240,7 +240,7 @@ def test_an_old_node_is_refused(monkeypatch):
 
 def site_of(folder, **files):
     """A folder that looks like a site."""
-    for name, text in {"offline.js": "", "index.html": "the page", **files}.items():
+    for name, text in {"worker.mjs": "1", "index.html": "the page", **files}.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text)
     return folder
@@ -248,7 +248,7 @@ def site_of(folder, **files):
 
 def test_the_local_host_serves_the_site_and_nothing_else(tmp_path):
     (tmp_path / "secret").write_text("secret")
-    folder = site_of(tmp_path / "site", **{"worker.mjs": "1", "pyodide/a.wasm": "2"})
+    folder = site_of(tmp_path / "site", **{"pyodide/a.wasm": "2"})
     with served(folder) as (address, _):
         assert urllib.request.urlopen(address).read() == b"the page"
         for name, kind in (("worker.mjs", "text/javascript"), ("pyodide/a.wasm", "application/wasm")):

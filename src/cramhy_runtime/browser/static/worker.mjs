@@ -75,6 +75,9 @@ const requests = {
     }
   },
 };
+const wanted = new Promise((resolve) => {
+  requests.begin = resolve; // until then this is a spare, made ready for a restart
+});
 onmessage = ({ data: { kind, value }, ports }) => requests[kind]?.(value, ports);
 
 let python = null;
@@ -95,16 +98,16 @@ async function begin() {
   python.setStderr(out);
   python.registerJsModule("cramhy_host", { host });
   await unpack(python);
-  folder = await Folder.open(python.FS, HOME, (why) => tell("unkept", why));
-  tell("files");
-  const speed = new URLSearchParams(location.search).get("speed");
   const main = python.runPython(`
-import os
-os.chdir("${HOME}")
 from cramhy_runtime.browser import left_out
 left_out.install()
 from cramhy_runtime.browser.tab import main
 main`);
+  await wanted;
+  folder = await Folder.open(python.FS, HOME, (why) => tell("unkept", why));
+  tell("files");
+  const speed = new URLSearchParams(location.search).get("speed");
+  python.FS.chdir(HOME);
   tell("imported");
   const status = await main.callPromising(speed === "unbounded" ? undefined : Number(speed ?? 1));
   folder.keep();
