@@ -311,13 +311,14 @@ class Listener:
         self.announce(condition, restarts)
         self.level += 1
         try:
-            while True:
-                text = self.read_text(f"{self.level - 1}] ")
-                if text is None:
-                    if not any(restart.name is ABORT for restart in restarts):
-                        return None  # nobody has a place to go on: the error is raised
-                    return conditions.invoke_restart(ABORT)
-                self.answer(text.strip(), restarts, condition)
+            with self.input.choosing(condition, restarts) if isinstance(self.input, Lines) else nullcontext():
+                while True:
+                    text = self.read_text(f"{self.level - 1}] ")
+                    if text is None:
+                        if not any(restart.name is ABORT for restart in restarts):
+                            return None  # nobody has a place to go on: the error is raised
+                        return conditions.invoke_restart(ABORT)
+                    self.answer(text.strip(), restarts, condition)
         finally:
             self.level -= 1
 
