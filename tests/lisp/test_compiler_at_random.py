@@ -47,7 +47,8 @@ def programs(draw, names=Names(), depth=4):
         kinds = (
             simple
             + """+ + list progn if let let let* dotimes dolist block block flet labels lambda unwind-protect catch when and
-            or remember values tagbody < do handler-case handler-case handler-bind ignore-errors""".split()
+            or remember values tagbody < do handler-case handler-case handler-bind ignore-errors
+            search search destructuring-bind""".split()
         )
         kinds += ["signal"] * 4 * bool(names.signals)
         kinds += ["setq"] * 4 * bool(names.variables) + ["return-from"] * 3 * bool(names.blocks)
@@ -118,6 +119,16 @@ def programs(draw, names=Names(), depth=4):
             types = draw(st.lists(st.sampled_from(list(CONDITIONS)), min_size=1, max_size=2))
             function = [("lambda", *handler(type_, new, body(names.plus(variables=(new,))))[1:]) for type_ in types]
             return ("handler-bind", tuple(zip(types, function)), *body(names.plus(signals=("signal",))))
+        case "search":
+            name = draw(st.sampled_from(SEARCHES))
+            items = ("list", *body(most=4))
+            if "remove" not in name and name != "mapcar" and draw(st.booleans()):
+                items = ("coerce", items, "'vector")
+            return (name, ("lambda", (new,), *body(names.plus(variables=(new,)))), items)
+        case "destructuring-bind":
+            form = ("list", expression(), ("list", *body(most=3)), *body(most=2))
+            pattern = ("a", ("b", "&rest", "c"), "&rest", "d")
+            return ("destructuring-bind", pattern, form, *body(names.plus(variables=("a", "b", "c", "d"))))
         case "signal":
             return (draw(st.sampled_from(names.signals)), ("quote", draw(st.sampled_from(list(CONDITIONS)))), ":value", expression())
         case "tagbody":
@@ -130,6 +141,10 @@ def programs(draw, names=Names(), depth=4):
 
 CONDITIONS = {"trouble": ("trouble",), "small-trouble": ("small-trouble", "trouble"), "other-trouble": ("other-trouble", "trouble")}
 """The classes of conditions of the programs, each with those that are above it."""
+
+
+SEARCHES = "find-if position-if count-if some every notany notevery remove-if remove-if-not mapcar".split()
+"""Functions of a function and a sequence that the compiler writes in place."""
 
 
 def handler(type_, variable, forms):
@@ -152,7 +167,7 @@ class Go(Exit):
 def run(form, env):
     """The value of ``form``; ``env`` maps ("variable" | "block" | "function" | "tag", name) to cells, tokens or functions."""
     if isinstance(form, str):
-        return None if form == "nil" else form if form[0] == ":" else env["variable", form][0]
+        return None if form == "nil" else form if form[0] in ":'" else env["variable", form][0]
     if not isinstance(form, tuple):
         return form
     return first(values(form, env))
@@ -185,6 +200,16 @@ def exits(env, name, thunk, kind="block"):
 
 def function(parameters, forms, env):
     return lambda *given: sequence(forms, binding(env, parameters, given))
+
+
+def taken_apart(pattern, items):
+    """(variable, value) pairs of a list ``pattern`` with &rest."""
+    if not pattern:
+        return []
+    name, *others = pattern
+    if name == "&rest":
+        return [(others[0], items or None)]
+    return [*(taken_apart(name, items[0]) if isinstance(name, tuple) else [(name, items[0])]), *taken_apart(others, items[1:])]
 
 
 class Signalled:
@@ -355,6 +380,8 @@ def values(form, env):
                 if exit_.target is not token:
                     raise
                 return exit_.value
+        case "destructuring-bind":
+            return sequence(rest[2:], binding(env, *zip(*taken_apart(rest[0], run(rest[1], env)))))
         case "handler-bind":
             return with_handlers([(type_, run(function, env)) for type_, function in rest[0]], lambda: sequence(rest[1:], env))
     given = [run(item, env) for item in rest]
@@ -369,6 +396,23 @@ def values(form, env):
             return [given]
         case "funcall":
             return given[0](*given[1:])
+        case "coerce":
+            return [given[0]]
+        case "mapcar":
+            return [[first(given[0](item)) for item in given[1]]]
+        case "find-if" | "position-if" | "some":
+            for index, item in enumerate(given[1]):
+                if (answer := first(given[0](item))) is not None:
+                    return [{"find-if": item, "position-if": index, "some": answer}[head]]
+            return [None]
+        case "every" | "notany" | "notevery":
+            for item in given[1]:
+                if (first(given[0](item)) is None) == (head != "notany"):
+                    return [True if head == "notevery" else None]
+            return [None if head == "notevery" else True]
+        case "count-if" | "remove-if" | "remove-if-not":
+            chosen = [item for item in given[1] if (first(given[0](item)) is not None) == (head != "remove-if")]
+            return [len(chosen) if head == "count-if" else chosen or None]
         case "value-of":
             return [given[0].value]
         case "error" | "signal" | "fails":

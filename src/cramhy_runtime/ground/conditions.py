@@ -77,13 +77,19 @@ def signal_condition(condition):
         raise exit_
 
 
-def handled(condition):
-    """As `signal_condition`, but the exit to a ``handler-case`` compiled in place is returned, for the caller to raise: of fewer frames."""
-    if BREAK_ON_SIGNALS.value is not None and truth(BREAK_ON_SIGNALS.value):
-        _break_on_signal(condition)
-    condition.signalled = True
-    running = ACTIVE.value
-    clusters = None if running is None else running.current.handlers
+def handled(condition, run=None):
+    """As `signal_condition`, but the exit to a ``handler-case`` compiled in place is returned, for the caller to raise: of fewer frames.
+
+    run: the pair of the innermost handlers, if they have declined already.
+    """
+    if run is not None:
+        clusters = run[1]
+    else:
+        if BREAK_ON_SIGNALS.value is not None and truth(BREAK_ON_SIGNALS.value):
+            _break_on_signal(condition)
+        condition.signalled = True
+        running = ACTIVE.value
+        clusters = None if running is None else running.current.handlers
     while clusters is not None:
         cluster, outer = clusters
         if cluster.__class__ is Case:
@@ -304,12 +310,16 @@ def error_in_case(task, run, datum, *arguments):
     does.
     """
     condition = make_condition(datum, arguments)
-    if task.handlers is run and BREAK_ON_SIGNALS.value is None:
-        condition.signalled = True
-        index = run[0].clause_for(condition)
-        if index >= 0:
-            return index, condition
-    return signal_error(condition)
+    if task.handlers is not run or BREAK_ON_SIGNALS.value is not None:
+        return signal_error(condition)
+    condition.signalled = True
+    index = run[0].clause_for(condition)
+    if index >= 0:
+        return index, condition
+    exit_ = handled(condition, run)
+    if exit_ is not None:
+        raise exit_
+    return nobody_handled(condition)
 
 
 def cerror(continue_format, datum, *arguments):

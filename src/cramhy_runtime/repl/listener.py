@@ -33,6 +33,7 @@ from . import commands, prompt_words
 from .line_input import BROKEN_OFF, Lines
 from .open_forms import of_lisp
 from .progress import Progress
+from cramhy_runtime.session.boot import boot
 from cramhy_runtime.session.session import Interruption, leave, signalled_here
 
 
@@ -111,6 +112,7 @@ class Listener:
                 continue
             if line is None:
                 return "\n".join(lines) if lines else None
+            boot()  # the prompt does without what forms need
             streams.CONSOLE_OUTPUT.record(f"{'' if lines else prompt}{line}\n")
             if not lines:
                 opened = of_lisp()

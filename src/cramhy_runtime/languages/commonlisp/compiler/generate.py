@@ -418,6 +418,9 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
             name = self.temporary()
             self.branch(test, [*then_out, self.setting(name, then)], [*else_out, self.setting(name, otherwise)])
             return word(name)
+        if isinstance(node, nodes.Let) and not any(isinstance(variable, Symbol) for variable, _ in node.bindings):
+            self.bind(node.bindings, node.body)
+            return self.test(node.body)
         if isinstance(node, nodes.Call) and self.standard(node.symbol):
             if node.symbol in COMPARISONS and len(node.arguments) == 2:
                 return self.comparison(node, node.symbol, node.arguments)
@@ -434,7 +437,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
             return true if not kind & THING else expression(word("and"), true, expression(word("is-not"), value, word("False")))
         model = self.gen(node, FIRST_OF_VALUES)
         if model.__class__ is not core.Expression:
-            return self.call("truth", model)
+            return self.call("truth", model if node.single else self.call("one", model))
         value = word("Lv")
         true = [expression(word("is-not"), expression(word("setx"), value, model), NONE), expression(word("is-not"), value, word("False"))]
         if not node.single:
@@ -448,7 +451,9 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
 
     def branch(self, test, then, otherwise):
         do = word("do")
-        if otherwise:
+        if otherwise and not then:
+            self.emit(word("when"), expression(word("not"), test), *otherwise)
+        elif otherwise:
             self.emit(word("if"), test, expression(do, *then), expression(do, *otherwise))
         else:
             self.emit(word("when"), test, *then) if then else self.emit(do, test)
@@ -509,23 +514,24 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
     def Let(self, node, destination):
         if node.bindings and (body := self.modification(node)) is not None:
             return self.gen(body, destination)
+        dynamic = self.bind(node.bindings, node.body)
+        return self.with_specials(node.body, dynamic, destination) if dynamic else self.gen(node.body, destination)
+
+    def bind(self, pairs, body):
+        """Emit the bindings ``pairs`` of the lexical variables of a ``let``; gives those of the specials, symbols with their values."""
         bindings = []
-        for variable, value in node.bindings:
+        for variable, value in pairs:
             plain = not isinstance(variable, Symbol) and value.__class__ is nodes.LocalVariable
-            if plain and self.alike(variable, value.variable, [node.body, *(other for _, other in node.bindings)]):
+            if plain and self.alike(variable, value.variable, [body, *(other for _, other in pairs)]):
                 variable.name = value.variable.name
             else:
                 bindings.append((variable, value))
-        node = nodes.Let(bindings, node.body)
-        wanted = [RAW if getattr(variable, "raw", False) else VALUE for variable, _ in node.bindings]
-        values = self.arguments([value for _, value in node.bindings], wanted)
-        lexical = [(variable, value) for (variable, _), value in zip(node.bindings, values) if not isinstance(variable, Symbol)]
-        dynamic = [(symbol, value) for (symbol, _), value in zip(node.bindings, values) if isinstance(symbol, Symbol)]
-        for variable, value in lexical:
-            self.bind_variable(variable, value)
-        if not dynamic:
-            return self.gen(node.body, destination)
-        return self.with_specials(node.body, dynamic, destination)
+        wanted = [RAW if getattr(variable, "raw", False) else VALUE for variable, _ in bindings]
+        values = self.arguments([value for _, value in bindings], wanted)
+        for (variable, _), value in zip(bindings, values):
+            if not isinstance(variable, Symbol):
+                self.bind_variable(variable, value)
+        return [(symbol, value) for (symbol, _), value in zip(bindings, values) if isinstance(symbol, Symbol)]
 
     def with_specials(self, body, dynamic, destination):
         def produce(inner):

@@ -192,6 +192,16 @@ class ExitGenerator:
             word("while"), TRUE, expression(word("for"), List([word("Ltick"), ticks]), *(body or [NONE]), refill), expression(word("break"))
         )
 
+    def Each(self, node, destination):
+        items = self.call("each_of_all" if node.whole else "each", self.value(node.sequence), *([node.context] if node.context else []))
+        frame = Frame()
+        self.frames.append(frame)
+        body, _ = self.captured(lambda: self.gen(node.body, EFFECT))
+        self.frames.pop()
+        self.emit(word("for"), List([word(node.variable.name), items]), *(body or [NONE]))
+        self.continue_exits(frame)
+        return self.finish(NONE, node, destination, pure=True)
+
     def counted(self, found):
         """(what Python's ``for`` goes over, its target) of a `Counting`."""
         if found.vector is not None:

@@ -186,6 +186,7 @@ _CALLS = (
     nodes.UnwindProtect,
     nodes.Catching,
     nodes.Handling,
+    nodes.Each,
 )
 
 

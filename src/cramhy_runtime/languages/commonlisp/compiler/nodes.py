@@ -206,6 +206,18 @@ class TagbodyNode(Node):
 
 
 @dataclass
+class Each(Node):
+    """``body`` for each element of a sequence, which is the value of ``variable``. whole: a list is looked at as a whole before."""
+
+    variable: object
+    sequence: Node
+    body: Node
+    whole: bool
+    context: str
+    single = True
+
+
+@dataclass
 class Go(Node):
     tagbody: object
     index: int

@@ -25,6 +25,7 @@ from .nodes import (
     CallValue,
     Checked,
     Constant,
+    Each,
     FunctionReference,
     Functions,
     Go,
@@ -386,6 +387,20 @@ def _tagbody(analyzer, form, env):
     return TagbodyNode(tagbody, analysed)
 
 
+@special("CRAMHY::EACH")
+def _each(analyzer, form, env):
+    """``(each (variable sequence whole context) . body)``: what is written in place of searching functions (``open_coding.py``)."""
+    (symbol, sequence, whole, context), *forms = parts_of(analyzer, form, 1)
+    sequence, inner = analyzer.form(sequence, env), env.child()
+    variable = inner.variables[symbol] = Variable(symbol, env.scope)
+    env.scope.loop_depth += 1
+    try:
+        body = analyzer.body(forms, inner)
+    finally:
+        env.scope.loop_depth -= 1
+    return Each(variable, sequence, body, whole is True, context)
+
+
 @special("GO")
 def _go(analyzer, form, env):
     tag = parts_of(analyzer, form, 1, 1)[0]
@@ -542,4 +557,8 @@ def _or(analyzer, form, env):
 def _support(analyzer, form, env):
     """``(support "name" argument...)``: a call of a function of ``compiler/support.py``; arguments keep all values."""
     name, *arguments = parts_of(analyzer, form, 1)
-    return Support(str(name), [analyzer.form(argument, env) for argument in arguments], single=False)
+    return Support(str(name), [analyzer.form(argument, env) for argument in arguments], single=str(name) in SINGLE_VALUED)
+
+
+SINGLE_VALUED = {"vector", "keep", "same_kind"}
+"""Functions of ``compiler/support.py`` that give one value."""

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from ..collections.sequences import length
 from ..collections.arrays import aref
-from ..collections.sequence_types import characters
+from ..collections.lists import cars
+from ..collections.sequence_types import characters, elements, in_turns, same_kind
 import math
 from fractions import Fraction
 from itertools import zip_longest
@@ -137,6 +138,16 @@ def _items(vector):
         yield aref(vector, index)
         index += 1
         kernel.checkpoint()
+
+
+def each(sequence, context=""):
+    """The elements of a sequence, one after the other. Where a list does not end as it should is found at its end."""
+    return cars(sequence) if sequence.__class__ is Cons else in_turns(elements(sequence, context))
+
+
+def each_of_all(sequence):
+    """The elements of a sequence, which is looked at as a whole before."""
+    return in_turns(elements(sequence))
 
 
 def block_value(exit_, token):
@@ -354,6 +365,10 @@ NAMESPACE = {
     "Lceil": math.ceil,
     "Lfloor": math.floor,
     "Lvector": list,
+    "Leach": each,
+    "Leach_of_all": each_of_all,
+    "Lkeep": list.append,
+    "Lsame_kind": same_kind,
     "Lany_vector": Vector,
     **{f"L{name}": getattr(math, name) for name in "sin cos tan atan exp sqrt log asin acos".split()},
     "Lwrapped": wrapped,

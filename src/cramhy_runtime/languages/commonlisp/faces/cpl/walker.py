@@ -355,6 +355,14 @@ def _catching(walk, form, env):
     return Cons(form.car, Cons(kinds, Cons(walk.form(rest.car, env), list_from(clauses))))
 
 
+@special("CRAMHY::EACH")
+def _each(walk, form, env):
+    loop, body = _two(form)
+    inner, (symbol, sequence, *rest) = env.child(), _items(loop)  # only the compiler writes this form
+    _bind(symbol, inner)
+    return Cons(form.car, Cons(lisp_list(symbol, walk.form(sequence, env), *rest), _body(walk, body, inner)))
+
+
 @special("CRAMHY::HANDLING")
 def _handling(walk, form, env):
     bindings, body = _two(form)
