@@ -5,8 +5,8 @@
 ``*.js``, ``*.css``   the page's modules; ``transport.js`` is that of a tab, and ``editor.js`` has CodeMirror in it
 ``course.json``       the pages of the course
 ``worker.mjs``        the worker with Python; ``stacks.mjs`` is half of the kernel's back end
-``cramhy.tar.gz``     cramhy, Hy and the course, compiled by the Python that runs them
-``pyodide/``          that Python
+``packages.zst``      cramhy, Hy and the course, compiled by the Python that runs them, and Python's library
+``pyodide/``          that Python; its large files are packed by gzip, since not every host does that
 ``offline.js``        the service worker, with the list of all files and their fingerprints
 ====================  ==========================================================================================================
 
@@ -32,11 +32,9 @@ from pathlib import Path
 from .. import storage
 from ..course import contents, web
 from ..view import page
-from . import bundling, packing, pyodide_files
+from . import bundling, left_out, packing, pyodide_files
 
 PACKAGES = ("cramhy", "cramhy_runtime", "hy", "hyrule", "funcparserlib")
-LEFT_OUT = ("jupyter", "lsp", "swank", "view/static", "browser/static", "browser/editor")
-"""Folders of cramhy_runtime that no tab needs, or that stand beside the archive already."""
 POLICY = (
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; style-src 'self'; "
     "img-src 'self' data: blob:; font-src 'self'; base-uri 'none'; form-action 'none'"
@@ -105,10 +103,10 @@ def _sources():
     """Pairs of a place in the archive and a file, for all files that a tab needs."""
     for package in PACKAGES:
         top = _folder_of(package)
-        left_out = [top / name for name in LEFT_OUT] if package == "cramhy_runtime" else []
         for file in _files(top):
-            if not any(file.is_relative_to(folder) for folder in left_out):
-                yield f"{package}/{file.relative_to(top).as_posix()}", file
+            path = file.relative_to(top).as_posix()
+            if not (package == "cramhy_runtime" and left_out.is_left_out(path)):
+                yield f"{package}/{path}", file
     ours = _folder_of("cramhy_runtime")
     clone = ours.parents[1] / "tutorials"
     if not (ours / "tutorials").is_dir() and clone.is_dir():
@@ -124,10 +122,10 @@ def _files(top):
 
 
 def _write_packages(node, made):
-    """``cramhy.tar.gz``: the packages, compiled in Pyodide."""
+    """``packages.zst``: the packages, compiled in Pyodide. What they leave of Python's library is ``pyodide/python_stdlib.zip``."""
     stacks = _folder_of("cramhy_runtime") / "kernel" / "backends" / "stacks.mjs"
     with tempfile.TemporaryDirectory() as folder:
-        source, target = Path(folder) / "source.tar", Path(folder) / "packed.tar"
+        source, target, library = (Path(folder) / name for name in ("source.tar", "packages.zst", "library.zip"))
         with tarfile.open(source, "w", format=tarfile.PAX_FORMAT) as archive:
             for place, file in _sources():
                 entry = tarfile.TarInfo(place)
@@ -135,13 +133,18 @@ def _write_packages(node, made):
                 entry.size, entry.mtime = len(content), packing.TIME
                 archive.addfile(entry, io.BytesIO(content))
         done = subprocess.run(
-            [node, str(Path(__file__).with_name("pack.mjs")), str(made / "pyodide"), str(stacks), str(source), str(target)],
+            [node, str(Path(__file__).with_name("pack.mjs")), *map(str, (made / "pyodide", stacks, source, target, library))],
             capture_output=True,
             text=True,
         )
-        if done.returncode or not target.exists():
+        if done.returncode or not library.exists():
             raise SiteError(f"Pyodide did not compile the packages. It said:\n{(done.stdout + done.stderr)[-3000:]}")
-        (made / "cramhy.tar.gz").write_bytes(gzip.compress(target.read_bytes(), 9, mtime=0))
+        shutil.copy2(target, made)
+        shutil.copy2(library, made / "pyodide" / "python_stdlib.zip")
+    for name in pyodide_files.LARGE:
+        file = made / "pyodide" / name
+        file.with_name(f"{name}.gz").write_bytes(gzip.compress(file.read_bytes(), 9, mtime=0))
+        file.unlink()
     shutil.copy2(stacks, made / "stacks.mjs")
 
 

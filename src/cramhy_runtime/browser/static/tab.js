@@ -1,6 +1,11 @@
 // The session of this tab, as the page sees it: the worker in which Python runs, what is told by it, and what it is asked.
 
 const DEAF = 2000; // ms after Ctrl-C without an answer, after which the page says what helps
+const SPARE = 5000; // ms after the first prompt, when another Python is made ready, so that a restart does not have to wait for it
+const ROOM = 2; // GB of memory that a machine needs for another Python, which takes 70 MB (Chromium 156)
+
+const hasRoom = () => navigator.hardwareConcurrency > 1 && (navigator.deviceMemory ?? ROOM) >= ROOM;
+const python = () => new Worker(`worker.mjs${location.search}`, { type: "module" });
 
 export const supported = typeof WebAssembly === "object" && typeof WebAssembly.Suspending === "function";
 
@@ -36,7 +41,11 @@ class Tab {
 
   begin() {
     this.ready = false;
-    const worker = (this.worker = new Worker(`worker.mjs${location.search}`, { type: "module" }));
+    this.begins = true;
+    const worker = (this.worker = this.spare ?? python());
+    this.spare = null;
+    clearTimeout(this.sparing);
+    worker.postMessage({ kind: "begin" });
     worker.onmessage = ({ data: { kind, value } }) => {
       if (worker !== this.worker) return; // it was ended
       this.#told[kind]?.(value);
@@ -44,6 +53,15 @@ class Tab {
     };
     worker.onerror = (event) => this.#failed(event.message || "the worker cannot be loaded");
     this.#enter("begins");
+  }
+
+  #makeSpare() {
+    this.spare = python();
+    const forget = () => {
+      this.spare = null;
+    };
+    this.spare.onmessage = ({ data: { kind } }) => kind === "failed" && forget();
+    this.spare.onerror = forget;
   }
 
   // A new session. What was defined is gone.
@@ -73,6 +91,8 @@ class Tab {
       this.prompt = value;
       if (value.language === "lisp") this.lispPackage = value.package[0];
       document.body.dataset.prompts = ++this.prompts;
+      if (this.begins && hasRoom()) this.sparing = setTimeout(() => this.#makeSpare(), SPARE);
+      this.begins = false;
       return this.#enter("waits");
     },
     busy: () => this.#enter("busy"),

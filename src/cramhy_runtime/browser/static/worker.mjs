@@ -1,6 +1,7 @@
 // The worker of a tab: Python, a session in it, and its two connections with the page. By postMessage go the prompt's lines, what is
 // printed, Ctrl-C, questions, and what is done with files; by a port of its own go the operations of rosbridge, for the views.
 
+import { packages } from "./unpacking.mjs";
 import { loadPyodide } from "./pyodide/pyodide.mjs";
 import { Folder } from "./folder.mjs";
 import { host } from "./stacks.mjs";
@@ -74,20 +75,15 @@ const requests = {
     }
   },
 };
+const wanted = new Promise((resolve) => {
+  requests.begin = resolve; // until then this is a spare, made ready for a restart
+});
 onmessage = ({ data: { kind, value }, ports }) => requests[kind]?.(value, ports);
 
 let python = null;
 
-async function unpacked(path) {
-  const answer = await fetch(path);
-  if (!answer.ok) throw new Error(`${path} cannot be fetched (${answer.status})`);
-  const bytes = new Uint8Array(await answer.arrayBuffer());
-  if (bytes[0] !== 0x1f || bytes[1] !== 0x8b) return bytes; // a host has said that gzip is its encoding, and the browser has unpacked it
-  return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer());
-}
-
 async function begin() {
-  const packages = unpacked("./cramhy.tar.gz");
+  const unpack = packages("./packages.zst");
   python = await loadPyodide({ env: { HOME, PYTHONHASHSEED: "0", ROS_PACKAGE_PATH: `${HOME}:${PACKAGES}/cramhy_runtime/tutorials` } });
   tell("python");
   const decoder = new TextDecoder();
@@ -101,18 +97,17 @@ async function begin() {
   python.setStdout(out);
   python.setStderr(out);
   python.registerJsModule("cramhy_host", { host });
-  python.FS.writeFile("/tmp/cramhy.tar", await packages);
+  await unpack(python);
+  const main = python.runPython(`
+from cramhy_runtime.browser import left_out
+left_out.install()
+from cramhy_runtime.browser.tab import main
+main`);
+  await wanted;
   folder = await Folder.open(python.FS, HOME, (why) => tell("unkept", why));
   tell("files");
   const speed = new URLSearchParams(location.search).get("speed");
-  const main = python.runPython(`
-import os, tarfile
-with tarfile.open("/tmp/cramhy.tar") as archive:  # by Python's own, which keeps the times: compiled Lisp is stamped with them
-    archive.extractall("${PACKAGES}", filter="fully_trusted")
-os.remove("/tmp/cramhy.tar")
-os.chdir("${HOME}")
-from cramhy_runtime.browser.tab import main
-main`);
+  python.FS.chdir(HOME);
   tell("imported");
   const status = await main.callPromising(speed === "unbounded" ? undefined : Number(speed ?? 1));
   folder.keep();

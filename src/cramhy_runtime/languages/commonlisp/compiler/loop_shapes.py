@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from cramhy_runtime.utilities.records import dataclass
 
+from cramhy_runtime.ground.dispatch.reached_slots import read_attribute, written_attribute
 from cramhy_runtime.ground.packages import sym
 from . import nodes
 from .facts import walk
@@ -176,16 +177,26 @@ def _reads(statements, variable):
     return sum(item.__class__ is nodes.LocalVariable and item.variable is variable for item in walk(statements))
 
 
-_CALLS = (nodes.CallLocal, nodes.CallValue, nodes.CallSetf, nodes.CallSpread, nodes.Support, nodes.UnwindProtect, nodes.Catching)
+_CALLS = (
+    nodes.CallLocal,
+    nodes.CallValue,
+    nodes.CallSetf,
+    nodes.CallSpread,
+    nodes.Support,
+    nodes.UnwindProtect,
+    nodes.Catching,
+    nodes.Handling,
+    nodes.Each,
+)
 
 
 def _quick(statements):
     for item in walk(statements):
         kind = item.__class__
-        if kind in _CALLS and not (kind is nodes.CallSetf and item.symbol in SETTERS):
+        if kind in _CALLS and not (kind is nodes.CallSetf and (item.symbol in SETTERS or written_attribute(item.symbol) is not None)):
             return False
         if kind is nodes.Call and item.symbol not in QUICK and item.symbol not in CHANGES:
-            if item.symbol not in QUICK_OF_TWO or len(item.arguments) != 2:
+            if (item.symbol not in QUICK_OF_TWO or len(item.arguments) != 2) and read_attribute(item.symbol) is None:
                 return False
     return True
 
