@@ -2,8 +2,9 @@
 # make test: the tests. make soak: each case of them, for hours.
 # make docs: the pages with what happens now. make site: the pages as a site, in site/index.html.
 # make bench: what things cost, beside their goals and beside others. make bench-compare COMMIT=HEAD~1: this checkout beside that one.
-# make notebooks OUT=folder: the tutorial as notebooks. make pyodide: fetches Python in WebAssembly, and Node, from npm.
-# The first call of tutorial, view or kitchen makes a small environment in .venv; the first call of any other target adds the rest to it.
+# make notebooks OUT=folder: the tutorial as notebooks.
+# make course: the course for a browser's tab, as static files in course-site. make pyodide: fetches what that needs from npm.
+# The first call of tutorial, view, kitchen or course makes a small environment in .venv; the first call of any other target adds the rest to it.
 PYTHON ?= python3
 COMMIT ?= release
 BIN := .venv/bin
@@ -12,7 +13,7 @@ ROBOT := .venv/.robot
 READY := .venv/.ready
 PEERS := .venv/.peers
 
-.PHONY: tutorial view kitchen test interpreters docs notebooks site pyodide bench bench-compare golden lint soak clean
+.PHONY: tutorial view kitchen test interpreters docs notebooks site pyodide course bench bench-compare golden lint soak clean
 
 tutorial: $(LIGHT)
 	@$(BIN)/python tutorials/lectures.py --png turtle.png
@@ -46,7 +47,10 @@ site: $(READY)
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
 pyodide:
-	@cd webassembly && npm ci --ignore-scripts --no-audit --no-fund
+	@cd webassembly && npm ci --ignore-scripts --no-audit --no-fund --silent
+
+course: $(LIGHT) pyodide
+	@$(BIN)/cramhy browser --out course-site
 
 bench: $(PEERS)
 	@$(BIN)/python benchmarks/table.py
@@ -90,4 +94,4 @@ $(PEERS): $(READY)
 	@touch $(PEERS)
 
 clean:
-	rm -rf .venv .pytest_cache .hypothesis site
+	rm -rf .venv .pytest_cache .hypothesis site course-site

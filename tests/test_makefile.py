@@ -12,7 +12,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 LIGHT, ROBOT, REST = "[repl,web,fast]", "[repl,web,fast,robot]", "[dev]"
-SMALL = {"pyodide": [], "tutorial": [LIGHT], "view": [LIGHT], "kitchen": [LIGHT, ROBOT]}
+SMALL = {"pyodide": [], "tutorial": [LIGHT], "view": [LIGHT], "kitchen": [LIGHT, ROBOT], "course": [LIGHT]}
 TARGETS = re.search(r"^\.PHONY: (.*)$", (ROOT / "Makefile").read_text(), re.M)[1].split()
 
 
@@ -52,3 +52,15 @@ def test_what_an_earlier_version_made_is_made_again(installed):
 def test_changed_requirements_are_installed(installed):
     assert installed("test", ".light", ".ready") == []
     assert installed("test", ".ready", ".light") == [REST]  # the small environment was made anew after the rest was added
+
+
+def test_the_course_is_written_once_what_it_needs_is_fetched(tmp_path):
+    if not shutil.which("make"):
+        pytest.skip("make is not installed")
+    shutil.copy(ROOT / "Makefile", tmp_path)
+    (tmp_path / "pyproject.toml").touch()
+    lines = subprocess.run(["make", "--dry-run", "course"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout.splitlines()
+    fetched, written = (next(number for number, line in enumerate(lines) if word in line) for word in ("npm ci", "cramhy browser --out"))
+    assert fetched < written
+    ignored = (ROOT / ".gitignore").read_text().split()
+    assert lines[written].split()[-1] + "/" in ignored

@@ -353,7 +353,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 
 (defoperator handler-bind [bindings #* body]
   (for [#(type #* _) (elements bindings)] (mention-type type))
-  `(%handler-bind (list ~@(lfor #(type function) (elements bindings) `(list (quote ~type) ~function))) (lambda [] ~@body)))
+  `(%handling ~(list-from (lfor #(type function) (elements bindings) (list-from [type function]))) ~@body))
 
 (defn plain-variables? [variables]
   "Whether the lambda list of a clause has no variable, or one."

@@ -11,7 +11,6 @@ This module stands below all rooms, because each of them may miss an extra.
 from __future__ import annotations
 
 import os
-import shlex
 import sys
 from pathlib import Path
 
@@ -76,4 +75,6 @@ def _path(url):
 
 
 def _quoted(word):
+    import shlex  # few processes miss an extra
+
     return f'"{word}"' if os.name == "nt" and not word.isalnum() else shlex.quote(word)

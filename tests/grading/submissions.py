@@ -1,7 +1,7 @@
 """Submissions with the points that they must get: solutions, starting files, wrong ones, and malicious ones.
 
-`cases` gives for each its name, its exercise, the texts of its files, and the points. ``python -m tests.grading.submissions`` grades them and
-prints what differs.
+`cases` gives for each its name, its exercise, the texts of its files, and the points. ``python -m grading.submissions [PART OF A NAME]``, in
+the folder ``tests``, grades them, and prints what differs and what it took.
 """
 
 from __future__ import annotations
@@ -253,6 +253,7 @@ def hand_in(case, folder):
 
 
 def main():
+    import resource
     import sys
     import tempfile
     import time
@@ -260,16 +261,18 @@ def main():
     from cramhy_runtime.grading.exercise import Exercise
     from cramhy_runtime.grading.grader import Grader
 
+    chosen = [case for case in cases() if not sys.argv[1:] or any(word in case.name for word in sys.argv[1:])]
+    begun = time.monotonic()
     with tempfile.TemporaryDirectory() as folder, Grader() as grader:
-        for case in cases(submissions=folder):
-            if sys.argv[1:] and not any(word in case.name for word in sys.argv[1:]):
-                continue
-            begun = time.monotonic()
-            report = grader.grade(Exercise.read(own_exercises()[case.exercise]), hand_in(case, folder))
-            good = report.points == (report.most if case.points is None else case.points) and case.words in report.text()
-            print("ok  " if good else "DIFF", case.name, report.points, f"({case.points})", f"{time.monotonic() - begun:.1f} s", flush=True)
-            if not good or os.environ.get("SHOW"):
-                print(report.text(), flush=True)
+        reports = grader.grade_all([(Exercise.read(own_exercises()[case.exercise]), hand_in(case, folder)) for case in chosen])
+    for case, report in zip(chosen, reports):
+        good = report.points == (report.most if case.points is None else case.points) and case.words in report.text()
+        print("ok  " if good else "DIFF", case.name, report.points, f"({case.points})")
+        if not good or os.environ.get("SHOW"):
+            print(report.text())
+    used = [resource.getrusage(whose) for whose in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    seconds = sum(each.ru_utime + each.ru_stime for each in used)
+    print(f"{len(chosen)} submissions, {time.monotonic() - begun:.0f} s, {seconds:.0f} s of processors; load {os.getloadavg()[0]:.1f}")
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ from systems import linux, takes_long
 
 from cramhy_runtime.grading import Grader
 from cramhy_runtime.grading.exercise import Exercise, own_exercises
+from cramhy_runtime.grading.processes import Nursery
 
 from .submissions import SHORT, cases, hand_in
 
@@ -70,18 +71,49 @@ def test_the_lists_of_cases_are_whole():
 @takes_long
 @pytest.mark.timeout(3000)  # on a busy machine the wall clock says little; the processor time is checked below
 def test_sixty_submissions_are_graded_twice_alike_in_two_minutes(exercises, tmp_path):
-    reports = []
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    read = [(case, Exercise.read(exercises / case.exercise)) for case in cases(str(exercises), str(tmp_path))]
+    all_reports = []
     for number in range(2):
         with Grader() as grader:
-            found = []
-            for case in cases(str(exercises), str(tmp_path)):
-                exercise, report = graded(grader, exercises, case, tmp_path / str(number))
-                check(case, exercise, report)
-                found.append((case.name, report.points, [(result.title, result.points) for result in report.checks]))
-            reports.append(found)
-    assert reports[0] == reports[1]
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    assert used.ru_utime + used.ru_stime < 240  # of two processors in two minutes
+            reports = grader.grade_all([(exercise, hand_in(case, tmp_path / str(number))) for case, exercise in read])
+        for (case, exercise), report in zip(read, reports, strict=True):
+            check(case, exercise, report)
+        all_reports.append([[(result.title, result.points) for result in report.checks] for report in reports])
+    assert all_reports[0] == all_reports[1]
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 240  # of two processors in two minutes
+
+
+@pytest.mark.parametrize("at_once", [1, 3])
+def test_many_are_graded_at_once_each_as_if_it_were_alone_and_in_their_order(exercises, tmp_path, at_once):
+    names = ["no text", "solution of dry-pen", "exit of the process", "start of dry-pen", "solution of first-lisp", "empty"]
+    chosen = [next(case for case in cases() if case.name == name) for name in names]
+    with Grader(at_once=at_once) as grader:
+        reports = grader.grade_all([(Exercise.read(exercises / case.exercise), hand_in(case, tmp_path)) for case in chosen])
+        for case, report in zip(chosen, reports, strict=True):
+            check(case, Exercise.read(exercises / case.exercise), report)
+        assert len(grader.nurseries) <= at_once * 2  # the exercises build on two lists of systems
+        assert grader.grade_all([]) == []
+
+
+def test_a_nursery_that_is_lost_costs_one_submission_only(exercises, tmp_path, monkeypatch):
+    chosen = [next(case for case in cases() if case.name == name) for name in ("empty", "solution of dry-pen")]
+    handed_in = [(Exercise.read(exercises / case.exercise), hand_in(case, tmp_path)) for case in chosen]
+    with Grader(at_once=1) as grader:
+        ask = Nursery.ask
+        jobs = []
+
+        def ask_and_kill(self, job):
+            ask(self, job)
+            jobs.append(job)
+            if len(jobs) == 1:
+                self.process.kill()
+
+        monkeypatch.setattr(Nursery, "ask", ask_and_kill)
+        lost, other = grader.grade_all(handed_in)
+    assert lost.points == 0 and "The program ended the process that grades it." in lost.text()
+    assert other.points == other.most
 
 
 def run(*words, cwd=None):

@@ -1,6 +1,6 @@
 """Random programs mean the same to the compiler and to an interpreter of a page.
 
-The programs mix binding, assignment, closures, loops, local functions and exits in all nestings, also in argument position,
+The programs mix binding, assignment, closures, loops, local functions, exits and handlers in all nestings, also in argument position,
 where the compiler must save what was evaluated before. The interpreter below follows the standard and knows nothing of Python's
 statements, so it cannot make the compiler's mistakes.
 """
@@ -11,6 +11,7 @@ from systems import SOAK
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import Cons
 from cramhy_runtime.repl.session import Session
 
@@ -18,13 +19,13 @@ from cramhy_runtime.repl.session import Session
 
 
 class Names:
-    """What is in scope: variables, blocks, functions of one argument, catch tags."""
+    """What is in scope: variables, blocks, functions of one argument, catch tags, operators that signal what is handled around."""
 
-    def __init__(self, variables=(), blocks=(), functions=(), tags=()):
-        self.variables, self.blocks, self.functions, self.tags = variables, blocks, functions, tags
+    def __init__(self, variables=(), blocks=(), functions=(), tags=(), signals=()):
+        self.variables, self.blocks, self.functions, self.tags, self.signals = variables, blocks, functions, tags, signals
 
     def plus(self, **more):
-        fields = {name: getattr(self, name) for name in ("variables", "blocks", "functions", "tags")}
+        fields = {name: getattr(self, name) for name in ("variables", "blocks", "functions", "tags", "signals")}
         return Names(**{name: (*value, *more.get(name, ())) for name, value in fields.items()})
 
 
@@ -46,8 +47,10 @@ def programs(draw, names=Names(), depth=4):
         kinds = (
             simple
             + """+ + list progn if let let let* dotimes dolist block block flet labels lambda unwind-protect catch when and
-            or remember values tagbody < do""".split()
+            or remember values tagbody < do handler-case handler-case handler-bind ignore-errors
+            search search destructuring-bind""".split()
         )
+        kinds += ["signal"] * 4 * bool(names.signals)
         kinds += ["setq"] * 4 * bool(names.variables) + ["return-from"] * 3 * bool(names.blocks)
         kinds += ["call"] * 2 * bool(names.functions) + ["throw"] * bool(names.tags)
         kind = draw(st.sampled_from(kinds))
@@ -106,12 +109,47 @@ def programs(draw, names=Names(), depth=4):
             return ("push", ("lambda", (), draw(programs(Names(names.variables, (), (), ()), depth - 1))), "closures")
         case "values":
             return ("multiple-value-bind", (new, "d"), ("values", *body()), *body(names.plus(variables=(new, "d"))))
+        case "handler-case":
+            types = draw(st.lists(st.sampled_from(list(CONDITIONS)), min_size=1, max_size=3, unique=True))
+            form = expression(names.plus(signals=("error", "signal", "fails") if "trouble" in types else ()))
+            return ("handler-case", form, *(handler(type_, new, body(names.plus(variables=(new,)))) for type_ in types))
+        case "ignore-errors":
+            return ("ignore-errors", *body(names.plus(signals=("error", "signal", "fails"))))
+        case "handler-bind":
+            types = draw(st.lists(st.sampled_from(list(CONDITIONS)), min_size=1, max_size=2))
+            function = [("lambda", *handler(type_, new, body(names.plus(variables=(new,))))[1:]) for type_ in types]
+            return ("handler-bind", tuple(zip(types, function)), *body(names.plus(signals=("signal",))))
+        case "search":
+            name = draw(st.sampled_from(SEARCHES))
+            items = ("list", *body(most=4))
+            if "remove" not in name and name != "mapcar" and draw(st.booleans()):
+                items = ("coerce", items, "'vector")
+            return (name, ("lambda", (new,), *body(names.plus(variables=(new,)))), items)
+        case "destructuring-bind":
+            form = ("list", expression(), ("list", *body(most=3)), *body(most=2))
+            pattern = ("a", ("b", "&rest", "c"), "&rest", "d")
+            return ("destructuring-bind", pattern, form, *body(names.plus(variables=("a", "b", "c", "d"))))
+        case "signal":
+            return (draw(st.sampled_from(names.signals)), ("quote", draw(st.sampled_from(list(CONDITIONS)))), ":value", expression())
         case "tagbody":
             step = ("setq", "e", ("+", "e", 1))
             back = ("if", ("<", "e", draw(st.integers(0, 4))), ("go", "again"))
             onward = ("if", expression(), ("funcall", ("lambda", (), ("go", "end"))))
             parts = (step, *statements(), "again", step, *statements(), back, onward, *statements(), "end")
             return ("let", (("e", 0),), ("tagbody", *parts), "e")
+
+
+CONDITIONS = {"trouble": ("trouble",), "small-trouble": ("small-trouble", "trouble"), "other-trouble": ("other-trouble", "trouble")}
+"""The classes of conditions of the programs, each with those that are above it."""
+
+
+SEARCHES = "find-if position-if count-if some every notany notevery remove-if remove-if-not mapcar".split()
+"""Functions of a function and a sequence that the compiler writes in place."""
+
+
+def handler(type_, variable, forms):
+    """A clause of ``handler-case``, in which ``variable`` is the value in the condition."""
+    return (type_, ("c",), ("let", ((variable, ("value-of", "c")),), *forms))
 
 
 # --------------------------------------------------------------------------------------------------------- the interpreter
@@ -129,7 +167,7 @@ class Go(Exit):
 def run(form, env):
     """The value of ``form``; ``env`` maps ("variable" | "block" | "function" | "tag", name) to cells, tokens or functions."""
     if isinstance(form, str):
-        return None if form == "nil" else env["variable", form][0]
+        return None if form == "nil" else form if form[0] in ":'" else env["variable", form][0]
     if not isinstance(form, tuple):
         return form
     return first(values(form, env))
@@ -162,6 +200,49 @@ def exits(env, name, thunk, kind="block"):
 
 def function(parameters, forms, env):
     return lambda *given: sequence(forms, binding(env, parameters, given))
+
+
+def taken_apart(pattern, items):
+    """(variable, value) pairs of a list ``pattern`` with &rest."""
+    if not pattern:
+        return []
+    name, *others = pattern
+    if name == "&rest":
+        return [(others[0], items or None)]
+    return [*(taken_apart(name, items[0]) if isinstance(name, tuple) else [(name, items[0])]), *taken_apart(others, items[1:])]
+
+
+class Signalled:
+    """A condition."""
+
+    def __init__(self, name, value):
+        self.name, self.value = name, value
+
+
+handlers = []  # in force, the innermost last: a list of (type, function of the condition)
+
+
+def with_handlers(cluster, thunk):
+    handlers.append(cluster)
+    try:
+        return thunk()
+    finally:
+        handlers.pop()
+
+
+def signal(condition):
+    """Ask the handlers, the innermost first; each runs with only those around its cluster in force."""
+    global handlers
+    asked = handlers
+    for index in reversed(range(len(asked))):
+        for type_, function in asked[index]:
+            if type_ == "error" or type_ in CONDITIONS[condition.name]:
+                handlers = asked[:index]
+                try:
+                    function(condition)
+                finally:
+                    handlers = asked
+    return [None]
 
 
 class TooLong(BaseException):
@@ -271,6 +352,38 @@ def values(form, env):
             return [0]
         case "quote":
             return [rest[0]]
+        case "handler-case":
+            token = object()
+
+            def leave(clause):
+                def handle(condition):
+                    raise Exit(token, (clause, condition))
+
+                return handle
+
+            try:
+                return with_handlers([(clause[0], leave(clause)) for clause in rest[1:]], lambda: values(rest[0], env))
+            except Exit as exit_:
+                if exit_.target is not token:
+                    raise
+                (_, parameters, *forms), condition = exit_.value
+            return sequence(forms, binding(env, parameters, [condition]))
+        case "ignore-errors":
+            token = object()
+
+            def leave(condition):
+                raise Exit(token, [None, condition])
+
+            try:
+                return with_handlers([("error", leave)], lambda: sequence(rest, env))
+            except Exit as exit_:
+                if exit_.target is not token:
+                    raise
+                return exit_.value
+        case "destructuring-bind":
+            return sequence(rest[2:], binding(env, *zip(*taken_apart(rest[0], run(rest[1], env)))))
+        case "handler-bind":
+            return with_handlers([(type_, run(function, env)) for type_, function in rest[0]], lambda: sequence(rest[1:], env))
     given = [run(item, env) for item in rest]
     match head:
         case "+":
@@ -283,6 +396,27 @@ def values(form, env):
             return [given]
         case "funcall":
             return given[0](*given[1:])
+        case "coerce":
+            return [given[0]]
+        case "mapcar":
+            return [[first(given[0](item)) for item in given[1]]]
+        case "find-if" | "position-if" | "some":
+            for index, item in enumerate(given[1]):
+                if (answer := first(given[0](item))) is not None:
+                    return [{"find-if": item, "position-if": index, "some": answer}[head]]
+            return [None]
+        case "every" | "notany" | "notevery":
+            for item in given[1]:
+                if (first(given[0](item)) is None) == (head != "notany"):
+                    return [True if head == "notevery" else None]
+            return [None if head == "notevery" else True]
+        case "count-if" | "remove-if" | "remove-if-not":
+            chosen = [item for item in given[1] if (first(given[0](item)) is not None) == (head != "remove-if")]
+            return [len(chosen) if head == "count-if" else chosen or None]
+        case "value-of":
+            return [given[0].value]
+        case "error" | "signal" | "fails":
+            return signal(Signalled(given[0], given[2]))
     return env["function", head](*given)
 
 
@@ -299,6 +433,8 @@ def plain(value):
     """Lisp data as lists, to compare."""
     if isinstance(value, Cons):
         return [plain(item) for item in value]
+    if isinstance(value, Condition):
+        return type(value).__name__.lower()
     return "function" if callable(value) and value is not True else value
 
 
@@ -306,6 +442,7 @@ def reference(program):
     """The value of ``program``, and those of the closures that it remembered."""
     global steps
     steps = 0
+    handlers.clear()
     env = {("variable", "closures"): [[]]}
     result = run(program, env)
     return [lists(result), lists([first(closure()) for closure in env["variable", "closures"][0]])]
@@ -314,6 +451,8 @@ def reference(program):
 def lists(value):
     if isinstance(value, list):
         return [lists(item) for item in value] if value else None
+    if isinstance(value, Signalled):
+        return value.name.replace("-", "")
     return "function" if callable(value) and value is not True else value
 
 
@@ -326,6 +465,9 @@ def test_the_compiler_and_the_interpreter_agree(program):
     if not _session:
         _session.append(Session(time="virtual", turtlesim=False))
         _session[0].evaluate_text("(defun n (x) (if (integerp x) x 0))")
+        _session[0].evaluate_text("""(define-condition trouble (error) ((value :initarg :value :reader value-of)))
+            (define-condition small-trouble (trouble) ()) (define-condition other-trouble (trouble) ())
+            (defun fails (&rest arguments) (apply #'error arguments))""")
         _session[0].evaluate_text("(defmacro remember (closure list) `(progn (push ,closure ,list) 0))")
     try:
         wanted = reference(program)

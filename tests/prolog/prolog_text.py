@@ -1,5 +1,6 @@
 """Prolog as text: reading goals, proving them, and showing the answers the way Lisp prints them."""
 
+from cramhy_runtime import kernel
 from cramhy_runtime.ground import cl_names, conditions
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import COMMON_LISP, find_package, make_package, sym
@@ -66,7 +67,7 @@ class RegisteredWarnings:
     """``with RegisteredWarnings() as given:`` collects the texts of warnings and muffles them."""
 
     def __enter__(self):
-        from cramhy_runtime.ground.conditions import HANDLERS, Warning_, muffle_warning
+        from cramhy_runtime.ground.conditions import Warning_, muffle_warning
 
         texts = []
 
@@ -74,12 +75,12 @@ class RegisteredWarnings:
             texts.append(condition.report())
             muffle_warning(condition)
 
-        self.binding = binding(HANDLERS, ([(Warning_, note)], HANDLERS.value))
-        self.binding.__enter__()
+        self.task = kernel.current()
+        self.task.handlers = [(Warning_, note)], self.task.handlers
         return texts
 
     def __exit__(self, *exc):
-        self.binding.__exit__(*exc)
+        self.task.handlers = self.task.handlers[1]
 
 
 def error_text(thunk, kind=conditions.Error):

@@ -16,6 +16,7 @@ from cramhy_runtime.ground.data import Cons, LispString, list_from
 from cramhy_runtime.prolog import query
 from cramhy_runtime.prolog.compiler.compiler import compile_clauses
 from cramhy_runtime.prolog.engine import fact_groups as facts
+from cramhy_runtime.prolog.engine import relations
 from cramhy_runtime.prolog.engine.database import find_predicate, functors
 from cramhy_runtime.utilities.lazy_lists import force_ll
 
@@ -173,6 +174,23 @@ def test_atoms_that_are_compared_by_their_contents_are_found():
     rows = [list_from([list_from([read("name"), LispString("a") if i % 2 else "a", i])]) for i in range(20)]
     facts.define_fact_group(read("texts"), None, [Cons(Cons(FACT, row)) for row in rows])
     assert [answer[read("?i")] for answer in query.solve(read('(fact (name "a" ?i))'))] == [*range(20)]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_who_asks_first_gets_the_answers_of_the_table(seed, monkeypatch):
+    """Where facts are many, the first goal of its kind looks through the columns, and the second one makes a table."""
+    monkeypatch.setattr(relations, "_MANY", 0)
+    rng = random.Random(seed)
+    atoms = [read(text) for text in ("a", "b", "nil", ":k", "1", "2", '"s"', "t", "1.0")]
+    arity = rng.choice((1, 2, 3, 4))
+    rows = [list_from([rng.choice(atoms) for _ in range(arity)]) for _ in range(60)]
+    facts.define_fact_group(read("all-facts"), None, [Cons(Cons(FACT, row)) for row in rows])
+    for mask in range(2**arity):
+        known = [rng.choice(atoms) if mask >> i & 1 else read(f"?v{i}") for i in range(arity)]
+        goal = Cons(FACT, list_from(known))
+        first, second = all_of(goal), all_of(goal)
+        answers = [answer for row in rows for answer in force_ll(query.prolog(list_from([SAME, list_from(known), row]))) or ()]
+        assert first == second == show(list_from(answers))
 
 
 def test_facts_are_a_relation_whichever_way_they_are_read():

@@ -195,12 +195,14 @@ def test_rotations_that_are_not_unit_length():
         warnings.append(condition.report())
         conditions.muffle_warning(condition)
 
-    with binding(conditions.HANDLERS, ([(conditions.Warning_, note)], conditions.HANDLERS.value)):
+    def check():
         assert poses.make_pose(X, double).orientation.components == (0, 0, 0, 1) and warnings == []
         assert poses.make_transform(X, double).rotation.components == (0, 0, 0, 1)
         assert len(warnings) == 1 and warnings[0].startswith("Normalized rotation component to #<")
         assert poses.make_transform(X, double, validate_args=keyword("NO-WARN")).rotation.components == (0, 0, 0, 1)
         assert poses.make_transform(X, double, validate_args=None).rotation is double
+
+    conditions.handler_bind([(conditions.Warning_, note)], check)
     assert len(warnings) == 1
     assert "not normalized" in error_text(lambda: poses.make_transform(X, double, validate_args=True))
     assert quaternions.rotate(double, X, normalize=True).components == X.components

@@ -6,13 +6,16 @@ Making the site takes half a minute of the processor, so `make soak` runs these;
 from __future__ import annotations
 
 import contextlib
-import functools
-import http.server
+import gzip
 import os
 import re
+import signal
+import socket
 import subprocess
 import sys
 import threading
+import urllib.error
+import urllib.request
 from pathlib import Path
 
 import pytest
@@ -21,7 +24,7 @@ from node import node, pyodide
 from systems import takes_long
 
 from cramhy_runtime import cli
-from cramhy_runtime.browser import pyodide_files, site
+from cramhy_runtime.browser import local_host, pyodide_files, site
 
 ROOT = Path(__file__).parents[2]
 LIMIT = 120_000  # ms; for a machine that is busy with other things
@@ -47,17 +50,10 @@ def native_transcript():
     return done.stdout
 
 
-class QuietHandler(http.server.SimpleHTTPRequestHandler):
-    """A static host."""
-
-    def log_message(self, *_):
-        pass
-
-
 @contextlib.contextmanager
 def served(folder):
     """The address of a folder that a static host serves, and a function that ends the host."""
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(QuietHandler, directory=str(folder)))
+    server = local_host.open_host(folder)
     thread = threading.Thread(target=server.serve_forever, daemon=True)
     thread.start()
 
@@ -68,7 +64,7 @@ def served(folder):
             thread.join()
 
     try:
-        yield f"http://127.0.0.1:{server.server_port}/", end
+        yield local_host.address(server), end
     finally:
         end()
 
@@ -155,7 +151,7 @@ def test_the_prompt_has_a_history_ctrl_c_and_a_restart_that_keeps_files(visit):
     assert enter(page, "(+ 1 2)").splitlines() == ["CL-USER> (+ 1 2)", "3"]
     line = page.locator("#repl-in")
     line.press("ArrowUp")
-    assert line.input_value() == "(+ 1 2)"
+    assert line.inner_text() == "(+ 1 2)"
     line.fill("")
     for endless in ("(loop)", "(loop (sleep 1))", "(cpl:top-level (cpl:par (loop) (loop)))"):
         line.fill(endless)
@@ -193,6 +189,25 @@ def test_the_site_is_of_one_origin_and_without_inline_code(made):
     assert listed == {file.relative_to(made).as_posix() for file in made.rglob("*") if file.is_file()} - {"offline.js"}
 
 
+@takes_long
+def test_the_first_visit_fetches_less_than_nine_megabytes_from_a_host_that_packs_nothing_or_only_texts(made):
+    texts = (".js", ".mjs", ".css", ".html", ".json", ".svg")
+    sizes = {file: (file.stat().st_size, len(gzip.compress(file.read_bytes()))) for file in made.rglob("*") if file.is_file()}
+    assert sum(packed if file.suffix in texts else plain for file, (plain, packed) in sizes.items()) < 9_000_000
+    assert sum(plain for plain, _ in sizes.values()) < 10_500_000
+
+
+@takes_long
+def test_what_is_not_in_a_tab_is_told_and_what_programs_use_of_pythons_library_is_there(visit):
+    page, _ = visit
+    assert enter(page, '(py:call "statistics.mean" (list 1 2 3))').splitlines()[-1] == "2"
+    told = enter(page, '(ros-load:load-system "cram-location-costmap")')
+    assert "cramhy_runtime.robot_world.costmaps is not there in a browser's tab: it needs MuJoCo or numpy" in told
+    page.locator("#repl-in").fill("0")
+    page.locator("#repl-in").press("Enter")
+    wait_for_prompt(page)
+
+
 # ---------------------------------------------------------------------------------------------------------------- the command
 
 
@@ -221,3 +236,50 @@ def test_an_old_node_is_refused(monkeypatch):
         f"Pyodide compiles the packages in Node, and needs one from version 25 on. {sys.executable} is an older one, or is none. Name another "
         "one in the variable CRAMHY_NODE, or type in a clone of cramhy: make pyodide"
     )
+
+
+def site_of(folder, **files):
+    """A folder that looks like a site."""
+    for name, text in {"worker.mjs": "1", "index.html": "the page", **files}.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    return folder
+
+
+def test_the_local_host_serves_the_site_and_nothing_else(tmp_path):
+    (tmp_path / "secret").write_text("secret")
+    folder = site_of(tmp_path / "site", **{"pyodide/a.wasm": "2"})
+    with served(folder) as (address, _):
+        assert urllib.request.urlopen(address).read() == b"the page"
+        for name, kind in (("worker.mjs", "text/javascript"), ("pyodide/a.wasm", "application/wasm")):
+            assert urllib.request.urlopen(address + name).headers["Content-Type"] == kind
+        for wrong in ("nothing", "pyodide/", "../secret", "%2e%2e/secret"):
+            with pytest.raises(urllib.error.HTTPError, match="404"):
+                urllib.request.urlopen(address + wrong)
+
+
+def test_the_command_shows_a_site_until_ctrl_c(tmp_path):
+    environment = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    words = [sys.executable, "-m", "cramhy_runtime.cli", "browser", "--serve", str(site_of(tmp_path))]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment) as command:
+        try:
+            line = command.stdout.readline()
+            (address,) = re.fullmatch(r"The course is at (http://127\.0\.0\.1:\d+/) until you press Ctrl-C\.\n", line).groups()
+            assert urllib.request.urlopen(address).read() == b"the page"
+        finally:
+            command.send_signal(signal.SIGINT)
+        assert command.communicate(timeout=60) == ("", "") and command.returncode == 0
+
+
+def test_where_there_is_nothing_to_show_the_command_says_how_to_write_it(tmp_path, capsys):
+    assert cli.main(["browser", "--serve", str(tmp_path)]) == 1
+    assert capsys.readouterr().err == f"cramhy: There is no site of cramhy in {tmp_path}. Write one with: cramhy browser --out {tmp_path}\n"
+    assert cli.main(["browser"]) == 2
+    assert capsys.readouterr().err == "cramhy: Say what to do: --out FOLDER writes the site, and --serve FOLDER shows it.\n"
+
+
+def test_a_port_that_is_taken_is_told(tmp_path, capsys):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        assert cli.main(["browser", "--serve", str(site_of(tmp_path)), "--port", str(port)]) == 1
+    assert capsys.readouterr().err == f"cramhy: Port {port} cannot be used: Address already in use. Name another one, or none.\n"

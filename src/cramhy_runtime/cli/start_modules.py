@@ -5,8 +5,8 @@ half of the time that a session takes to start. `install` lets Python find the m
 the bytecode that Python itself would have read, and is used under the same condition: the source has still the date and the size that
 stand in it. All else is as ever: each module has its own file, loader and text.
 
-`note` says that the start is over: those modules are kept that are there by then. `keep` writes them, when the session ends, if the file
-lacks one of them. A file that is cut off, or was made by another Python, is as good as none.
+`note` says that the start is over, or how far it is: those modules are kept that are there by then. `keep` writes them, when the session
+ends, if the file lacks one of them. A file that is cut off, or was made by another Python, is as good as none.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ import marshal
 import os
 import struct
 import sys
-from importlib.machinery import SourceFileLoader
+import zlib
+from importlib.machinery import ModuleSpec, SourceFileLoader
 from pathlib import Path
 
 import cramhy_runtime
@@ -24,7 +25,9 @@ from cramhy_runtime.storage.checksummed_code import Unusable, trusted_bytes
 from cramhy_runtime.storage.kept_files import keep as keep_file
 from cramhy_runtime.storage.kept_files import kept_path
 
-FIRST_LINE = b"# cramhy start modules 1\n"
+FIRST_LINE = b"# cramhy start modules 4\n"
+SIZES = struct.Struct("<QII")
+"""What follows the first line: how long the rest is, how long the index is with which it begins, and the checksum of the index."""
 _PACKAGE = cramhy_runtime.__name__
 _HEADER = 16  # bytes before the code in a file of bytecode
 
@@ -37,14 +40,15 @@ class _Loader(SourceFileLoader):
         self._bytecode = bytecode
 
     def get_code(self, fullname):
-        code, self._bytecode = marshal.loads(memoryview(self._bytecode)[_HEADER:]), None
+        code, self._bytecode = marshal.loads(self._bytecode[_HEADER:]), None
         return code
 
 
 class Finder:
     """Finds the modules of cramhy that are kept. Python asks it first, as one of ``sys.meta_path``.
 
-    root: the folder of cramhy's package. modules: name → (path of the source below ``root``, the file of bytecode).
+    root: the folder of cramhy's package. modules: name → (path of the source below ``root``, where Python keeps its bytecode, the bytes
+    that are there, their checksum). A flipped bit in bytecode can end Python itself, so what does not fit its checksum is made anew.
     """
 
     def __init__(self, root, modules):
@@ -55,18 +59,19 @@ class Finder:
         kept = self.modules.get(name)
         if kept is None:
             return None
-        place, bytecode = kept
-        origin = os.path.join(self.root, place)
+        place, cached, bytecode, checksum = kept
+        origin = f"{self.root}{os.sep}{place}"
         try:
-            if bytecode[:_HEADER] != _header(os.stat(origin)):
+            if bytecode[:_HEADER] != _header(os.stat(origin)) or zlib.crc32(bytecode) != checksum:
                 raise FileNotFoundError
         except OSError:
             self.outdated = True
             return None
-        inside = [os.path.dirname(origin)] if place.endswith("__init__.py") else None
-        return importlib.util.spec_from_file_location(
-            name, origin, loader=_Loader(name, origin, bytecode), submodule_search_locations=inside
-        )
+        spec = ModuleSpec(name, _Loader(name, origin, bytecode), origin=origin)
+        spec.has_location, spec.cached = True, cached  # Python would put the second together anew
+        if place.endswith("__init__.py"):
+            spec.submodule_search_locations = [os.path.dirname(origin)]
+        return spec
 
 
 def _header(status):
@@ -88,7 +93,7 @@ def _source():
 
 
 def _maker(root):
-    return f"{sys.version} {sys.flags.optimize} {root}"
+    return f"{sys.version} {sys.flags.optimize} {sys.pycache_prefix} {root}"
 
 
 def install():
@@ -102,22 +107,26 @@ def install():
 
 def _read(root):
     try:
-        data = trusted_bytes(kept_path(_source()))
-        begin = len(FIRST_LINE) + 8
-        content = memoryview(data)[begin:]
-        if data.startswith(FIRST_LINE) and len(content) == int.from_bytes(data[begin - 8 : begin], "little"):
-            maker, modules = marshal.loads(content)
+        data = memoryview(trusted_bytes(kept_path(_source()), mapped=True))
+        begin, end = len(FIRST_LINE) + SIZES.size, len(data)
+        length, of_index, checksum = SIZES.unpack(data[begin - SIZES.size : begin])
+        found = data[begin : begin + of_index]
+        if data[: len(FIRST_LINE)] == FIRST_LINE and end - begin == length and zlib.crc32(found) == checksum:
+            maker, index = marshal.loads(found)
             if maker == _maker(root):
-                return modules
-    except (Unusable, OSError, ValueError, EOFError, TypeError):
+                return {
+                    name: (place, cached, data[end - start : end - stop], crc) for name, (place, cached, start, stop, crc) in index.items()
+                }
+    except (Unusable, OSError, ValueError, EOFError, TypeError, struct.error):
         pass
     return {}
 
 
-def note():
-    """The session has started."""
-    if _Start.finder is not None and _Start.wanted is None:
-        sys.meta_path.remove(_Start.finder)  # what comes later is not in the file
+def note(over=True):
+    """The session has started. over: whether it has all that it starts with."""
+    if _Start.finder in sys.meta_path:
+        if over:
+            sys.meta_path.remove(_Start.finder)  # what comes later is not in the file
         _Start.wanted = [name for name in sys.modules if name.startswith(f"{_PACKAGE}.")]
 
 
@@ -132,7 +141,7 @@ def keep():
 
 
 def _bytecode(finder, name):
-    """What is kept of the module ``name``: the path of its source, and its bytecode as Python has written it; ``None`` if there is none."""
+    """What is kept of the module ``name`` (see `Finder`), with its bytecode as Python has written it; ``None`` if there is none."""
     module = sys.modules.get(name)
     if module is None:
         return finder.modules.get(name)  # of another command
@@ -140,15 +149,21 @@ def _bytecode(finder, name):
     try:
         bytecode = Path(spec.cached).read_bytes()
         if isinstance(spec.loader, SourceFileLoader) and bytecode[:_HEADER] == _header(os.stat(spec.origin)):
-            return os.path.relpath(spec.origin, finder.root), bytecode
+            return os.path.relpath(spec.origin, finder.root), spec.cached, bytecode, zlib.crc32(bytecode)
     except (OSError, TypeError, ValueError, AttributeError):
         pass
     return None
 
 
 def _written(root, modules):
-    content = marshal.dumps((_maker(root), modules))
-    return FIRST_LINE + len(content).to_bytes(8, "little") + content
+    """The file. An index tells of each module where its bytecode begins and ends, counted from the end of the file."""
+    left, index = sum(len(bytecode) for _, _, bytecode, _ in modules.values()), {}
+    for name, (place, cached, bytecode, checksum) in modules.items():
+        index[name] = place, cached, left, left - len(bytecode), checksum
+        left -= len(bytecode)
+    head = marshal.dumps((_maker(root), index))
+    rest = b"".join([head, *(bytecode for _, _, bytecode, _ in modules.values())])
+    return FIRST_LINE + SIZES.pack(len(rest), len(head), zlib.crc32(head)) + rest
 
 
 __all__ = ["install", "keep", "note"]

@@ -115,7 +115,8 @@ def tv_closure(task, parent, continuation):
 
     def call(*arguments):
         here = kernel.current()
-        outer, here.dynamic = here.dynamic, bindings
+        outer, handlers = here.dynamic, here.handlers
+        here.dynamic, here.handlers = bindings, None
         if outer is not None:
             outer.leave()
         bindings.enter()
@@ -123,7 +124,7 @@ def tv_closure(task, parent, continuation):
             return continuation(*arguments)
         finally:
             bindings.leave()
-            here.dynamic = outer
+            here.dynamic, here.handlers = outer, handlers
             if outer is not None:
                 outer.enter()
 

@@ -1,11 +1,16 @@
 """Grading: a submission is read, run in processes of its own, and judged here.
 
-`Grader` keeps a nursery, so that many submissions are graded quickly. `grade` grades one. The checks are tried one after the other, and
-each with its seeds; the first seed with a fault decides. A check gives all of its points or none.
+`Grader` keeps nurseries, so that many submissions are graded quickly, and several at a time. `grade` grades one. The checks are tried one
+after the other, and each with its seeds; the first seed with a fault decides. A check gives all of its points or none.
+
+To grade is a generator here: it yields a job, and is sent the answer. So one process can have several submissions in hand, and waits for
+whichever nursery answers first (`processes.answers`).
 """
 
 from __future__ import annotations
 
+import os
+from collections.abc import Generator, Iterable
 from pathlib import Path
 
 from . import judging
@@ -14,10 +19,12 @@ from .forms import source_faults
 from .here import Here
 from .jobs import job
 from .problems import ExerciseError
-from .processes import Lost, Nursery
+from .processes import Nursery, answers
 from .report import CheckResult, Report
 from .told import Told
+from cramhy_runtime.kernel.typing_names import Any
 
+_Grading = Generator[dict[str, Any], "dict[str, Any] | None", Report]
 LARGEST = 200_000
 """Bytes of a file of a submission."""
 KEPT_OUTPUT = 2000
@@ -48,11 +55,13 @@ class Grader:
     """Grades submissions. seeds: with how many seeds checks are tried that name a number of them, ``None`` for that number.
 
     apart: whether a submission runs in a process of its own. If not, nothing protects this process from it (`Here`).
+    at_once: how many submissions `grade_all` has in hand at a time, ``None`` for as many as there are processors.
     """
 
-    def __init__(self, seeds: int | None = None, apart: bool = True):
+    def __init__(self, seeds: int | None = None, apart: bool = True, at_once: int | None = None):
         self.seeds, self.apart = seeds, apart
-        self.nurseries: dict[tuple[str, ...], Nursery | Here] = {}
+        self.at_once = (at_once or os.cpu_count() or 1) if apart else 1
+        self.nurseries: dict[tuple[int, tuple[str, ...]], Nursery | Here] = {}
 
     def __enter__(self) -> Grader:
         return self
@@ -67,6 +76,45 @@ class Grader:
 
     def grade_texts(self, exercise: Exercise, submitted: dict[str, str | None]) -> Report:
         """The `Report` of a submission whose files are given as texts, by name; ``None`` for a file that is no text."""
+        return self._all([(exercise, submitted)])[0]
+
+    def grade_all(self, submissions: Iterable[tuple[Exercise, str | Path]]) -> list[Report]:
+        """The `Report` of each submission, in their order. submissions: pairs of an exercise and a file or folder.
+
+        The points are those of `grade`, whatever is graded at the same time.
+        """
+        return self._all([(exercise, submitted_files(exercise, Path(place))) for exercise, place in submissions])
+
+    def _all(self, work: list[tuple[Exercise, dict[str, str | None]]]) -> list[Report]:
+        """The report of each pair of an exercise and the texts of a submission. Each slot has one of them in hand."""
+        reports: dict[int, Report] = {}
+        asked: dict[Nursery | Here, tuple[int, int, _Grading]] = {}  # for each nursery with a job: the slot, the number, the grading
+        numbers = iter(range(len(work)))
+
+        def go_on(slot, number, grading, answer):
+            """Take a grading to its next job. When it is over, the slot takes the next submission."""
+            while number is not None:
+                try:
+                    next_job = grading.send(answer)
+                except StopIteration as end:
+                    reports[number] = end.value
+                    number = next(numbers, None)
+                    grading, answer = number is not None and self._grading(*work[number]), None
+                else:
+                    nursery = self._nursery(slot, work[number][0])
+                    nursery.ask(next_job)
+                    asked[nursery] = slot, number, grading
+                    return
+
+        for slot, number in zip(range(self.at_once), numbers):
+            go_on(slot, number, self._grading(*work[number]), None)
+        while asked:
+            for nursery, answer in answers(list(asked)):
+                go_on(*asked.pop(nursery), answer)
+        return [reports[number] for number in range(len(work))]
+
+    def _grading(self, exercise: Exercise, submitted: dict[str, str | None]) -> _Grading:
+        """Yield the jobs of a submission, each for its answer, ``None`` if its nursery was lost; the `Report`."""
         missing = [name for name in exercise.submission if submitted.get(name) is None]
         if missing:
             words = [
@@ -85,7 +133,7 @@ class Grader:
             else:
                 seeds = self.seeds if self.seeds is not None and check.seeds > 1 else check.seeds
                 for seed in range(1, seeds + 1):
-                    wrong, printed, locks, hopeless = self._try(exercise, check, seed, submitted)
+                    wrong, printed, locks, hopeless = yield from self._try(exercise, check, seed, submitted)
                     held = held or locks
                     if wrong:
                         if seeds > 1:
@@ -103,9 +151,8 @@ class Grader:
     def _try(self, exercise: Exercise, check: Check, seed: int, submitted: dict[str, str | None]):
         """What is wrong with a check for a seed, what was printed, the locks, and whether other checks cannot be better."""
         work, values = job(exercise, check, seed, submitted)
-        try:
-            answer = self._nursery(exercise).answer(work)
-        except Lost:
+        answer = yield work
+        if answer is None:
             return ["The program ended the process that grades it."], "", [], True
         told = Told(answer["reports"], work["nonce"])
         output = "".join(line for line in answer["output"].splitlines(True) if not line.startswith(NOISE))
@@ -121,10 +168,10 @@ class Grader:
             return judging.of_tests(check, told), output, told.held, False
         return judging.of_run(check, work, values, told), output, told.held, False
 
-    def _nursery(self, exercise: Exercise) -> Nursery | Here:
-        key = (*exercise.systems, "lisp-unit", "fiveam")
+    def _nursery(self, slot: int, exercise: Exercise) -> Nursery | Here:
+        key = slot, (*exercise.systems, "lisp-unit", "fiveam")
         if key not in self.nurseries:
-            self.nurseries[key] = Nursery(list(key)) if self.apart else Here()
+            self.nurseries[key] = Nursery(list(key[1])) if self.apart else Here()
         return self.nurseries[key]
 
 

@@ -15,13 +15,18 @@ from .performing import lay_out, perform
 
 
 class Here:
-    """Takes the place of a `Nursery`: ``answer(job)`` performs it at once, in an image of its own."""
+    """Takes the place of a `Nursery`: it performs a job when the answer is taken, in an image of its own."""
 
     def close(self):
         """There is nothing to end."""
 
-    def answer(self, job):
-        """What came of a job, as from `Nursery.answer`."""
+    def ask(self, job):
+        """Give it a job."""
+        self.job = job
+
+    def take(self):
+        """What came of the job, as from a nursery (see `nursery`)."""
+        job = self.job
         from cramhy_runtime.session import Image
 
         reports, modules, path = [], set(sys.modules), list(sys.path)

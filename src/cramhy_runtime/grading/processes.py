@@ -1,4 +1,4 @@
-"""The grader's side of the nursery: it starts it, gives it jobs, and waits no longer than a job may take."""
+"""The grader's side of nurseries: it starts them, gives them jobs, and waits no longer than a job may take."""
 
 from __future__ import annotations
 
@@ -19,12 +19,8 @@ MORE = 20.0
 START = 120.0
 
 
-class Lost(Exception):
-    """The nursery is gone in the middle of a job."""
-
-
 class Nursery:
-    """A process from which those of submissions come. ``with Nursery(systems) as nursery: nursery.answer(job)``."""
+    """A process from which those of submissions come. `ask` gives it a job, and `answers` waits for what came of it."""
 
     def __init__(self, systems):
         if not hasattr(os, "fork"):
@@ -32,12 +28,8 @@ class Nursery:
         self.systems = systems
         self.process = None
         self.folder = None
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *problem):
-        self.close()
+        self.latest = 0.0  # when it is lost if it has not answered
+        self.coming = 0  # answers
 
     def _start(self):
         self.folder = tempfile.TemporaryDirectory(prefix="cramhy-nursery-")
@@ -51,7 +43,8 @@ class Nursery:
             env=environment,
             start_new_session=True,
         )
-        self._ask({"prepare": self.systems}, START)
+        self.latest = time.monotonic() + START
+        self._send({"prepare": self.systems})
 
     def close(self):
         """End it, with all that it has started."""
@@ -65,30 +58,66 @@ class Nursery:
         self.process = None
         self.folder.cleanup()
 
-    def answer(self, job):
-        """What came of a job (see `nursery`). Raises `Lost` if the nursery was ended meanwhile; the next job gets a new one."""
+    def ask(self, job):
+        """Give it a job; one at a time. If it has been lost since the last one, another one is started."""
         if self.process is None:
+            self.coming = 0
             self._start()
-        return self._ask(job, job["wall"] + MORE)
+        self.latest = max(self.latest, time.monotonic()) + job["wall"] + MORE
+        self._send(job)
 
-    def _ask(self, message, seconds):
-        try:
+    def _send(self, message):
+        self.coming += 1
+        with contextlib.suppress(OSError):  # it is gone, which `take` will notice
             nursery.send(self.process.stdin.fileno(), message)
-            return self._received(seconds)
-        except (OSError, ValueError, Lost):
-            self.close()
-            raise Lost
 
-    def _received(self, seconds):
-        source, latest = self.process.stdout.fileno(), time.monotonic() + seconds
+    def take(self):
+        """The answer that has begun to come, or ``None`` if the nursery is lost. Raises `StillComing` after the one of its preparation."""
+        try:
+            found = self._received()
+        except (OSError, ValueError, _Lost):
+            self.close()
+            return None
+        self.coming -= 1
+        if self.coming:
+            raise StillComing
+        self.latest = 0.0
+        return found
+
+    def _received(self):
+        source = self.process.stdout.fileno()
         data, wanted = bytearray(), 8
         while len(data) < wanted:
-            if not select.select([source], (), (), max(latest - time.monotonic(), 0))[0]:
-                raise Lost
-            piece = os.read(source, 1 << 20)
+            if not select.select([source], (), (), max(self.latest - time.monotonic(), 0))[0]:
+                raise _Lost
+            piece = os.read(source, wanted - len(data))
             if not piece:
-                raise Lost
+                raise _Lost
             data += piece
-            if wanted == 8 and len(data) >= 8:
-                wanted = 8 + int.from_bytes(data[:8], "big")
+            if wanted == 8 and len(data) == 8:
+                wanted = 8 + int.from_bytes(data, "big")
         return nursery.json.loads(bytes(data[8:]))
+
+
+class StillComing(Exception):
+    """The nursery has prepared itself, and now does its job."""
+
+
+class _Lost(Exception):
+    """The nursery is gone, or says nothing."""
+
+
+def answers(asked):
+    """Wait for the first of some nurseries; a pair of a nursery and its answer for each that has one. ``None`` as answer: it was lost.
+
+    asked: nurseries, each with a job; or objects that have the answer at once, such as `Here`.
+    """
+    found = [(each, each.take()) for each in asked if not isinstance(each, Nursery)]
+    while not found:
+        now = time.monotonic()
+        ready = select.select([each.process.stdout for each in asked], (), (), max(min(each.latest for each in asked) - now, 0))[0]
+        for each in asked:
+            if each.process.stdout in ready or each.latest <= time.monotonic():
+                with contextlib.suppress(StillComing):
+                    found.append((each, each.take()))
+    return found

@@ -93,6 +93,9 @@ def shown_with(obj, package):
 DECIDED: dict[tuple[Any, type], bool] = {}
 """For the name of a condition class and the class of a condition whether this is of that type: it depends on nothing else."""
 
+DECIDED_ELSEWHERE: list[dict[type, int]] = []
+"""Tables of what follows from entries of `DECIDED`: they are emptied when it is."""
+
 
 def matches(condition: Condition, specifier: Any) -> bool:
     """Whether ``condition`` is of the type ``specifier``: a Python class, a class name, or any Lisp type specifier."""
@@ -116,6 +119,9 @@ def matches(condition: Condition, specifier: Any) -> bool:
 @when_classes_change
 def _forget_decided() -> None:
     DECIDED.clear()
+    for table in DECIDED_ELSEWHERE:
+        table.clear()
+    DECIDED_ELSEWHERE.clear()
 
 
 @part
@@ -128,7 +134,7 @@ class _OfImage:
 
     @staticmethod
     def put(state: None) -> None:
-        DECIDED.clear()
+        _forget_decided()
 
     @staticmethod
     def copy(state: None) -> None:

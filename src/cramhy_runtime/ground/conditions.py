@@ -17,16 +17,19 @@ from __future__ import annotations
 
 import functools
 
+from cramhy_runtime import kernel
+from cramhy_runtime.kernel.active import ACTIVE
 from cramhy_runtime.kernel.images import Cell
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, NoReturn
 from . import condition_types as types
+from .catching import EVERYBODY, Case, Cluster, HandlerExit, handlers_in_force
 from .condition_types import *  # noqa: F403  the classes are this module's interface too
 from .condition_types import matches
 from .data import LispString, MultipleValues, Symbol, UNBOUND, UndefinedFunction, all_values, truth, values
-from .dynamic import bind, binding, special, unbind
+from .dynamic import binding, special
 from . import plain_answers  # noqa: F401  the ports have answers from here on
 from .ports import PORTS
-from .python_exceptions import condition_for
+from .python_exceptions import from_python
 from .packages import CURRENT, ensure_package, find_package_or_error, intern, is_symbol, sym
 from .restarts import *  # noqa: F403  they are part of this module's interface, as the classes are
 from .restarts import compute_restarts, innermost_restarts, restart_case, with_condition_restarts, with_simple_restart
@@ -34,16 +37,10 @@ from .restarts import compute_restarts, innermost_restarts, restart_case, with_c
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-HANDLERS = special(Symbol("*HANDLER-CLUSTERS*"), None)
-"""The handlers in force: ``None``, or a pair of the innermost, a list of (type specifier, function) or a `Cluster`, and those around."""
-
 DEBUGGER_HOOK = special("*DEBUGGER-HOOK*")
 SBCL_HOOK = special(ensure_package("SB-EXT").intern("*INVOKE-DEBUGGER-HOOK*"))
 SBCL_HOOK.package.export(SBCL_HOOK)
 BREAK_ON_SIGNALS = special("*BREAK-ON-SIGNALS*")
-
-EVERYBODY = ("every handler on its way",)
-"""The mark of an exception that a handler raised: whoever was to be asked was asked when it left the handler."""
 
 _debugger = Cell(None)
 _router = Cell(None)
@@ -75,17 +72,34 @@ def install_root(handler):
 
 def signal_condition(condition):
     """Offer ``condition`` to the handlers, innermost first. Returns when all have declined."""
-    if BREAK_ON_SIGNALS.value is not None and truth(BREAK_ON_SIGNALS.value):
-        _break_on_signal(condition)
-    condition.signalled = True
-    clusters = HANDLERS.value
+    exit_ = handled(condition)
+    if exit_ is not None:
+        raise exit_
+
+
+def handled(condition, run=None):
+    """As `signal_condition`, but the exit to a ``handler-case`` compiled in place is returned, for the caller to raise: of fewer frames.
+
+    run: the pair of the innermost handlers, if they have declined already.
+    """
+    if run is not None:
+        clusters = run[1]
+    else:
+        if BREAK_ON_SIGNALS.value is not None and truth(BREAK_ON_SIGNALS.value):
+            _break_on_signal(condition)
+        condition.signalled = True
+        running = ACTIVE.value
+        clusters = None if running is None else running.current.handlers
     while clusters is not None:
         cluster, outer = clusters
-        if isinstance(cluster, Cluster):
-            cluster.offer(condition, outer)
+        if cluster.__class__ is Case:
+            exit_ = cluster.exit_for(condition, clusters)
+            if exit_ is not None:
+                return exit_
         else:
-            _offer(condition, cluster, outer)
+            _offer(condition, clusters)
         clusters = outer
+    return None
 
 
 def _break_on_signal(condition):
@@ -118,19 +132,23 @@ def _break_on_signal(condition):
     )
 
 
-def _offer(condition, cluster, outer):
+def _offer(condition, clusters):
     # A handler runs with only the handlers outside its own cluster in force (ANSI 9.1.4).
+    cluster, outer = clusters
     if isinstance(cluster, Cluster):
-        cluster.offer(condition, outer)
+        cluster.offer(condition, clusters)
         return
     for specifier, handler in cluster:
         if matches(condition, specifier):
-            with binding(HANDLERS, outer):
-                try:
-                    handler(condition)
-                except (types.Condition, Exception) as raised:
-                    raised_by_handler(raised)
-                    raise
+            task = kernel.current()
+            before, task.handlers = task.handlers, outer
+            try:
+                handler(condition)
+            except (types.Condition, Exception) as raised:
+                raised_by_handler(raised)
+                raise
+            finally:
+                task.handlers = before
 
 
 def raised_by_handler(exception):
@@ -139,7 +157,7 @@ def raised_by_handler(exception):
         if not exception.signalled:
             signal_condition(exception)
     elif getattr(exception, "__lisp_asked__", None) is not EVERYBODY:
-        if not _were_asked(exception, HANDLERS.value):
+        if not _were_asked(exception, handlers_in_force()):
             signal_condition(from_python(exception))
         try:
             exception.__lisp_asked__ = EVERYBODY
@@ -149,14 +167,16 @@ def raised_by_handler(exception):
 
 def handler_bind(clauses, thunk):
     """Call ``thunk`` with ``clauses`` in force, a list of (type specifier, function); returns its values."""
-    bind(HANDLERS, (clauses, HANDLERS.value))
+    task = kernel.current()
+    before = task.handlers
+    task.handlers = clauses, before
     try:
         return thunk()
     except (types.Condition, Exception) as exception:
         offer_late(exception)
         raise
     finally:
-        unbind()
+        task.handlers = before
 
 
 def offer_late(exception):
@@ -164,38 +184,12 @@ def offer_late(exception):
 
     Python code raised it without signalling, or it is foreign: its frames are gone, and now the handlers get their turn.
     """
-    clusters = HANDLERS.value
+    clusters = handlers_in_force()
     if isinstance(exception, types.Condition):
         if not exception.signalled:
-            _offer(exception, *clusters)
+            _offer(exception, clusters)
     elif not _were_asked(exception, clusters):
-        _offer(from_python(exception), *clusters)
-
-
-class Cluster:
-    """Handlers of one form that are more than a list of (type specifier, function). `enter` puts them in force; `dynamic.unbind` ends that.
-
-    A form that is written for Python's ``try`` need not make a function of its body. It calls `offer_late` for what passes it.
-    """
-
-    __slots__ = ()
-
-    def enter(self):
-        """Put the handlers in force, inside of those that are."""
-        bind(HANDLERS, (self, HANDLERS.value))
-
-    def offer(self, condition, outer):
-        """Handle ``condition`` and leave by an exit, or return: that declines.
-
-        Code of users runs while `HANDLERS` is bound to ``outer`` (ANSI 9.1.4), and `raised_by_handler` is told what it raises.
-        """
-
-
-class HandlerExit(BaseException):
-    """Unwinds to the ``handler-case`` whose clause was chosen."""
-
-    def __init__(self, token, index, condition):
-        self.token, self.index, self.condition = token, index, condition
+        _offer(from_python(exception), clusters)
 
 
 def handler_case(clauses, thunk, no_error=None):
@@ -236,7 +230,11 @@ def ignore_errors(thunk):
 def make_condition(datum, arguments=(), default=types.SimpleError):
     """The condition that the designator ``datum`` with ``arguments`` stands for (ANSI 9.1.2.1)."""
     if datum.__class__ is str:
-        return default(datum, *arguments)
+        if default.__init__ is not types.SimpleCondition.__init__:
+            return default(datum, *arguments)
+        condition = default.__new__(default)  # without its constructor, which takes twice the time
+        condition.format_control, condition.format_arguments = datum, arguments
+        return condition
     if datum.__class__ is Symbol:
         cls = PORTS.classes.find(datum, False)
         if isinstance(cls, type) and issubclass(cls, types.Condition):
@@ -292,10 +290,36 @@ def error(datum: object, *arguments: object, hint: str | Callable[[], str] | Non
 
 def signal_error(condition: types.Condition) -> NoReturn:
     """What `error` does with its condition."""
-    signal_condition(condition)
+    exit_ = handled(condition)
+    if exit_ is not None:
+        raise exit_
+    nobody_handled(condition)
+
+
+def nobody_handled(condition: types.Condition) -> NoReturn:
+    """What `error` does with a condition that all handlers declined."""
     if _root.value is not None:
         _root.value(condition)
     invoke_debugger(condition)
+
+
+def error_in_case(task, run, datum, *arguments):
+    """``error`` in the very function whose ``handler-case`` runs as ``run``, in ``task``.
+
+    Returns (the clause, the condition) if a clause fits: the function goes there, and nothing is to be unwound. Else it does what `error`
+    does.
+    """
+    condition = make_condition(datum, arguments)
+    if task.handlers is not run or BREAK_ON_SIGNALS.value is not None:
+        return signal_error(condition)
+    condition.signalled = True
+    index = run[0].clause_for(condition)
+    if index >= 0:
+        return index, condition
+    exit_ = handled(condition, run)
+    if exit_ is not None:
+        raise exit_
+    return nobody_handled(condition)
 
 
 def cerror(continue_format, datum, *arguments):
@@ -480,7 +504,7 @@ def signal_exception(exception):
     Returns when nobody wanted it: then the exception is to be raised again, so that Python code above sees its own. On its way up
     it may come into Lisp again; handlers that were asked are not asked once more.
     """
-    if _were_asked(exception, HANDLERS.value):
+    if _were_asked(exception, handlers_in_force()):
         return
     condition = from_python(exception)
     signal_condition(condition)
@@ -494,7 +518,7 @@ def signal_exception(exception):
 def note_asked(exception):
     """The handlers in force have heard of ``exception``: it may be raised, and they are not asked as it passes them."""
     try:
-        exception.__lisp_asked__ = (HANDLERS.value,)
+        exception.__lisp_asked__ = (handlers_in_force(),)
     except AttributeError:
         pass
 
@@ -510,28 +534,6 @@ def _were_asked(exception, clusters):
     while asked is not clusters and asked is not None:
         asked = asked[1]
     return asked is clusters
-
-
-def from_python(exception):
-    """The condition that handlers see for a Python exception: itself if it is one, else a wrapper with its cause.
-
-    Hy makes an error of its own of everything that leaves a macro. If that was no error, but a request to end or an exit from a form,
-    it is raised again.
-    """
-    if isinstance(exception, types.Condition):
-        return exception
-    inner = exception.__context__
-    if inner is not None and not isinstance(inner, (Exception, types.Condition)) and type(exception).__name__ == "HyMacroExpansionError":
-        raise inner
-    known = getattr(exception, "__lisp_condition__", None)
-    if known is None:
-        known = condition_for(exception)
-        known.__cause__ = exception
-        try:
-            exception.__lisp_condition__ = known
-        except AttributeError:
-            pass
-    return known
 
 
 class _Signals:

@@ -51,6 +51,18 @@ LONG = 20_000
 """A list of more elements is made in parts, with a checkpoint before each."""
 
 
+class Classes(set):
+    """A set of classes. ``last``: the one that came last, with which compiled code compares first, as that is quicker."""
+
+    __slots__ = ("last",)
+
+    def replace(self, classes):
+        """Have ``classes``, in this order, for elements."""
+        self.clear()
+        self.update(classes)
+        self.last = classes[-1] if classes else None
+
+
 class SlotClasses(dict):
     """For the function of a symbol: attribute → the set of the classes from whose objects compiled code may take the slot itself.
 
@@ -69,16 +81,15 @@ class SlotClasses(dict):
         return self[name.removeprefix("of_")]
 
     def __missing__(self, attribute):
-        classes = self[attribute] = {cls for cls, other in _accesses(getattr(self.symbol, self.cell)) if other == attribute}
-        return classes
+        self[attribute] = Classes()
+        self.refresh()
+        return self[attribute]
 
     def refresh(self):
         """Find out anew what the function does."""
-        for classes in self.values():
-            classes.clear()
-        for cls, attribute in _accesses(getattr(self.symbol, self.cell)):
-            if attribute in self:
-                self[attribute].add(cls)
+        accesses = _accesses(getattr(self.symbol, self.cell))
+        for attribute, classes in self.items():
+            classes.replace([cls for cls, other in accesses if other == attribute])
 
 
 def _effective_functions(function, count):

@@ -139,3 +139,25 @@ def condition_for(exception):
         if wrong is not None:
             return wrong
     return python_condition(exception)
+
+
+def from_python(exception):
+    """The condition that handlers see for a Python exception: itself if it is one, else a wrapper with its cause.
+
+    Hy makes an error of its own of everything that leaves a macro. If that was no error, but a request to end or an exit from a form,
+    it is raised again.
+    """
+    if isinstance(exception, types.Condition):
+        return exception
+    inner = exception.__context__
+    if inner is not None and not isinstance(inner, (Exception, types.Condition)) and type(exception).__name__ == "HyMacroExpansionError":
+        raise inner
+    known = getattr(exception, "__lisp_condition__", None)
+    if known is None:
+        known = condition_for(exception)
+        known.__cause__ = exception
+        try:
+            exception.__lisp_condition__ = known
+        except AttributeError:
+            pass
+    return known

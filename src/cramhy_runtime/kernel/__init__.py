@@ -27,7 +27,8 @@ Where the parts are:
 * `timers`, `clocks`, `throttle` (of virtual time for spectators), `budget` (the count of checkpoints), `reports` (for people), `errors`
 * `waiting`    tasks that wait for a change, made of the functions below
 * `backends`   stacks: threads of the operating system, greenlets, or WebAssembly's; `depth` how deep code may recurse on them
-* `active`     the functions below, which act on the active kernel; `typing_names`, `signatures` the names in their annotations
+* `active`     the functions below, which act on the active kernel; `typing_names`, `signatures` the names in their annotations;
+  `late_patterns` regular expressions that are compiled when they are used
 * `images`     global state, in cells and tables, and how the state of one image takes the place of another's
 
 From trio come cancellation at checkpoints, the shield, a clock that jumps, and the deadlock as an error with a text, but

@@ -47,7 +47,7 @@ class Task(Generic[T]):
     """
 
     __slots__ = (
-        "kernel", "id", "_name", "parent", "owner", "_local", "dynamic", "result", "cancelled_delivered",
+        "kernel", "id", "_name", "parent", "owner", "_local", "dynamic", "handlers", "result", "cancelled_delivered",
         "state", "why", "carrier", "attention", "woken", "ticket", "timed", "preempted", "shielded", "alarms", "abandoned",
         "fn", "args", "context", "joiners", "cancel_request", "interjections", "delivered",
         "swallowed", "_exception", "claimed", "when_refused", "cleanup",
@@ -65,6 +65,7 @@ class Task(Generic[T]):
         self.owner: Any = None
         self._local: SimpleNamespace | None = None
         self.dynamic: Dynamic | None = None
+        self.handlers: Any = None  # of conditions, those in force: the ground's own
         self.result: T | None = None
         self.cancelled_delivered = False
         self.state = RUNNABLE

@@ -12,11 +12,11 @@ from cramhy_runtime.cpl.forms.plans import GOAL, bodies_of, call_goal, define_go
 from cramhy_runtime.cpl.tree.task_tree import with_task_tree_node
 from ..designators.classes import ActionDesignator, DesignatorError, MotionDesignator, desig_prop_value
 from ..designators.resolution import reference
-from cramhy_runtime.ground.condition_types import Condition, SimpleWarning
-from cramhy_runtime.ground.catching import caught, enter_case, foreign_case
-from cramhy_runtime.ground.conditions import Error, HandlerExit, handler_case, warn
+from cramhy_runtime.ground.condition_types import SimpleWarning
+from cramhy_runtime import kernel
+from cramhy_runtime.ground.catching import CATCHABLE, Case, caught
+from cramhy_runtime.ground.conditions import Error, handler_case, warn
 from cramhy_runtime.ground.data import UNBOUND, Cons, Symbol, UndefinedFunction, lisp_list, one, truth
-from cramhy_runtime.ground.dynamic import unbind
 from cramhy_runtime.ground.list_shapes import check_shape
 from cramhy_runtime.ground.source_places import circumstance
 from cramhy_runtime.ground.dispatch.generic_functions import generic
@@ -114,22 +114,20 @@ def try_reference_designator(designator: Designator, error_message: str = "") ->
 
     ``error_message`` is a part of its text.
     """
-    case = enter_case(_REFUSED)
+    task = kernel.current()
+    task.handlers = run = _REFUSED, task.handlers
     try:
-        try:
-            return reference(designator)
-        except (Exception, Condition) as exception:  # of Python code, which did not signal it
-            foreign_case(exception, case)
-        finally:
-            unbind()
-    except HandlerExit as exit_:
-        problem = caught(exit_, case)
+        return reference(designator)
+    except CATCHABLE as exception:
+        problem = caught(exception, run)[1]
+    finally:
+        task.handlers = run[1]
     failure = DesignatorReferenceFailure("Designator ~a could not be resolved.~%~a", designator, error_message)
     failure.about = problem.about
     return fail(failure)
 
 
-_REFUSED = lisp_list(DesignatorError)
+_REFUSED = Case(lisp_list(DesignatorError))
 try_reference_designator.__lisp_lambda_list__ = lisp_list(
     sym("DESIG::DESIGNATOR"), sym("&OPTIONAL"), lisp_list(sym("EXE::ERROR-MESSAGE"), "")
 )

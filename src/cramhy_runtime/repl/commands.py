@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ground import conditions
@@ -24,6 +23,8 @@ def is_command(line):
 def run_line(line, write):
     """Carry out a command that was typed at the prompt, until Ctrl-C. write: a function of a text, which gets what it prints and complains
     of."""
+    import shlex
+
     from cramhy_runtime.ros_tools import local_graph, running
 
     try:

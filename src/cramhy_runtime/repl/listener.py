@@ -14,6 +14,7 @@ import re
 import sys
 from contextlib import contextmanager, nullcontext
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime import kernel
 from cramhy_runtime.cpl import current_task
 from cramhy_runtime.ground import conditions
@@ -32,6 +33,7 @@ from . import commands, prompt_words
 from .line_input import BROKEN_OFF, Lines
 from .open_forms import of_lisp
 from .progress import Progress
+from cramhy_runtime.session.boot import boot
 from cramhy_runtime.session.session import Interruption, leave, signalled_here
 
 
@@ -45,7 +47,7 @@ def at_the_prompt():
     return kernel.current() is kernel.active().main
 
 
-_TOKEN = re.compile(r"""#?\\.|;[^\n]*|"(?:\\.|[^"\\])*"?|\|[^|]*\|?|[()]""", re.S)
+_TOKEN = late_pattern(r"""#?\\.|;[^\n]*|"(?:\\.|[^"\\])*"?|\|[^|]*\|?|[()]""", re.S)
 
 
 def rest_of(reader, begun=None):
@@ -110,6 +112,7 @@ class Listener:
                 continue
             if line is None:
                 return "\n".join(lines) if lines else None
+            boot()  # the prompt does without what forms need
             streams.CONSOLE_OUTPUT.record(f"{'' if lines else prompt}{line}\n")
             if not lines:
                 opened = of_lisp()
@@ -308,13 +311,14 @@ class Listener:
         self.announce(condition, restarts)
         self.level += 1
         try:
-            while True:
-                text = self.read_text(f"{self.level - 1}] ")
-                if text is None:
-                    if not any(restart.name is ABORT for restart in restarts):
-                        return None  # nobody has a place to go on: the error is raised
-                    return conditions.invoke_restart(ABORT)
-                self.answer(text.strip(), restarts, condition)
+            with self.input.choosing(condition, restarts) if isinstance(self.input, Lines) else nullcontext():
+                while True:
+                    text = self.read_text(f"{self.level - 1}] ")
+                    if text is None:
+                        if not any(restart.name is ABORT for restart in restarts):
+                            return None  # nobody has a place to go on: the error is raised
+                        return conditions.invoke_restart(ABORT)
+                    self.answer(text.strip(), restarts, condition)
         finally:
             self.level -= 1
 

@@ -12,13 +12,14 @@ from __future__ import annotations
 
 import re
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.languages.commonlisp.reader.readtables import READTABLE, STANDARD
 
 LONGEST = 20
 """Characters that are shown of a long name of an operator."""
 _CLOSE = {"(": ")", "[": "]", "{": "}"}
 
-_LISP = re.compile(
+_LISP = late_pattern(
     r"""(?P<blank>[\s\x7f\xa0\ufeff]+|;[^\n]*)
     | (?P<begins>\#\||["|])                                   # a block comment, a string, a part of a name
     | (?P<bracket>[()])
@@ -27,7 +28,7 @@ _LISP = re.compile(
     | (?P<prefix>.)""",
     re.X | re.S,
 )
-_HY = re.compile(
+_HY = late_pattern(
     r"""(?P<blank>[\s,]+|;[^\n]*)
     | (?P<begins>[bfrt]*"|\#\[(?P<mark>[^\[\]]*)\[)           # a string, a bracket string
     | (?P<bracket>[()\[\]{}])
@@ -36,9 +37,9 @@ _HY = re.compile(
     re.X | re.S,
 )
 _ENDS = {
-    '"': re.compile(r'\\.?|(?P<end>")', re.S),
-    "|": re.compile(r"\\.?|(?P<end>\|)", re.S),
-    "#|": re.compile(r"(?P<begin>\#\|)|(?P<end>\|\#)"),
+    '"': late_pattern(r'\\.?|(?P<end>")', re.S),
+    "|": late_pattern(r"\\.?|(?P<end>\|)", re.S),
+    "#|": late_pattern(r"(?P<begin>\#\|)|(?P<end>\|\#)"),
 }
 
 

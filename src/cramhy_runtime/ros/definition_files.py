@@ -8,9 +8,9 @@ folder and ``tutorials/``. No search begins before the first question. Source: r
 from __future__ import annotations
 
 import os
-import re
 from pathlib import Path
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from .search_folders import crawl, entries, is_folder
 from . import definition_text
 from .definition_text import ACTION_PARTS, DefinitionError, action_messages
@@ -26,9 +26,9 @@ OURS = Path(__file__).parent / "definitions"
 KINDS = ("msg", "srv", "action")
 
 _directories: list[Path] = []
-_TYPE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*$")
-_LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_-]*$")
-_PACKAGE_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
+_TYPE_NAME = late_pattern(r"[A-Za-z][A-Za-z0-9_]*$")
+_LEGAL = late_pattern(r"[A-Za-z][A-Za-z0-9_-]*$")
+_PACKAGE_NAME = late_pattern(r"<name>\s*([\w-]+)\s*</name>")
 
 
 def add_package_directory(directory: str | Path) -> None:

@@ -12,6 +12,7 @@ import keyword
 import re
 from collections import namedtuple
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.ground.packages import near_names
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, NoReturn
 
@@ -40,11 +41,11 @@ RESERVED = {"attributes", "constants", "copy", "definition", "field_names", "fie
             "python_attributes", "ros_type", "values"}  # fmt: skip
 """Attributes of every message class; a field with one of these names gets an underscore after it in Python."""
 
-_LINE = re.compile(r"(?P<type>[^\s=]+)(?:\s+(?P<name>[^=]*?))?\s*(?P<constant>=\s*(?P<value>.*))?$")
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*$")
+_LINE = late_pattern(r"(?P<type>[^\s=]+)(?:\s+(?P<name>[^=]*?))?\s*(?P<constant>=\s*(?P<value>.*))?$")
+_NAME = late_pattern(r"[A-Za-z][A-Za-z0-9_]*$")
 _TRUTHS = {"true": True, "false": False}
-_CONSTANT_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*$")
-_TYPE = re.compile(r"(?P<base>[A-Za-z][A-Za-z0-9_]*(?:/[A-Za-z][A-Za-z0-9_]*)?)(?P<array>\[(?P<length>[0-9]*)\])?$")
+_CONSTANT_NAME = late_pattern(r"[A-Za-z_][A-Za-z0-9_]*$")
+_TYPE = late_pattern(r"(?P<base>[A-Za-z][A-Za-z0-9_]*(?:/[A-Za-z][A-Za-z0-9_]*)?)(?P<array>\[(?P<length>[0-9]*)\])?$")
 
 
 class DefinitionError(ValueError):

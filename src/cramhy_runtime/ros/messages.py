@@ -194,6 +194,13 @@ def lisp_package(package: str, kind: str) -> Package:
     return registered(f"{package.upper()}-{kind}") or ours(f"{package.upper()}-{kind}", lambda: MessagePackage(package, kind))
 
 
+def early_symbol(package: str, kind: str, name: str) -> Symbol:
+    """The symbol ``name`` of `lisp_package`, which the definitions will export. They are not read for that."""
+    home = lisp_package(package, kind)
+    table = home.external if package in _loaded else home.internal
+    return table.setdefault(name, Symbol(name, home))
+
+
 def _forget_lisp_packages(package: str) -> None:
     _reading.append(package)
     for kind in ("MSG", "SRV"):

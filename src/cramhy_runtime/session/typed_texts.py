@@ -7,7 +7,6 @@ texts that define something are kept for longer. An error in a function whose te
 
 from __future__ import annotations
 
-import linecache
 from collections import deque
 
 from cramhy_runtime.ground.source_places import keep_text
@@ -25,6 +24,10 @@ def keep(name, text):
     keep_text(name, text)
     kept, most = (_definitions, MOST_DEFINITIONS) if "(def" in text.lower() else (_plain, MOST)
     kept.append(name)
+    if len(kept) <= most:
+        return
+    import linecache  # it imports the tokenizer
+
     while len(kept) > most:
         gone = kept.popleft()
         if gone not in kept:  # the name of texts that are not numbered comes again and again

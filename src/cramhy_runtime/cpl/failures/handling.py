@@ -15,7 +15,6 @@ from cramhy_runtime.kernel.active import ACTIVE
 
 from cramhy_runtime.ground import condition_types as types
 from cramhy_runtime.ground.conditions import (
-    HANDLERS,
     Cluster,
     HandlerExit,
     error,
@@ -27,7 +26,6 @@ from cramhy_runtime.ground.conditions import (
     type_error,
 )
 from cramhy_runtime.ground.data import lisp_list, list_from
-from cramhy_runtime.ground.dynamic import bind, unbind
 from cramhy_runtime.ground.source_places import locate
 from cramhy_runtime.ground.classes import class_name
 from cramhy_runtime.ground.packages import is_symbol, symbol_name
@@ -141,12 +139,12 @@ class Handling(Cluster, BaseException):
         self.values, self.left = value, True
         raise self
 
-    def offer(self, condition: types.Condition, outer: object) -> None:
+    def offer(self, condition: types.Condition, clusters: Any) -> None:
         """Try the clauses of the form in order (cpl.md 4.5, points 4 and 5). Returns if all of them decline."""
         if self.task.cancelled_delivered and not self.ending:
             return
-        clauses = self.clauses
-        bind(HANDLERS, outer)
+        clauses, task = self.clauses, self.task
+        before, task.handlers = task.handlers, clusters[1]
         try:
             if type(condition) is CommonLispErrorEnvelope:
                 wrapped = condition.error
@@ -165,15 +163,17 @@ class Handling(Cluster, BaseException):
             raised_by_handler(raised)
             raise
         finally:
-            unbind()
+            task.handlers = before
 
     def run(self, body: Callable[[Handling], T]) -> T:
         """Call ``body`` with the handlers in force, and again after each ``retry``. Returns its values, or what a handler left with."""
         if not self.observed and (on_with_failure_handling_begin.methods or on_with_failure_handling_end.methods):
             self.observed = True
             return observed([_type_name(specifier) for specifier, _ in self.clauses], lambda: self.run(body), self)
+        task = self.task
+        outer = task.handlers
         while True:
-            bind(HANDLERS, (self, HANDLERS.value))  # as `enter` does
+            task.handlers = self, outer
             try:
                 try:
                     return body(self)
@@ -181,7 +181,7 @@ class Handling(Cluster, BaseException):
                     offer_late(exception)
                     raise
                 finally:
-                    unbind()
+                    task.handlers = outer
             except Handling as again:
                 if again is not self:
                     raise
@@ -235,8 +235,9 @@ class Attempt(HandlerExit, Cluster):
 
     def run(self, thunk: Callable[[], T]) -> tuple[T | None, PlanFailure | None]:
         """As `attempt`."""
-        ending = self.task.cancelled_delivered
-        self.enter()
+        task = self.task
+        ending, outer = task.cancelled_delivered, task.handlers
+        task.handlers = self, outer
         try:
             try:
                 return thunk(), None
@@ -244,18 +245,18 @@ class Attempt(HandlerExit, Cluster):
                 offer_late(exception)
                 raise
             finally:
-                unbind()
+                task.handlers = outer
         except Attempt as caught:
             if caught is not self:
                 raise
             failure = self.condition
             locate(failure, self)
             self.__traceback__ = self.__context__ = self.condition = None  # no circle of the failure and the frames that it passed
-        if self.task.cancelled_delivered and not ending:
+        if task.cancelled_delivered and not ending:
             raise failure
         return None, failure
 
-    def offer(self, condition: Any, outer: object) -> None:
+    def offer(self, condition: Any, clusters: object) -> None:
         """Leave the attempt if ``condition`` is a plan failure."""
         if isinstance(condition, PlanFailure):
             self.condition = condition

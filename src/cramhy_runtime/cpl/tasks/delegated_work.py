@@ -45,14 +45,14 @@ class Errand(Block):
             return EVAPORATED, NO_VALUES
         self.__enter__()
         task, me = self.task, self.kernel_task
-        path, node, outer = task.path, task.node, me.dynamic
+        path, node, outer, handlers = task.path, task.node, me.dynamic, me.handlers
         self.children = tuple(task.children) if task.children else ()
         self.threads, self.unclaimed = task.threads, task.unclaimed
         self.limit = None
         bindings = None if outer is None else inherited_bindings(me, task, task)
         if outer is not None:
             outer.leave()
-        me.dynamic = bindings
+        me.dynamic, me.handlers = bindings, None
         if bindings is not None:
             bindings.enter()
         task.path = task.node = passing = None
@@ -71,7 +71,7 @@ class Errand(Block):
             status, result, passing = self._outcome(exception)
         if me.dynamic is not None:
             me.dynamic.leave()
-        me.dynamic = outer
+        me.dynamic, me.handlers = outer, handlers
         if outer is not None:
             outer.enter()
         task.path, task.node = path, node

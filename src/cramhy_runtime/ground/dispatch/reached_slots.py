@@ -54,4 +54,24 @@ def attribute_of(effective):
     return getattr(effective, "writes_attribute", None)
 
 
-__all__ = ["ReachedSlots", "attribute_of"]
+def _attribute(function):
+    """The attribute of its argument that ``function`` just reads or writes, for the usual argument; ``None`` if it does more."""
+    known = getattr(function, "__dict__", None)
+    if not known:
+        return None
+    if "slot_of" in known:
+        return None if "traced" in known else function.attribute
+    return function.slot_attribute() if hasattr(function, "slot_attribute") else None
+
+
+def read_attribute(symbol):
+    """The attribute that the function ``symbol`` just reads, or ``None``."""
+    return _attribute(symbol.function) if isinstance(symbol, Symbol) else None
+
+
+def written_attribute(symbol):
+    """The attribute that the function ``(setf symbol)`` just writes, or ``None``."""
+    return _attribute(symbol.setf_function) if isinstance(symbol, Symbol) else None
+
+
+__all__ = ["ReachedSlots", "attribute_of", "read_attribute", "written_attribute"]

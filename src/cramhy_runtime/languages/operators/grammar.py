@@ -12,13 +12,13 @@ call are symbols, and ``%name`` is one of the package CRAMHY, where the function
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.ground.data import Cons, Keyword, list_from
 from cramhy_runtime.kernel.typing_names import Any
 
-_TOKEN = re.compile(r"""\(|\)|\[|\]|'|\.\.\.|"[^"]*"|[^\s()\[\]'".]+(?:\.(?!\.)[^\s()\[\]'".]*)*""")
+_TOKEN = late_pattern(r"""\(|\)|\[|\]|'|\.\.\.|"[^"]*"|[^\s()\[\]'".]+(?:\.(?!\.)[^\s()\[\]'".]*)*""")
 _MISSING = object()
 
 WRONG_NUMBER = "it has the wrong number of parts, or a part is not a list."

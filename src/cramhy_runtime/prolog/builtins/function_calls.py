@@ -8,19 +8,11 @@ Plan failures and other conditions that are not errors pass. Source: prolog.md s
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.catching import caught, enter_case, foreign_case
-from cramhy_runtime.ground.conditions import (
-    Condition,
-    Error,
-    HandlerExit,
-    SimpleWarning,
-    StorageCondition,
-    type_error,
-    undefined_function,
-    warn,
-)
+from cramhy_runtime import kernel
+from cramhy_runtime.ground.catching import CATCHABLE, Case, caught
+from cramhy_runtime.ground.conditions import Error, HandlerExit, SimpleWarning, StorageCondition, type_error, undefined_function, warn
 from cramhy_runtime.ground.data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, lisp_list, truth
-from cramhy_runtime.ground.dynamic import special, unbind
+from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.source_places import exception_position
 
 from cramhy_runtime.utilities.lazy_lists import force_ll
@@ -66,19 +58,18 @@ def call_lisp(function, arguments, kind, written, m=None):
     if BREAK_ON_LISP_ERRORS.value is not None and truth(BREAK_ON_LISP_ERRORS.value):
         return True, _apply(function, arguments)
     inside = None
-    case = enter_case(_ERRORS)
+    task = kernel.current()
+    task.handlers = run = _ERRORS, task.handlers
     try:
-        try:
-            return True, _apply(function, arguments)
-        except (Condition, Exception) as exception:  # raised by Python code without being signalled
-            foreign_case(exception, case)
-        finally:
-            unbind()
-    except HandlerExit as left:
-        inside = exception_position(left)  # before `caught` takes the frames from it
-        problem = caught(left, case)
+        return True, _apply(function, arguments)
     except RecursionError:
         problem = StorageCondition("Control stack exhausted.")
+    except CATCHABLE as left:
+        if isinstance(left, HandlerExit):
+            inside = exception_position(left)  # before `caught` takes the frames from it
+        problem = caught(left, run)[1]
+    finally:
+        task.handlers = run[1]
     warning = SimpleWarning(f"An error occurred while executing the lisp {kind} `~a': `~a'", written, problem)
     if m is not None:
         note_place(warning, m, kind, written, arguments, problem, inside)
@@ -86,7 +77,7 @@ def call_lisp(function, arguments, kind, written, m=None):
     return False, problem
 
 
-_ERRORS = lisp_list(Error)
+_ERRORS = Case(lisp_list(Error))
 
 
 def _apply(function, arguments):

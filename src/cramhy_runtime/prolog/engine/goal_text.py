@@ -6,8 +6,8 @@ distinguishes two variables of the same name, which come from two uses of a clau
 
 from __future__ import annotations
 
-import re
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.ground.conditions import Error, handler_case
 from cramhy_runtime.ground.data import Cons, Symbol, list_from
 from cramhy_runtime.ground.source_places import describe
@@ -27,7 +27,7 @@ MOST_DEPTH = 6
 MOST_CHARACTERS = 240
 """The text of a goal has so many characters at most."""
 _MORE, _ANYTHING = Symbol("..."), Symbol("?_")
-_BREAK = re.compile(r"\s*\n\s*")
+_BREAK = late_pattern(r"\s*\n\s*")
 
 PRINT_PRETTY, PRINT_GENSYM, PRINT_CASE, PRINT_CIRCLE, PRINT_READABLY = (
     lisp_symbol(f"*PRINT-{control}*") for control in ("PRETTY", "GENSYM", "CASE", "CIRCLE", "READABLY")

@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 _SYMBOLS = {Symbol, Keyword}
 _OWN_KEYS = {Symbol, Keyword, int, str, type(None)}
 """The kinds of atoms that are their own key."""
+_MANY = 1000
+"""So many rows are worth a look through the columns instead of a table, when somebody asks for the first time."""
 _SAMPLE = 500
 """So many rows are looked at in order to guess whether each has a key of its own."""
 _CONSTANTS = {int, str, float, DoubleFloat, type(None), bool}
@@ -65,6 +67,27 @@ class Relation:
         self.lists = [Cons in found for found in kinds]
         self.exact = all(self.keyed) and not any(self.lists)
         self._tables: dict[tuple[int, tuple[int, ...] | None], Any] = {}
+        self._asked: set[tuple[int, tuple[int, ...] | None]] = set()
+
+    def rows(self, mask: int, kept: tuple[int, ...] | None, key: Any) -> Any:
+        """The rows of `table` for ``key``, or ``None``. Who asks for the first time gets them without a table, if that would be long."""
+        if mask and self.exact and self.count > _MANY and (mask, kept) not in self._asked:
+            self._asked.add((mask, kept))
+            return self._looked_up([i for i in range(self.arity) if mask >> i & 1], self._kept(mask, kept), key)
+        return self.table(mask, kept).get(key)
+
+    def _looked_up(self, known: list[int], kept: Sequence[int], key: Any) -> Any:
+        """What a table of the columns ``known`` has for ``key``."""
+        first, *others = zip(known, [key] if len(known) == 1 else key)
+        places = _places(self.keys[first[0]], first[1])
+        for i, value in others:
+            keys = self.keys[i]
+            places = [place for place in places if keys[place] == value]
+        columns = [[self.columns[i][place] for place in places] for i in kept]
+        return [*_side_by_side(columns, len(places))] or None
+
+    def _kept(self, mask: int, kept: tuple[int, ...] | None) -> Sequence[int]:
+        return [i for i in range(self.arity) if not mask >> i & 1] if kept is None else kept
 
     def table(self, mask: int, kept: tuple[int, ...] | None = None) -> Any:
         """A dict: known values → for each row that fits, a tuple with the values of the columns ``kept`` (default: the unknown ones).
@@ -73,7 +96,7 @@ class Relation:
         """
         table = self._tables.get((mask, kept))
         if table is None:
-            columns = [i for i in range(self.arity) if not mask >> i & 1] if kept is None else kept
+            columns = self._kept(mask, kept)
             collecting = gc.isenabled()
             gc.disable()  # all that is made now is kept
             try:
@@ -173,7 +196,7 @@ class Relation:
             "general": self.call_general,
             "fail": fail,
             "tables": self._tables,
-            "table": self.table,
+            "get_rows": self.rows,
             "again": _again,
             "set_1": _set_one,
             "set_2": _set_two,
@@ -193,7 +216,8 @@ class Relation:
         mask = sum(1 << j for j in known)
         kept = tuple(j for j in range(self.arity) if j in unknown or j in lists) if lists else None
         key = f"k{known[0]}" if len(known) == 1 else f"({', '.join(f'k{j}' for j in known)})"
-        yield f"rows = (tables.get(({mask}, {kept})) or table({mask}, {kept})).get({key})"
+        yield f"found = tables.get(({mask}, {kept}))"
+        yield f"rows = get_rows({mask}, {kept}, {key}) if found is None else found.get({key})"
         yield "if rows is None: return fail(m)"
         if lists:
             terms = ", ".join(f"a{j}" for j in kept)
@@ -211,6 +235,18 @@ def _side_by_side(columns: Sequence[list[Any]], count: int) -> Iterable[Any]:
     if len(columns) == 1:
         return columns[0]
     return zip(*columns) if columns else [()] * count
+
+
+def _places(keys: list[Any], key: Any) -> list[int]:
+    """Where ``key`` is in ``keys``."""
+    places: list[int] = []
+    at = -1
+    try:
+        while True:
+            at = keys.index(key, at + 1)
+            places.append(at)
+    except ValueError:
+        return places
 
 
 def relation_of(clauses: Sequence[Clause], arity: int) -> Relation | None:

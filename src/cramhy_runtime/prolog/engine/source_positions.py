@@ -6,7 +6,6 @@ goal, the form is read again from its text.
 
 from __future__ import annotations
 
-import linecache
 import sys
 
 from cramhy_runtime.ground.data import Cons, Symbol
@@ -78,6 +77,8 @@ def goal_position(clause, path):
 
 def _read_again(filename, line, column=None):
     """The form that begins there, read into a separate package, and the places of its parts."""
+    import linecache  # it imports the tokenizer
+
     lines = linecache.getlines(filename)[line - 1 :]
     if not lines or not column:
         return None, {}

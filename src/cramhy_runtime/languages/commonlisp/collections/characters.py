@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 import unicodedata
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.ground.condition_types import SimpleTypeError
 from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import Character, LispString
@@ -86,7 +87,7 @@ _BY_NAME.update(
     BELL="\U0001f514",
 )
 _BY_NAME.update({f"^{chr(64 + code)}": chr(code) for code in range(32)})
-_CODE_NAME = re.compile(r"U\+?([0-9A-F]+)", re.IGNORECASE)
+_CODE_NAME = late_pattern(r"U\+?([0-9A-F]+)", re.IGNORECASE)
 
 
 def char_name(character):

@@ -47,6 +47,20 @@ def cells(lst, context=""):
         not_a_list(cell, context if cell is lst else "")
 
 
+def cars(cell):
+    """Iterate over the elements of the proper list that begins with the cons ``cell``; a wrong end is a type-error."""
+    while cell.__class__ is Cons:
+        for _ in STRETCH:
+            yield cell.car
+            cell = cell.cdr
+            if cell.__class__ is not Cons:
+                break
+        else:
+            checkpoint()
+    if cell is not None and cell is not False:
+        not_a_list(cell)
+
+
 def items_of(lst, context=""):
     """The elements of a proper list as a Python list; anything else is a type-error."""
     items, cell = list_parts(lst)

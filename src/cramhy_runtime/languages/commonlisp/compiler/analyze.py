@@ -38,7 +38,7 @@ from .nodes import (
     SetGlobal,
     SetLocal,
 )
-from .open_coding import MAPPING, call_of_next, open_coded
+from .open_coding import OPEN_CODED, call_of_next, open_coded
 from .style_checks import CRAMHY, Scrutiny, tuple_of
 
 SPECIAL_FORMS: dict = {}
@@ -135,8 +135,8 @@ class Analyzer(Scrutiny):
             expansion, expanded = self.expand(form, env)
             if expanded:
                 return self.form(expansion, env)
-            if head in MAPPING:
-                loop = open_coded(form)
+            if head in OPEN_CODED and head not in self.notinline:
+                loop = open_coded(form, env.function)
                 if loop is not None:
                     self.positions.inherit(loop, form)
                     return self.form(loop, env)

@@ -11,11 +11,13 @@ from fractions import Fraction
 from operator import attrgetter
 
 from cramhy_runtime.ground.arrays import SimpleArray, TypedVector
+from cramhy_runtime.ground.catching import Case
 from cramhy_runtime.ground.keyword_calls import KeywordCalls
 from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Symbol
 from ..format.format_pieces import Piece
 from ..numbers.complex_numbers import parts
 from ..objects.makers import Maker
+from ..objects.slots import NamedSlot
 from ..syntax.backquote import Comma
 from .core import List, expression, word
 
@@ -33,6 +35,7 @@ class Constants:
         self.alive = []  # ids are keys: the objects must live as long
         self.fresh = []
         self.made = set()
+        self.cases = {}  # ids of lists of types, which the cases keep alive, and the `Case` of each
         self.statements = []
         self.count = 0
 
@@ -47,6 +50,13 @@ class Constants:
             self.alive.append(obj)
             self.fresh.append((found, kind, obj))
         return found
+
+    def case(self, types):
+        """The global name for the `Case` of a ``handler-case`` with clauses of ``types``, a Lisp list."""
+        case = self.cases.get(id(types))
+        if case is None:
+            case = self.cases[id(types)] = Case(types)
+        return self.name("object", case)
 
     def own_name(self, base):
         """A global name that nothing else in the text has."""
@@ -130,6 +140,10 @@ class Constants:
             return expression(word("Lkeyword_calls"), self.builder(obj.symbol), obj.count, *map(self.builder, obj.keys))
         if kind is Piece:
             return expression(word("Lpiece"), obj.control, obj.index)
+        if kind is Case:
+            return expression(word("Lcase"), self.builder(obj.specifiers))
+        if kind is NamedSlot:
+            return expression(word("Lnamed_slot"), self.builder(obj.name))
         if kind is Maker:
             return expression(word("Lmaker"), self.builder(obj.name), *map(self.builder, obj.keys))
         raise NotStorable(obj)

@@ -198,8 +198,14 @@ class Env:
             env = env.parent
         return None
 
-    def function(self, name):
-        return self._find("functions", name)
+    def function(self, name):  # so does this
+        env = self
+        while env is not None:
+            found = env.functions.get(name)
+            if found is not None:
+                return found
+            env = env.parent
+        return None
 
     def block(self, symbol):
         # nil as a block name is the key None, which a dictionary takes like any other

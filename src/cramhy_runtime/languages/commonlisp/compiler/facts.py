@@ -17,6 +17,7 @@ from .kinds import ABS, ANY, DIVIDE, MAX, MIN, MINUS, NONE_YET, PLUS, SMOOTH, SQ
 OPERANDS_OF = {PLUS, MINUS, TIMES, DIVIDE, MAX, MIN, ABS, SQRT, *STEPS, *SMOOTH, *map(sym, "< > <= >= = ZEROP PLUSP MINUSP".split())}
 """Functions for whose arguments it pays to know the class, or to be raw."""
 
+_NODES = {kind for kind in vars(nodes).values() if isinstance(kind, type) and issubclass(kind, nodes.Node)}
 _node_fields: dict = {}
 _ENDS = {nodes.Constant, nodes.LocalVariable, nodes.GlobalVariable, nodes.FunctionReference, nodes.Go}
 """Nodes that have none below them."""
@@ -30,17 +31,18 @@ def children(node):
         _node_fields[node.__class__] = names
     for name in names:
         part = getattr(node, name)
-        if isinstance(part, nodes.Node):
+        kind = part.__class__
+        if kind in _NODES:
             yield part
-        elif part.__class__ is list:
+        elif kind is list:
             for item in part:
-                if isinstance(item, nodes.Node):
+                if item.__class__ in _NODES:
                     yield item
                 elif item.__class__ is list:
                     yield from item  # the segments of a tagbody
-                elif item.__class__ is tuple and isinstance(item[1], nodes.Node):
+                elif item.__class__ is tuple and item[1].__class__ in _NODES:
                     yield item[1]  # a binding
-        elif part.__class__ is nodes.Parameters:
+        elif kind is nodes.Parameters:
             for entry in (*part.optional, *part.keys):
                 if entry[1] is not None:
                     yield entry[1]

@@ -9,7 +9,6 @@
 
 from __future__ import annotations
 
-import linecache
 
 MACRO = 3
 """So many unknown names in a call, one of a variable at least, tell that its unknown operator is no function."""
@@ -61,6 +60,8 @@ def _same_form(before, behind):
     """Whether the second position follows the first, with no form in between that begins at the margin."""
     if not before or not behind or before[0] != behind[0] or before[1:] > behind[1:]:
         return False
+    import linecache  # it imports the tokenizer
+
     return not any(linecache.getline(before[0], line).startswith("(") for line in range(before[1] + 1, behind[1] + 1))
 
 

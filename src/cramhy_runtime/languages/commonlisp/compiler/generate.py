@@ -10,22 +10,24 @@ Exits are in ``generate_exits.py``, function definitions in ``generate_functions
 from __future__ import annotations
 
 from cramhy_runtime.ground.data import DoubleFloat, Symbol, UndefinedFunction
+from cramhy_runtime.ground.dispatch.reached_slots import written_attribute
 from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym
 from . import core, nodes
 from .constants import Constants, float_model
 from .core import expression, word
 from .destinations import EFFECT, FIRST_OF_VALUES, NONE, RAW, TRUE, VALUE, VALUES, Destination
 from .facts import study, walk
-from .generate_calls import CallGenerator, written_attribute
-from .generate_exits import ExitGenerator
+from .generate_calls import SLOT_VALUE, CallGenerator, slot_named_by
+from .generate_exits import ERROR, ExitGenerator
 from .generate_functions import FunctionGenerator
 from .arithmetic.functions import NUMBER_FUNCTIONS
 from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS, OperatorGenerator
 from .generate_texts import TextGenerator
+from .loop_shapes import CHANGES
 from .kinds import BOOLEAN, MAX, MIN, MINUS, OPERATORS, PI, PLUS, STEPS, THING, WHOLE, kind_of
 
 
-COLLECT, CONS, ERROR, FORMAT, GETHASH = map(sym, "CRAMHY::COLLECT CONS ERROR FORMAT GETHASH".split())
+COLLECT, CONS, FORMAT, GETHASH = map(sym, "CRAMHY::COLLECT CONS FORMAT GETHASH".split())
 KNOWN_SETTERS = {sym(name) for name in "GETHASH AREF SVREF ELT NTH GET CHAR".split()}
 """Functions of Common Lisp whose ``setf`` is a function, which nobody may redefine or give methods."""
 
@@ -46,7 +48,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         self.destinations = {}
         self.jump_codes = {}
         self.class_names = {}  # names of parameters → names of variables that hold their classes
-        self.cases = []  # the names and scopes of the ``handler-case`` forms around
+        self.cases = []  # the ``handler-case`` forms around in which an error is signalled, see `catching`
         self.before = []  # statements that must stand before the definition of the function being generated
 
     # ------------------------------------------------------------------------------------------------------------- output
@@ -280,10 +282,10 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
             model = self.open_call(node, symbol, arguments, destination)
             if model is not None:
                 return self.finish(model, nodes.Constant(None), destination)
-        if symbol is ERROR and self.cases and self.cases[-1][1] is self.scope and arguments and self.standard(symbol):
-            call = self.call("error_in_case", self.cases[-1][0], *self.arguments(arguments))
-            self.emit(word("raise"), self.positioned(call, node))
-            return NONE if destination.kind == "value" else None
+        if symbol is ERROR and self.cases and self.cases[-1][-1] is self.scope and arguments and self.standard(symbol):
+            return self.error_in_case(node, arguments, destination)
+        if symbol in CHANGES and len(arguments) == 2 and self.standard(symbol):
+            return self.by_statements(node, destination, lambda inner: self.pushed(node, arguments, inner))
         if symbol is FORMAT:
             model = self.text(node, arguments)
             if model is not None:
@@ -358,6 +360,8 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         arguments = self.arguments(node.arguments)
         if (attribute := written_attribute(node.symbol)) is not None and len(arguments) == 2:
             return self.by_statements(node, destination, lambda inner: self.slot_written(node, attribute, arguments, inner))
+        if node.symbol is SLOT_VALUE and len(arguments) == 3 and (named := slot_named_by(node.arguments[2])) is not None:
+            return self.by_statements(node, destination, lambda inner: self.named_slot_written(node, named, arguments, inner))
         if node.symbol in KNOWN_SETTERS:
             setter = word(self.constants.name("setf_function", node.symbol))
         else:
@@ -416,6 +420,9 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
             name = self.temporary()
             self.branch(test, [*then_out, self.setting(name, then)], [*else_out, self.setting(name, otherwise)])
             return word(name)
+        if isinstance(node, nodes.Let) and not any(isinstance(variable, Symbol) for variable, _ in node.bindings):
+            self.bind(node.bindings, node.body)
+            return self.test(node.body)
         if isinstance(node, nodes.Call) and self.standard(node.symbol):
             if node.symbol in COMPARISONS and len(node.arguments) == 2:
                 return self.comparison(node, node.symbol, node.arguments)
@@ -432,7 +439,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
             return true if not kind & THING else expression(word("and"), true, expression(word("is-not"), value, word("False")))
         model = self.gen(node, FIRST_OF_VALUES)
         if model.__class__ is not core.Expression:
-            return self.call("truth", model)
+            return self.call("truth", model if node.single else self.call("one", model))
         value = word("Lv")
         true = [expression(word("is-not"), expression(word("setx"), value, model), NONE), expression(word("is-not"), value, word("False"))]
         if not node.single:
@@ -446,7 +453,9 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
 
     def branch(self, test, then, otherwise):
         do = word("do")
-        if otherwise:
+        if otherwise and not then:
+            self.emit(word("when"), expression(word("not"), test), *otherwise)
+        elif otherwise:
             self.emit(word("if"), test, expression(do, *then), expression(do, *otherwise))
         else:
             self.emit(word("when"), test, *then) if then else self.emit(do, test)
@@ -507,23 +516,24 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
     def Let(self, node, destination):
         if node.bindings and (body := self.modification(node)) is not None:
             return self.gen(body, destination)
+        dynamic = self.bind(node.bindings, node.body)
+        return self.with_specials(node.body, dynamic, destination) if dynamic else self.gen(node.body, destination)
+
+    def bind(self, pairs, body):
+        """Emit the bindings ``pairs`` of the lexical variables of a ``let``; gives those of the specials, symbols with their values."""
         bindings = []
-        for variable, value in node.bindings:
+        for variable, value in pairs:
             plain = not isinstance(variable, Symbol) and value.__class__ is nodes.LocalVariable
-            if plain and self.alike(variable, value.variable, [node.body, *(other for _, other in node.bindings)]):
+            if plain and self.alike(variable, value.variable, [body, *(other for _, other in pairs)]):
                 variable.name = value.variable.name
             else:
                 bindings.append((variable, value))
-        node = nodes.Let(bindings, node.body)
-        wanted = [RAW if getattr(variable, "raw", False) else VALUE for variable, _ in node.bindings]
-        values = self.arguments([value for _, value in node.bindings], wanted)
-        lexical = [(variable, value) for (variable, _), value in zip(node.bindings, values) if not isinstance(variable, Symbol)]
-        dynamic = [(symbol, value) for (symbol, _), value in zip(node.bindings, values) if isinstance(symbol, Symbol)]
-        for variable, value in lexical:
-            self.bind_variable(variable, value)
-        if not dynamic:
-            return self.gen(node.body, destination)
-        return self.with_specials(node.body, dynamic, destination)
+        wanted = [RAW if getattr(variable, "raw", False) else VALUE for variable, _ in bindings]
+        values = self.arguments([value for _, value in bindings], wanted)
+        for (variable, _), value in zip(bindings, values):
+            if not isinstance(variable, Symbol):
+                self.bind_variable(variable, value)
+        return [(symbol, value) for (symbol, _), value in zip(bindings, values) if isinstance(symbol, Symbol)]
 
     def with_specials(self, body, dynamic, destination):
         def produce(inner):

@@ -10,17 +10,19 @@ from __future__ import annotations
 from types import FunctionType
 
 from cramhy_runtime.ground.data import Character, Keyword, Symbol
+from cramhy_runtime.ground.dispatch.reached_slots import read_attribute
 from cramhy_runtime.ground.keyword_calls import keyword_calls, name_of_key, takes_keywords
 from cramhy_runtime.ground.packages import sym
 from ..objects.makers import maker
+from ..objects.slots import named_slot
 from . import core, nodes
-from .core import NONE, List, Tuple, expression, word
+from .core import NONE, TRUE, List, Tuple, expression, word
 from .destinations import VALUES as ALL_VALUES
 from .arithmetic.operations import AND, DOT, IF, INT_CLASS, IS, IS_NOT, SETX, class_of
 
 FIND, FLOOR, GETHASH, LIST, VALUES = map(sym, "FIND FLOOR GETHASH LIST VALUES".split())
-MAKE_INSTANCE, SAME_CHARACTER = sym("MAKE-INSTANCE"), sym("CHAR=")
-CHARACTER = word("Lcharacter")
+MAKE_INSTANCE, SAME_CHARACTER, SLOT_VALUE = map(sym, "MAKE-INSTANCE CHAR= SLOT-VALUE".split())
+CHARACTER, GET, PLUS, SETV = map(word, "Lcharacter get + setv".split())
 
 
 class CallGenerator:
@@ -73,6 +75,11 @@ class CallGenerator:
             slow = self.positioned(expression(self.known_function(symbol), name, divisor), node)
             quick = expression(word("LMultipleValues"), self.call("divmod", name, divisor))
             return expression(IF, expression(IS, class_of(number), INT_CLASS), quick, slow)
+        if symbol is SLOT_VALUE and count == 2 and (named := slot_named_by(arguments[1])) is not None:
+            (target,) = self.stable_names(self.arguments(arguments[:1]))
+            classes = self.constant(named)
+            slow = self.positioned(expression(expression(DOT, classes, word("read")), target), node)
+            return expression(IF, self.among(target, classes), expression(DOT, target, word(named.attribute)), self.first_value(slow))
         if symbol is LIST and count > 4:
             return self.call("list", *self.arguments(arguments))
         if symbol is SAME_CHARACTER and count == 2:
@@ -132,23 +139,58 @@ class CallGenerator:
 
     def slot_read(self, node, symbol, models):
         """A call of an accessor: the attribute itself, if the object is of a class where that means the same; or ``None``."""
-        if len(models) != 1 or not isinstance(symbol, Symbol) or (attribute := _attribute(symbol.function)) is None:
+        if len(models) != 1 or (attribute := read_attribute(symbol)) is None:
             return None
         (target,) = self.stable_names(models)
         classes = word(self.constants.name(f"reads.of_{attribute}", symbol))
         slow = self.positioned(expression(expression(DOT, self.constant(symbol), word("function")), target), node)
-        quick = expression(word("in"), class_of(target), classes)
-        return expression(IF, quick, expression(DOT, target, word(attribute)), self.first_value(slow))
+        return expression(IF, self.among(target, classes), expression(DOT, target, word(attribute)), self.first_value(slow))
+
+    @staticmethod
+    def among(target, classes):
+        """A test whether the class of ``target`` is one of ``classes`` (`ground.data.Classes`)."""
+        last = expression(IS, expression(SETX, word("Lo"), class_of(target)), expression(DOT, classes, word("last")))
+        return expression(word("or"), last, expression(word("in"), word("Lo"), classes))
 
     def slot_written(self, node, attribute, models, destination):
         """``(setf (accessor object) new)``, with the new value and the object as ``models``."""
-        new, target = self.stable_names(models)
         classes = word(self.constants.name(f"writes.of_{attribute}", node.symbol))
+        self.attribute_set(node, attribute, models, destination, classes, self.call("setf_function", self.constant(node.symbol)))
+
+    def named_slot_written(self, node, named, models, destination):
+        """``(setf (slot-value object 'name) new)``"""
+        classes = self.constant(named)
+        self.attribute_set(node, named.attribute, models[:2], destination, classes, expression(DOT, classes, word("write")))
+
+    def attribute_set(self, node, attribute, models, destination, classes, function):
+        """Set an attribute of an object that is an instance of one of ``classes``, or call ``function``."""
+        new, target = self.stable_names(models)
         quick, _ = self.captured(lambda: self.finish(new, nodes.Constant(None), destination, pure=True))
-        call = self.positioned(expression(self.call("setf_function", self.constant(node.symbol)), new, target), node)
+        call = self.positioned(expression(function, new, target), node)
         slow, _ = self.captured(lambda: self.finish(call, node, destination))
         store = expression(word("setv"), expression(DOT, target, word(attribute)), new)
-        self.branch(expression(word("in"), class_of(target), classes), [store, *quick], slow)
+        self.branch(self.among(target, classes), [store, *quick], slow)
+        self.effects += 1
+
+    # -------------------------------------------------------------------------------------------------------------- vectors
+
+    def pushed(self, node, arguments, destination):
+        """``(vector-push new vector)`` and ``vector-push-extend``: if there is room in the vector, its new element is stored right here."""
+        new, vector = self.stable_names(self.arguments(arguments))
+        index, end = word(self.temporary("Lindex")), expression(DOT, vector, word("fill_pointer"))
+        test = expression(
+            AND,
+            expression(IS, class_of(vector), word("Lany_vector")),
+            expression(IS, expression(DOT, vector, word("element_type")), TRUE),
+            expression(IS_NOT, expression(SETX, index, end), NONE),
+            expression(word("<"), index, expression(GET, expression(DOT, vector, word("dimensions")), 0)),
+        )
+        place = expression(GET, expression(DOT, vector, word("storage")), expression(PLUS, expression(DOT, vector, word("offset")), index))
+        quick = [expression(SETV, place, new), expression(SETV, end, expression(PLUS, index, 1))]
+        value, _ = self.captured(lambda: self.finish(index, nodes.Constant(None), destination, pure=True))
+        call = self.positioned(expression(self.known_function(node.symbol), new, vector), node)
+        slow, _ = self.captured(lambda: self.finish(call, nodes.Constant(None), destination))
+        self.branch(test, [*quick, *value], slow)
         self.effects += 1
 
     # ----------------------------------------------------------------------------------------------------- several values
@@ -207,19 +249,10 @@ def _keys_begin(function, arguments):
     return count if all(key.__class__ is nodes.Constant and key.value.__class__ is Keyword for key in keys) else None
 
 
-def _attribute(function):
-    """The attribute of its argument that ``function`` just reads or writes, for the usual argument; ``None`` if it does more."""
-    known = getattr(function, "__dict__", None)
-    if not known:
-        return None
-    if "slot_of" in known:
-        return None if "traced" in known else function.attribute
-    return function.slot_attribute() if hasattr(function, "slot_attribute") else None
-
-
-def written_attribute(symbol):
-    """The attribute that the function ``(setf symbol)`` just writes, or ``None``."""
-    return _attribute(symbol.setf_function) if isinstance(symbol, Symbol) else None
+def slot_named_by(node):
+    """The `NamedSlot` of the symbol that ``node`` is; ``None`` for anything else."""
+    name = node.value if node.__class__ is nodes.Constant else None
+    return named_slot(name) if name.__class__ is Symbol and name.package is not None else None
 
 
 def _is_text(node):
@@ -252,4 +285,4 @@ def sorted_arguments(function, models, arguments):
     return done
 
 
-__all__ = ["CallGenerator", "written_attribute"]
+__all__ = ["SLOT_VALUE", "CallGenerator", "slot_named_by"]

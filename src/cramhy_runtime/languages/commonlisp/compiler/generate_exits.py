@@ -9,13 +9,17 @@ these are used up, `Lrefill` lets others run. Cleanup forms are shielded: no req
 
 from __future__ import annotations
 
+from cramhy_runtime.ground.packages import sym
 from . import nodes
-from .core import List, expression, word
+from .arithmetic.operations import DOT
+from .core import List, Tuple, expression, word
 from .destinations import EFFECT, NONE, TRUE, VALUES
+from .facts import walk
 from .loop_shapes import counting, loop_of
 
 
 DEEP = 5
+ERROR = sym("ERROR")
 
 
 class Frame:
@@ -188,6 +192,16 @@ class ExitGenerator:
             word("while"), TRUE, expression(word("for"), List([word("Ltick"), ticks]), *(body or [NONE]), refill), expression(word("break"))
         )
 
+    def Each(self, node, destination):
+        items = self.call("each_of_all" if node.whole else "each", self.value(node.sequence), *([node.context] if node.context else []))
+        frame = Frame()
+        self.frames.append(frame)
+        body, _ = self.captured(lambda: self.gen(node.body, EFFECT))
+        self.frames.pop()
+        self.emit(word("for"), List([word(node.variable.name), items]), *(body or [NONE]))
+        self.continue_exits(frame)
+        return self.finish(NONE, node, destination, pure=True)
+
     def counted(self, found):
         """(what Python's ``for`` goes over, its target) of a `Counting`."""
         if found.vector is not None:
@@ -245,27 +259,76 @@ class ExitGenerator:
 
     def catching(self, node, destination):
         """``handler-case``: the handlers are in force while the form runs; the clause runs when they are not any more."""
-        cluster, foreign, caught = word(self.temporary("Lcase")), word(self.temporary("Le")), word(self.temporary("Le"))
-        self.emit(word("setv"), cluster, self.call("enter_case", self.constant(node.types)))
-        self.cases.append((cluster, self.scope))
+        task, run, left = word(self.temporary("Ltask")), word(self.temporary("Lrun")), word(self.temporary("Le"))
+        clause = word(self.temporary("Lclause"))
+        found = List([clause, word(node.condition.name)])
+        ends = destination.kind != "return"  # whether the code goes on behind the form that was guarded
+        if ends:
+            self.assign(clause, -1)
+        self.in_force(task, run, word(self.constants.case(node.types)))
+        frame = Frame(breaks=node.condition)
+        signals = any(item.__class__ is nodes.Call and item.symbol is ERROR for item in walk([node.form]))
+        if signals:
+            self.frames.append(frame)
+            self.cases.append(((task, run), found, node.condition, self.scope))
         guarded, _ = self.captured(lambda: self.gen(node.form, destination))
-        self.cases.pop()
-        inner = expression(
+        if signals:
+            self.cases.pop()
+            self.frames.pop()
+        attempt = expression(
             word("try"),
             *(guarded or [NONE]),
-            expression(word("except"), List([foreign, word("LException")]), self.call("foreign_case", foreign, cluster)),
-            expression(word("finally"), self.call("unbind", 1)),
+            expression(word("except"), List([left, word("Lcatchable")]), expression(word("setv"), found, self.call("caught", left, run))),
+            expression(word("finally"), self.out_of_force(task, run)),
         )
-        condition = word(node.condition.name)
-        handler = [expression(word("setv"), condition, self.call("caught", caught, cluster))]
-        index = expression(word("."), cluster, word("index"))
-        for number, clause in enumerate(node.clauses):
-            body, _ = self.captured(lambda clause=clause: self.gen(clause, destination))
-            if len(node.clauses) == 1:
-                handler += body
-            else:
-                handler.append(expression(word("when"), expression(word("="), index, number), *(body or [NONE])))
-        self.emit(word("try"), inner, expression(word("except"), List([caught, word("LHandlerExit")]), *handler))
+        if signals:
+            self.emit(word("while"), TRUE, attempt, expression(word("break")))
+            self.continue_exits(frame)
+        else:
+            self.out.append(attempt)
+            self.effects += 1
+        bodies = [self.captured(lambda body=body: self.gen(body, destination))[0] for body in node.clauses]
+        if len(bodies) == 1 and not ends:
+            self.out += bodies[0]
+        else:
+            for number, body in enumerate(bodies):
+                self.emit(word("when"), expression(word("="), clause, number), *(body or [NONE]))
+
+    def Handling(self, node, destination):
+        return self.by_statements(node, destination, lambda inner: self.handling(node, inner))
+
+    def handling(self, node, destination):
+        """``handler-bind``: the handlers are in force while the body runs."""
+        functions = self.arguments(node.functions)
+        task, run, passing = word(self.temporary("Ltask")), word(self.temporary("Lrun")), word(self.temporary("Le"))
+        self.in_force(task, run, List([Tuple([self.literal(kind), each]) for kind, each in zip(node.types, functions, strict=True)]))
+        body, _ = self.captured(lambda: self.gen(node.body, destination))
+        late = [self.call("offer_late", passing), expression(word("raise"))]
+        self.emit(
+            word("try"),
+            *(body or [NONE]),
+            expression(word("except"), List([passing, word("Lexceptions")]), *late),
+            expression(word("finally"), self.out_of_force(task, run)),
+        )
+
+    def error_in_case(self, node, arguments, destination):
+        """A call of ``error`` in the form that a ``handler-case`` of this function guards: if a clause fits, the code goes on there."""
+        names, found, target, _ = self.cases[-1]
+        self.emit(word("setv"), found, self.positioned(self.call("error_in_case", *names, *self.arguments(arguments)), node))
+        self.jump(target)
+        return NONE if destination.kind == "value" else None
+
+    def in_force(self, task, run, handlers):
+        """Put ``handlers`` in force for the task that runs; ``run`` names the pair that stands for this time."""
+        active = expression(word("or"), expression(DOT, word("Lactive"), word("value")), expression(word("Lno_kernel")))
+        self.emit(word("setv"), task, expression(DOT, active, word("current")))
+        self.emit(word("setv"), run, Tuple([handlers, expression(DOT, task, word("handlers"))]))
+        self.emit(word("setv"), expression(DOT, task, word("handlers")), run)
+
+    @staticmethod
+    def out_of_force(task, run):
+        """Code after which those that were in force before ``run`` are again."""
+        return expression(word("setv"), expression(DOT, task, word("handlers")), expression(word("get"), run, 1))
 
     def UnwindProtect(self, node, destination):
         def produce(inner):

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from cramhy_runtime.utilities.records import dataclass
 
+from cramhy_runtime.ground.dispatch.reached_slots import read_attribute, written_attribute
 from cramhy_runtime.ground.packages import sym
 from . import nodes
 from .facts import walk
@@ -30,11 +31,11 @@ CRAMHY::COLLECT CRAMHY::CAR-OF-CONS CRAMHY::CDR-OF-CONS CRAMHY::LOOP-VECTOR""".s
 }
 """Functions that neither call functions of users nor take long: a loop of nothing else need not look at every turn whether its
 slice is over."""
-QUICK_OF_TWO = {sym(name) for name in "FIND POSITION MEMBER ASSOC COUNT STRING= STRING/= STRING< STRING> EQUAL".split()}
+QUICK_OF_TWO = {sym(name) for name in "FIND POSITION MEMBER ASSOC COUNT STRING= STRING/= STRING< STRING> EQUAL SLOT-VALUE".split()}
 """The same, if they are called with two arguments. Where an argument is long, they look by themselves whether the slice is over."""
 CHANGES = {sym(name) for name in "VECTOR-PUSH VECTOR-PUSH-EXTEND".split()}
 """Functions that are as quick, but change the length of a vector."""
-SETTERS = {sym(name) for name in "GETHASH AREF SVREF CHAR".split()}
+SETTERS = {sym(name) for name in "GETHASH AREF SVREF CHAR SLOT-VALUE".split()}
 """Places whose setters are as quick, but change what a loop may walk along."""
 
 
@@ -176,16 +177,26 @@ def _reads(statements, variable):
     return sum(item.__class__ is nodes.LocalVariable and item.variable is variable for item in walk(statements))
 
 
-_CALLS = (nodes.CallLocal, nodes.CallValue, nodes.CallSetf, nodes.CallSpread, nodes.Support, nodes.UnwindProtect, nodes.Catching)
+_CALLS = (
+    nodes.CallLocal,
+    nodes.CallValue,
+    nodes.CallSetf,
+    nodes.CallSpread,
+    nodes.Support,
+    nodes.UnwindProtect,
+    nodes.Catching,
+    nodes.Handling,
+    nodes.Each,
+)
 
 
 def _quick(statements):
     for item in walk(statements):
         kind = item.__class__
-        if kind in _CALLS and not (kind is nodes.CallSetf and item.symbol in SETTERS):
+        if kind in _CALLS and not (kind is nodes.CallSetf and (item.symbol in SETTERS or written_attribute(item.symbol) is not None)):
             return False
         if kind is nodes.Call and item.symbol not in QUICK and item.symbol not in CHANGES:
-            if item.symbol not in QUICK_OF_TWO or len(item.arguments) != 2:
+            if (item.symbol not in QUICK_OF_TWO or len(item.arguments) != 2) and read_attribute(item.symbol) is None:
                 return False
     return True
 

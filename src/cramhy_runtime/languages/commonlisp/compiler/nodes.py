@@ -206,6 +206,18 @@ class TagbodyNode(Node):
 
 
 @dataclass
+class Each(Node):
+    """``body`` for each element of a sequence, which is the value of ``variable``. whole: a list is looked at as a whole before."""
+
+    variable: object
+    sequence: Node
+    body: Node
+    whole: bool
+    context: str
+    single = True
+
+
+@dataclass
 class Go(Node):
     tagbody: object
     index: int
@@ -225,6 +237,15 @@ class Catching(Node):
     form: Node
     condition: object
     clauses: list
+
+
+@dataclass
+class Handling(Node):
+    """``handler-bind``: type specifiers, the forms of their functions, and the body."""
+
+    types: list
+    functions: list
+    body: Node
 
 
 @dataclass

@@ -1,8 +1,9 @@
-"""Functions that are written in place: mapping over lists, and the next method of a method.
+"""Functions that are written in place: mapping over lists, searching, and the next method of a method.
 
 ``(mapcar (lambda (x) ...) list)`` means a loop whose body is that of the function, and becomes one. So the variables around stay
 variables of one Python function, and ``return-from`` and ``go`` out of the function written in place are jumps. Functions of
 several lists end with the shortest. What has another shape (a lambda list with keywords, a function that is computed) is called.
+``(find-if (lambda (x) ...) sequence)`` and its relatives become loops likewise, over sequences of any kind (``cramhy::each``).
 
 A method that uses ``call-next-method`` and ``next-method-p`` has them as local functions, so that it can give them away, too. Where its
 parameters are all required, the definitions of these functions say which variable holds the function of the next method, and which the
@@ -22,10 +23,20 @@ LET, LET_STAR, TAGBODY, IF, GO, SETQ, PROGN, ATOM, CONS, FUNCTION, LAMBDA = map(
     sym, "LET LET* TAGBODY IF GO SETQ PROGN ATOM CONS FUNCTION LAMBDA".split()
 )
 MAPPING = {MAPCAR: COLLECT, MAPC: None, MAPCAN: COLLECT_NCONC}
+SEARCHING: dict = {}
+"""Symbol of a function of a predicate and a sequence → the function that writes the loop."""
+OPEN_CODED = {*MAPPING}
+SIMPLE = {
+    sym(name)
+    for name in """CAR CDR CAAR CADR CDDR FIRST SECOND THIRD REST 1+ 1- - NOT NULL EVENP ODDP ZEROP PLUSP MINUSP CONSP ATOM LISTP SYMBOLP
+    NUMBERP INTEGERP STRINGP CHARACTERP KEYWORDP ABS IDENTITY LENGTH CHAR-UPCASE CHAR-DOWNCASE CHAR-CODE CODE-CHAR SYMBOL-NAME""".split()
+}
+"""Functions of one argument whose calls are written in place, too: ``#'car`` is as good as a lambda expression."""
 
 
-def open_coded(form):
-    """The loop that a call of a mapping function means, or ``None`` to call it."""
+def open_coded(form, local):
+    """The loop that a call of a mapping or searching function means, or ``None`` to call it. ``local(symbol)``: what it names here, if
+    not a global function."""
     parts, cell = [], form.cdr
     while isinstance(cell, Cons):
         parts.append(cell.car)
@@ -35,11 +46,20 @@ def open_coded(form):
     function, *lists = parts
     if isinstance(function, Cons) and function.car is FUNCTION and isinstance(function.cdr, Cons):
         function = function.cdr.car
+        if function.__class__ is Symbol and function in SIMPLE and len(lists) == 1 and local(function) is None:
+            item = gensym("ITEM")
+            function = lisp_list(LAMBDA, lisp_list(item), lisp_list(function, item))
     if not (isinstance(function, Cons) and function.car is LAMBDA and isinstance(function.cdr, Cons)):
         return None
     variables = _variables(function.cdr.car)
     if variables is None or len(variables) != len(lists):
         return None
+    if form.car in SEARCHING:
+        if len(lists) > 1:
+            return None
+        item = gensym("ITEM")
+        test = Cons(LET, Cons(lisp_list(lisp_list(variables[0], item)), function.cdr.cdr))
+        return SEARCHING[form.car](item, test, lists[0])
     return _loop(form.car, variables, function.cdr.cdr, lists)
 
 
@@ -72,6 +92,103 @@ def _loop(name, variables, body, lists):
         result = lisp_list(CDR_OF_CONS, header)
     loop = Cons(TAGBODY, list_from([again, *tests, value, *steps, lisp_list(GO, again), end]))
     return lisp_list(LET_STAR, list_from(bindings), loop, result)
+
+
+# ----------------------------------------------------------------------------------------------------------- searching
+
+EACH, SUPPORT, BLOCK, RETURN_FROM, PLUS_ONE = map(sym, "CRAMHY::EACH CRAMHY::SUPPORT BLOCK RETURN-FROM 1+".split())
+FIRST_SEQUENCE = "\nwhen binding SB-IMPL::FIRST-SEQ"
+
+
+def searching(name):
+    """Enter the decorated function as the one that writes a call of ``name``: it gets a symbol for an element, the test of it, and the
+    form of the sequence."""
+
+    def define(function):
+        SEARCHING[sym(name)] = function
+        OPEN_CODED.add(sym(name))
+        return function
+
+    return define
+
+
+def _each(item, sequence, form, whole=False, context=""):
+    """A loop that evaluates ``form`` for each element. whole: a list is looked at as a whole before."""
+    return lisp_list(EACH, lisp_list(item, sequence, True if whole else None, context), form)
+
+
+def _leaving(loop_for, otherwise):
+    """A block around the loop ``loop_for(leave)``, where ``leave(form)`` gives the block that value; its value else is ``otherwise``."""
+    block = gensym("FOUND")
+    loop = loop_for(lambda value: lisp_list(RETURN_FROM, block, value))
+    return lisp_list(BLOCK, block, loop, otherwise)
+
+
+@searching("FIND-IF")
+def _find_if(item, test, sequence):
+    return _leaving(lambda leave: _each(item, sequence, lisp_list(IF, test, leave(item), None)), None)
+
+
+@searching("SOME")
+def _some(item, test, sequence):
+    answer = gensym("ANSWER")
+
+    def loop(leave):
+        leaving = lisp_list(LET, lisp_list(lisp_list(answer, test)), lisp_list(IF, answer, leave(answer), None))
+        return _each(item, sequence, leaving, context=FIRST_SEQUENCE)
+
+    return _leaving(loop, None)
+
+
+@searching("EVERY")
+def _every(item, test, sequence):
+    return _leaving(lambda leave: _each(item, sequence, lisp_list(IF, test, None, leave(None)), context=FIRST_SEQUENCE), True)
+
+
+@searching("NOTANY")
+def _notany(item, test, sequence):
+    return _leaving(lambda leave: _each(item, sequence, lisp_list(IF, test, leave(None), None), context=FIRST_SEQUENCE), True)
+
+
+@searching("NOTEVERY")
+def _notevery(item, test, sequence):
+    return _leaving(lambda leave: _each(item, sequence, lisp_list(IF, test, None, leave(True)), context=FIRST_SEQUENCE), None)
+
+
+@searching("POSITION-IF")
+def _position_if(item, test, sequence):
+    index = gensym("INDEX")
+    onward = lisp_list(SETQ, index, lisp_list(PLUS_ONE, index))
+
+    def loop(leave):
+        return _each(item, sequence, lisp_list(PROGN, lisp_list(IF, test, leave(index), None), onward), whole=True)
+
+    return lisp_list(LET, lisp_list(lisp_list(index, 0)), _leaving(loop, None))
+
+
+@searching("COUNT-IF")
+def _count_if(item, test, sequence):
+    count = gensym("COUNT")
+    counting = lisp_list(IF, test, lisp_list(SETQ, count, lisp_list(PLUS_ONE, count)), None)
+    return lisp_list(LET, lisp_list(lisp_list(count, 0)), _each(item, sequence, counting, whole=True), count)
+
+
+def _kept(item, sequence, chosen):
+    """The elements for which the form ``chosen(keep)`` comes to evaluate ``keep``, as a sequence of the same kind."""
+    whole, kept = gensym("SEQUENCE"), gensym("KEPT")
+    bindings = lisp_list(lisp_list(whole, sequence), lisp_list(kept, lisp_list(SUPPORT, "vector")))
+    loop = _each(item, whole, chosen(lisp_list(SUPPORT, "keep", kept, item)), whole=True)
+    return lisp_list(LET, bindings, loop, lisp_list(SUPPORT, "same_kind", whole, kept))
+
+
+@searching("REMOVE-IF")
+def _remove_if(item, test, sequence):
+    return _kept(item, sequence, lambda keep: lisp_list(IF, test, None, keep))
+
+
+@searching("REMOVE-IF-NOT")
+def _remove_if_not(item, test, sequence):
+    return _kept(item, sequence, lambda keep: lisp_list(IF, test, keep, None))
 
 
 # -------------------------------------------------------------------------------------------------------- next methods

@@ -177,7 +177,7 @@ def _return(form, own, place, out):
 
 
 def _raise(form, own, place, out):
-    out.append(_at(ast.Raise(value(form[1], place), None), own))
+    out.append(_at(ast.Raise(value(form[1], place) if len(form) > 1 else None, None), own))
 
 
 def _defn(form, own, place, out):

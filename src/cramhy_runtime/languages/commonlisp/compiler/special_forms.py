@@ -12,7 +12,7 @@ from cramhy_runtime.ground.dispatch.methods import Shape
 from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym, symbol_name, symbol_package
 from ..packages.package_errors import locked
 from .open_coding import next_method
-from .analyze import LAMBDA, SETF, SPECIAL_FORMS, progn
+from .analyze import SETF, SPECIAL_FORMS, progn
 from .declared_types import checkable, declared_types
 from .environment import EXECUTE, SITUATIONS, Block, LocalFunction, LocalMacro, SpecialVariable, SymbolMacro, Tagbody, Variable
 from .net_tests import look_at_tests
@@ -23,9 +23,9 @@ from .nodes import (
     CallSetf,
     CallSpread,
     CallValue,
-    Catching,
     Checked,
     Constant,
+    Each,
     FunctionReference,
     Functions,
     Go,
@@ -38,7 +38,6 @@ from .nodes import (
     ReturnFrom,
     Support,
     TagbodyNode,
-    UnwindProtect,
 )
 
 PROGN, FUNCTION, MACROLET = sym("PROGN"), sym("FUNCTION"), sym("MACROLET")
@@ -55,7 +54,7 @@ def special(name):
     return define
 
 
-def _parts(analyzer, form, least, most=None):
+def parts_of(analyzer, form, least, most=None):
     """The forms after the operator, checked for number."""
     parts = []
     cell = form.cdr
@@ -69,7 +68,7 @@ def _parts(analyzer, form, least, most=None):
     return parts
 
 
-def _items(analyzer, form, value):
+def items_of(analyzer, form, value):
     """The elements of ``value``, a part of ``form`` that must be a list."""
     items, cell = [], value
     while isinstance(cell, Cons):
@@ -82,13 +81,13 @@ def _items(analyzer, form, value):
 
 @special("QUOTE")
 def _quote(analyzer, form, env):
-    value = _parts(analyzer, form, 1, 1)[0]
+    value = parts_of(analyzer, form, 1, 1)[0]
     return Constant(value)
 
 
 @special("FUNCTION")
 def _function(analyzer, form, env):
-    return analyzer.function_name(_parts(analyzer, form, 1, 1)[0], env)
+    return analyzer.function_name(parts_of(analyzer, form, 1, 1)[0], env)
 
 
 @special("LAMBDA")
@@ -99,7 +98,7 @@ def _lambda(analyzer, form, env):
 @special("CRAMHY::NAMED-LAMBDA")
 def _named_lambda(analyzer, form, env):
     """``(named-lambda name lambda-list . body)``: a function with a block of its name around the body."""
-    name, lambda_list, *body = _parts(analyzer, form, 2)
+    name, lambda_list, *body = parts_of(analyzer, form, 2)
     block = name.cdr.car if isinstance(name, Cons) else name
     node = analyzer.lambda_(lambda_list, list_from(body), env, name, block)
     node.position = analyzer._at
@@ -108,12 +107,12 @@ def _named_lambda(analyzer, form, env):
 
 @special("PROGN")
 def _progn(analyzer, form, env):
-    return analyzer.body(_parts(analyzer, form, 0), env)
+    return analyzer.body(parts_of(analyzer, form, 0), env)
 
 
 @special("IF")
 def _if(analyzer, form, env):
-    test, then, *otherwise = _parts(analyzer, form, 2, 3)
+    test, then, *otherwise = parts_of(analyzer, form, 2, 3)
     look_at_tests(analyzer, form.car, (test,), env)
     node = If(analyzer.form(test, env), analyzer.form(then, env), analyzer.form(otherwise[0] if otherwise else None, env))
     node.single = node.then.single and node.otherwise.single
@@ -127,7 +126,7 @@ def _true_or_false(node):
 
 @special("SETQ")
 def _setq(analyzer, form, env):
-    parts = _parts(analyzer, form, 0)
+    parts = parts_of(analyzer, form, 0)
     if len(parts) % 2:
         analyzer.fail("SETQ takes pairs of a variable and a value, but here it is ~S.", form)
     assignments = []
@@ -168,7 +167,7 @@ def _distinct(analyzer, symbols, operator):
         seen.add(symbol)
 
 
-def _bound(body_node, node):
+def bound(body_node, node):
     node.single, node.boolean = body_node.single, body_node.boolean
     return node
 
@@ -182,26 +181,26 @@ def _free_specials(specials, env, bound):
 
 @special("LET")
 def _let(analyzer, form, env):
-    parts = _parts(analyzer, form, 1)
+    parts = parts_of(analyzer, form, 1)
     specifiers, _, forms = analyzer.declarations(parts[1:], env)
     specials, types = analyzer.specials(specifiers), declared_types(specifiers)
-    pairs = [_binding(analyzer, item) for item in _items(analyzer, form, parts[0])]
+    pairs = [_binding(analyzer, item) for item in items_of(analyzer, form, parts[0])]
     _distinct(analyzer, [symbol for symbol, _ in pairs], "LET")
     values = [analyzer.checked(symbol, analyzer.form(value, env), types, value is not None) for symbol, value in pairs]
     inner = env.child()
     bindings = [(analyzer.bind(symbol, inner, specials, types), value) for (symbol, _), value in zip(pairs, values)]
     _free_specials(specials, inner, {symbol for symbol, _ in pairs})
     body = analyzer.scope([variable for variable, _ in bindings], specifiers, forms, inner)
-    return _bound(body, Let(bindings, body)) if bindings else body
+    return bound(body, Let(bindings, body)) if bindings else body
 
 
 @special("LET*")
 def _let_star(analyzer, form, env):
-    parts = _parts(analyzer, form, 1)
+    parts = parts_of(analyzer, form, 1)
     specifiers, _, forms = analyzer.declarations(parts[1:], env)
     specials, types = analyzer.specials(specifiers), declared_types(specifiers)
     bindings, inner = [], env
-    for item in _items(analyzer, form, parts[0]):
+    for item in items_of(analyzer, form, parts[0]):
         symbol, value = _binding(analyzer, item)
         node = analyzer.checked(symbol, analyzer.form(value, inner), types, value is not None)
         inner = inner.child()
@@ -210,13 +209,13 @@ def _let_star(analyzer, form, env):
     _free_specials(specials, inner, {binding[0] if isinstance(binding[0], Symbol) else binding[0].symbol for binding in bindings})
     node = analyzer.scope([variable for variable, _ in bindings], specifiers, forms, inner)
     for binding in reversed(bindings):
-        node = _bound(node, Let([binding], node))
+        node = bound(node, Let([binding], node))
     return node
 
 
 @special("LOCALLY")
 def _locally(analyzer, form, env):
-    specifiers, _, forms = analyzer.declarations(_parts(analyzer, form, 0), env)
+    specifiers, _, forms = analyzer.declarations(parts_of(analyzer, form, 0), env)
     inner = env.child()
     _free_specials(analyzer.specials(specifiers), inner, ())
     return analyzer.scope((), specifiers, forms, inner)
@@ -254,9 +253,9 @@ def _names_function(symbol, setter):
 
 
 def _definitions(analyzer, form):
-    parts = _parts(analyzer, form, 1)
+    parts = parts_of(analyzer, form, 1)
     definitions = []
-    for item in _items(analyzer, form, parts[0]):
+    for item in items_of(analyzer, form, parts[0]):
         if not isinstance(item, Cons) or not isinstance(item.cdr, Cons):
             analyzer.fail("A local function is (name lambda-list . body), not ~S.", item)
         name = item.car
@@ -285,7 +284,7 @@ def _local_functions(analyzer, form, env, recursive):
     specifiers, _, forms = analyzer.declarations(forms, env)
     _free_specials(analyzer.specials(specifiers), inner, ())
     body = analyzer.scope((), specifiers, forms, inner)
-    return _bound(body, Functions(functions, body))
+    return bound(body, Functions(functions, body))
 
 
 def _with_next_methods(analyzer, definitions, variables, forms, env, inner):
@@ -296,7 +295,7 @@ def _with_next_methods(analyzer, definitions, variables, forms, env, inner):
         for (_, symbol, lambda_list, body_), variable in zip(definitions, variables)
         if variable.used
     ]
-    return _bound(body, Functions(functions, body)) if functions else body
+    return bound(body, Functions(functions, body)) if functions else body
 
 
 @special("FLET")
@@ -320,9 +319,9 @@ def _macrolet(analyzer, form, env):
 
 @special("SYMBOL-MACROLET")
 def _symbol_macrolet(analyzer, form, env):
-    parts = _parts(analyzer, form, 1)
+    parts = parts_of(analyzer, form, 1)
     inner = env.child()
-    for item in _items(analyzer, form, parts[0]):
+    for item in items_of(analyzer, form, parts[0]):
         if not isinstance(item, Cons) or not isinstance(item.cdr, Cons):
             analyzer.fail("A symbol macro is (name expansion), not ~S.", item)
         symbol, expansion = _binding(analyzer, item)
@@ -335,7 +334,7 @@ def _symbol_macrolet(analyzer, form, env):
 
 @special("BLOCK")
 def _block(analyzer, form, env):
-    name, *forms = _parts(analyzer, form, 1)
+    name, *forms = parts_of(analyzer, form, 1)
     if not is_symbol(name):
         analyzer.fail("A block must be named by a symbol, not ~S.", name)
     inner = env.child()
@@ -350,7 +349,7 @@ def _block(analyzer, form, env):
 
 @special("RETURN-FROM")
 def _return_from(analyzer, form, env):
-    name, *value = _parts(analyzer, form, 1, 2)
+    name, *value = parts_of(analyzer, form, 1, 2)
     block = env.block(name)
     if block is None:
         analyzer.fail("return for unknown block: ~S", name)
@@ -361,7 +360,7 @@ def _return_from(analyzer, form, env):
 
 @special("TAGBODY")
 def _tagbody(analyzer, form, env):
-    parts = _parts(analyzer, form, 0)
+    parts = parts_of(analyzer, form, 0)
     tagbody = Tagbody(env.scope)
     tagbody.variable = Variable(sym("TAGBODY"), env.scope, env.scope.unique("Lb"))
     inner = env.child()
@@ -388,9 +387,23 @@ def _tagbody(analyzer, form, env):
     return TagbodyNode(tagbody, analysed)
 
 
+@special("CRAMHY::EACH")
+def _each(analyzer, form, env):
+    """``(each (variable sequence whole context) . body)``: what is written in place of searching functions (``open_coding.py``)."""
+    (symbol, sequence, whole, context), *forms = parts_of(analyzer, form, 1)
+    sequence, inner = analyzer.form(sequence, env), env.child()
+    variable = inner.variables[symbol] = Variable(symbol, env.scope)
+    env.scope.loop_depth += 1
+    try:
+        body = analyzer.body(forms, inner)
+    finally:
+        env.scope.loop_depth -= 1
+    return Each(variable, sequence, body, whole is True, context)
+
+
 @special("GO")
 def _go(analyzer, form, env):
-    tag = _parts(analyzer, form, 1, 1)[0]
+    tag = parts_of(analyzer, form, 1, 1)[0]
     found = env.tag(tag)
     if found is None:
         analyzer.fail("attempt to GO to nonexistent tag: ~S", tag)
@@ -399,40 +412,9 @@ def _go(analyzer, form, env):
     return Go(tagbody, index)
 
 
-@special("UNWIND-PROTECT")
-def _unwind_protect(analyzer, form, env):
-    protected, *cleanup = _parts(analyzer, form, 1)
-    body = analyzer.form(protected, env)
-    if not cleanup:
-        return body
-    return _bound(body, UnwindProtect(body, analyzer.body(cleanup, env)))
-
-
-def _thunk(analyzer, forms, env):
-    return analyzer.lambda_(None, list_from(forms), env)
-
-
-@special("CATCH")
-def _catch(analyzer, form, env):
-    tag, *forms = _parts(analyzer, form, 1)
-    return Support("catch", [analyzer.form(tag, env), _thunk(analyzer, forms, env)], single=False)
-
-
-@special("THROW")
-def _throw(analyzer, form, env):
-    tag, value = _parts(analyzer, form, 2, 2)
-    return Support("throw", [analyzer.form(tag, env), MultipleValueProg1(analyzer.form(value, env), [])])
-
-
-@special("PROGV")
-def _progv(analyzer, form, env):
-    symbols, values, *forms = _parts(analyzer, form, 2)
-    return Support("progv", [analyzer.form(symbols, env), analyzer.form(values, env), _thunk(analyzer, forms, env)], single=False)
-
-
 @special("THE")
 def _the(analyzer, form, env):
-    kind, value = _parts(analyzer, form, 2, 2)
+    kind, value = parts_of(analyzer, form, 2, 2)
     analyzer.mention_type(kind, form)
     node = analyzer.form(value, env)
     return Checked(node, kind) if checkable(kind) else node
@@ -440,8 +422,8 @@ def _the(analyzer, form, env):
 
 @special("EVAL-WHEN")
 def _eval_when(analyzer, form, env):
-    situations, *forms = _parts(analyzer, form, 1)
-    situations = _items(analyzer, form, situations)
+    situations, *forms = parts_of(analyzer, form, 1)
+    situations = items_of(analyzer, form, situations)
     for situation in situations:
         if situation not in SITUATIONS:
             analyzer.fail("~S is not a situation of EVAL-WHEN: they are :COMPILE-TOPLEVEL, :LOAD-TOPLEVEL and :EXECUTE.", situation)
@@ -452,19 +434,19 @@ def _eval_when(analyzer, form, env):
 
 @special("LOAD-TIME-VALUE")
 def _load_time_value(analyzer, form, env):
-    value = _parts(analyzer, form, 1, 2)[0]
+    value = parts_of(analyzer, form, 1, 2)[0]
     return LoadTimeValue(analyzer.toplevel(value, env.scope.names))
 
 
 @special("MULTIPLE-VALUE-CALL")
 def _multiple_value_call(analyzer, form, env):
-    function, *arguments = _parts(analyzer, form, 1)
+    function, *arguments = parts_of(analyzer, form, 1)
     return CallSpread(analyzer.form(function, env), [analyzer.form(argument, env) for argument in arguments])
 
 
 @special("MULTIPLE-VALUE-PROG1")
 def _multiple_value_prog1(analyzer, form, env):
-    first, *rest = _parts(analyzer, form, 1)
+    first, *rest = parts_of(analyzer, form, 1)
     node = MultipleValueProg1(analyzer.form(first, env), [analyzer.form(item, env) for item in rest])
     node.single = node.first.single
     return node
@@ -472,12 +454,12 @@ def _multiple_value_prog1(analyzer, form, env):
 
 @special("MULTIPLE-VALUE-BIND")
 def _multiple_value_bind(analyzer, form, env):
-    symbols, values, *body = _parts(analyzer, form, 2)
+    symbols, values, *body = parts_of(analyzer, form, 2)
     node = analyzer.form(values, env)
     specifiers, _, forms = analyzer.declarations(body, env)
     specials, types = analyzer.specials(specifiers), declared_types(specifiers)
     inner = env.child()
-    symbols = _items(analyzer, form, symbols)
+    symbols = items_of(analyzer, form, symbols)
     _distinct(analyzer, symbols, "MULTIPLE-VALUE-BIND")
     variables = [analyzer.bind(symbol, inner, specials, types) for symbol in symbols]
     _free_specials(specials, inner, set(symbols))
@@ -489,39 +471,18 @@ def _multiple_value_bind(analyzer, form, env):
     ]
     if checks:
         body_node = progn([*checks, body_node])
-    return _bound(body_node, MultipleValueBind(variables, node, body_node))
-
-
-@special("CRAMHY::CATCHING")
-def _catching(analyzer, form, env):
-    """``(catching types form (variables . body)...)``: what most ``handler-case`` forms are."""
-    types, guarded, *clauses = _parts(analyzer, form, 2)
-    if env.scope.loop_depth + env.scope.catching_depth > 3:  # Python nests no more than 20 statements, but functions at will
-        guarded = lisp_list(FUNCALL, lisp_list(LAMBDA, None, guarded))
-    env.scope.catching_depth += 1
-    node = analyzer.form(guarded, env)
-    env.scope.catching_depth -= 1
-    inner = env.child()
-    symbol = gensym("CONDITION")
-    condition = inner.variables[symbol] = Variable(symbol, env.scope)
-    bodies = []
-    for clause in clauses:
-        bindings = lisp_list(lisp_list(clause.car.car, symbol)) if clause.car is not None else None
-        bodies.append(analyzer.form(Cons(sym("LET"), Cons(bindings, clause.cdr)), inner))
-    catching = Catching(types, node, condition, bodies)
-    catching.single = node.single and all(body.single for body in bodies)
-    return catching
+    return bound(body_node, MultipleValueBind(variables, node, body_node))
 
 
 @special("MULTIPLE-VALUE-LIST")
 def _multiple_value_list(analyzer, form, env):
-    value = analyzer.form(_parts(analyzer, form, 1, 1)[0], env)
+    value = analyzer.form(parts_of(analyzer, form, 1, 1)[0], env)
     return Support("value_list", [MultipleValueProg1(value, [])])
 
 
 @special("FUNCALL")
 def _funcall(analyzer, form, env):
-    function, *arguments = _parts(analyzer, form, 1)
+    function, *arguments = parts_of(analyzer, form, 1)
     if (
         isinstance(function, Cons)
         and function.car is FUNCTION
@@ -547,7 +508,7 @@ def _funcall(analyzer, form, env):
 @special("CRAMHY::CALL-SETF")
 def _call_setf(analyzer, form, env):
     """``(call-setf name new-value argument...)``: what a setf form of an accessor becomes."""
-    name, *arguments = _parts(analyzer, form, 2)
+    name, *arguments = parts_of(analyzer, form, 2)
     local = env.function(("setf", name))
     nodes = [analyzer.form(argument, env) for argument in arguments]
     if isinstance(local, LocalFunction):
@@ -560,7 +521,7 @@ def _call_setf(analyzer, form, env):
 
 @special("AND")
 def _and(analyzer, form, env):
-    parts = _parts(analyzer, form, 0)
+    parts = parts_of(analyzer, form, 0)
     if not parts:
         return Constant(True)
     look_at_tests(analyzer, form.car, parts[:-1], env)
@@ -574,7 +535,7 @@ def _and(analyzer, form, env):
 
 @special("OR")
 def _or(analyzer, form, env):
-    parts = _parts(analyzer, form, 0)
+    parts = parts_of(analyzer, form, 0)
     if not parts:
         return Constant(None)
     look_at_tests(analyzer, form.car, parts[:-1], env)
@@ -595,5 +556,9 @@ def _or(analyzer, form, env):
 @special("CRAMHY::SUPPORT")
 def _support(analyzer, form, env):
     """``(support "name" argument...)``: a call of a function of ``compiler/support.py``; arguments keep all values."""
-    name, *arguments = _parts(analyzer, form, 1)
-    return Support(str(name), [analyzer.form(argument, env) for argument in arguments], single=False)
+    name, *arguments = parts_of(analyzer, form, 1)
+    return Support(str(name), [analyzer.form(argument, env) for argument in arguments], single=str(name) in SINGLE_VALUED)
+
+
+SINGLE_VALUED = {"vector", "keep", "same_kind"}
+"""Functions of ``compiler/support.py`` that give one value."""

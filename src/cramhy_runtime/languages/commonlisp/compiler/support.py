@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from ..collections.sequences import length
 from ..collections.arrays import aref
-from ..collections.sequence_types import characters
+from ..collections.lists import cars
+from ..collections.sequence_types import characters, elements, in_turns, same_kind
 import math
 from fractions import Fraction
 from itertools import zip_longest
@@ -16,12 +17,22 @@ from operator import itemgetter
 from types import FunctionType
 
 from cramhy_runtime.ground.arrays import SimpleArray, TypedVector, Vector
-from cramhy_runtime.ground.catching import caught, catch, enter_case, error_in_case, foreign_case, throw
+from cramhy_runtime.ground.catching import CATCHABLE, Case, caught, catch, throw
 from cramhy_runtime.ground.functions import fdefinition, setf_function  # noqa: F401  compiled code calls them
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.active import ACTIVE
 from cramhy_runtime.kernel.budget import TICKS, budget
 
-from cramhy_runtime.ground.conditions import Condition, HandlerExit, SimpleControlError, error, program_error, unbound_variable, unknown_key
+from cramhy_runtime.ground.conditions import (
+    Condition,
+    SimpleControlError,
+    error,
+    error_in_case,
+    offer_late,
+    program_error,
+    unbound_variable,
+    unknown_key,
+)
 from .frame_exits import FrameExit, ends_here
 from cramhy_runtime.ground.data import (
     FreshString,
@@ -50,6 +61,7 @@ from ..format.format_templates import decimal, piece_of, prin1_atom, princ_atom
 from ..numbers import arithmetic
 from ..numbers.irrational import complex_
 from ..objects.makers import maker
+from ..objects.slots import named_slot
 from cramhy_runtime.ground.packages import intern, keyword, printed
 from ..syntax.backquote import Comma
 from .declared_types import checked
@@ -127,6 +139,16 @@ def _items(vector):
         yield aref(vector, index)
         index += 1
         kernel.checkpoint()
+
+
+def each(sequence, context=""):
+    """The elements of a sequence, one after the other. Where a list does not end as it should is found at its end."""
+    return cars(sequence) if sequence.__class__ is Cons else in_turns(elements(sequence, context))
+
+
+def each_of_all(sequence):
+    """The elements of a sequence, which is looked at as a whole before."""
+    return in_turns(elements(sequence))
 
 
 def block_value(exit_, token):
@@ -291,12 +313,15 @@ NAMESPACE = {
     "Lbind": bind,
     "Lunbind": unbind,
     "Lblock": BlockExit,
-    "LHandlerExit": HandlerExit,
-    "Lenter_case": enter_case,
+    "Lactive": ACTIVE,
+    "Lno_kernel": kernel.current,
+    "Lcase": Case,
     "Lerror_in_case": error_in_case,
-    "Lforeign_case": foreign_case,
     "Lcaught": caught,
-    "LException": (Exception, Condition),
+    "Lcatchable": CATCHABLE,
+    "Lexceptions": (Exception, Condition),
+    "Loffer_late": offer_late,
+    "Lhandler": function_of,
     "Lcheckpoint": kernel.checkpoint,
     "LBlockExit": BlockExit,
     "Lblock_value": block_value,
@@ -329,6 +354,7 @@ NAMESPACE = {
     "Lbudget": budget,
     "Lnext_method_exists": next_method_exists,
     "Lmaker": maker,
+    "Lnamed_slot": named_slot,
     "Lkey_parser": key_parser,
     "Lkeyword_calls": keyword_calls,
     "Lintern": intern,
@@ -341,6 +367,11 @@ NAMESPACE = {
     "Lceil": math.ceil,
     "Lfloor": math.floor,
     "Lvector": list,
+    "Leach": each,
+    "Leach_of_all": each_of_all,
+    "Lkeep": list.append,
+    "Lsame_kind": same_kind,
+    "Lany_vector": Vector,
     **{f"L{name}": getattr(math, name) for name in "sin cos tan atan exp sqrt log asin acos".split()},
     "Lwrapped": wrapped,
     "Lunwrapped": unwrapped,

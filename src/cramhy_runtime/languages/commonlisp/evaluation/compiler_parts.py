@@ -5,7 +5,7 @@ The evaluator imports this module when it first compiles, so that a cached progr
 
 from __future__ import annotations
 
-from ..compiler import special_forms  # noqa: F401  fills SPECIAL_FORMS
+from ..compiler import special_exits, special_forms  # noqa: F401  they fill SPECIAL_FORMS
 from ..compiler.analyze import SPECIAL_FORMS, Analyzer
 from ..compiler.constants import Constants, NotStorable
 from ..compiler.deep_blocks import flatten

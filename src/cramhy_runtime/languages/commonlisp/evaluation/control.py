@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from cramhy_runtime.ground import conditions
 from ..compiler import support
-from cramhy_runtime.ground.conditions import type_error
+from cramhy_runtime.ground.conditions import handled, type_error
+from cramhy_runtime.ground.conditions import make_condition as make
 from cramhy_runtime.ground.data import UNBOUND, list_from, one
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import COMMON_LISP
@@ -39,7 +40,11 @@ def fdefinition(name):
 
 
 def error(datum, *arguments):  # that of Python rooms has the keyword ``hint``
-    return conditions.signal_error(conditions.make_condition(datum, arguments))
+    condition = make(datum, arguments)
+    exit_ = handled(condition)
+    if exit_ is not None:
+        raise exit_
+    return conditions.nobody_handled(condition)
 
 
 signal, warn, cerror, break_ = conditions.signal, conditions.warn, conditions.cerror, conditions.break_

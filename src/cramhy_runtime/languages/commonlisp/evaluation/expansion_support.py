@@ -77,11 +77,6 @@ def check_type_failed(value, place, kind, name):
 # ---------------------------------------------------------------------------------------------------------------- conditions
 
 
-def handler_bind(clauses, thunk):
-    """``handler-bind``: clauses are lists (type handler), a handler is a function designator."""
-    return conditions.handler_bind([(clause.car, function_of(clause.cdr.car)) for clause in clauses or ()], thunk)
-
-
 def handler_case(clauses, thunk, no_error):
     """``handler-case``: clauses are lists (type function); ``no_error`` gets the values of ``thunk``."""
     return conditions.handler_case([(clause.car, clause.cdr.car) for clause in clauses or ()], thunk, no_error)

@@ -8,7 +8,6 @@ it came from, so that nothing is kept for it; it is there for functions of files
 
 from __future__ import annotations
 
-import linecache
 
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol, lisp_list, list_from
@@ -82,6 +81,8 @@ def defining_forms(function):
     if position is None or position[0].endswith(".hy"):
         return []
     filename, line = position
+    import linecache  # it imports the tokenizer
+
     reader, end, found = Reader("".join(linecache.getlines(filename)), filename=filename), object(), []
     read = []  # all forms stay alive meanwhile: places are found by the identity of a form
     with binding(PACKAGE, PACKAGE.value if filename.startswith("<") else COMMON_LISP_USER):

@@ -11,6 +11,7 @@ import re
 import sys
 from fractions import Fraction
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from ..collections.characters import name_char
 from cramhy_runtime.ground.arrays import bit_vector
 from cramhy_runtime.ground.python_exceptions import condition_for
@@ -229,7 +230,7 @@ def sharp_bar(stream, sub, argument):
     return NO_VALUES
 
 
-_COMMENT_EDGE = re.compile(r"#\||\|#")
+_COMMENT_EDGE = late_pattern(r"#\||\|#")
 
 
 # ---------------------------------------------------------------------------------------------------------- numbers, symbols

@@ -86,14 +86,14 @@ class FormPlaces(dict):
         symbols, waiting, left = self.symbols, deque([form]), _FAR
         while waiting and left:
             cell = waiting.popleft()
-            while isinstance(cell, Cons) and left:
+            while cell.__class__ is Cons and left:
                 left -= 1
                 item = cell.car
                 if item is symbol and id(cell) in symbols:
                     return self.place(symbols[id(cell)])
-                if isinstance(item, Cons):
+                if item.__class__ is Cons:
                     waiting.append(item)
-                elif isinstance(item, Comma):
+                elif item.__class__ is Comma:
                     if item.form is symbol and id(item) in symbols:
                         return self.place(symbols[id(item)])
                     waiting.append(item.form)

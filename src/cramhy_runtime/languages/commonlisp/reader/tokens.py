@@ -8,6 +8,7 @@ literal (see ``ground/data.py``) but not a magnitude that a single-float cannot 
 
 from __future__ import annotations
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from ..collections.sequence_types import TURN, BoundingIndicesBad, in_turns
 from cramhy_runtime.ground.condition_types import SimpleParseError
 from cramhy_runtime.ground.conditions import error
@@ -22,7 +23,7 @@ from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.kernel.active import checkpoint
 
-_DECIMAL = re.compile(
+_DECIMAL = late_pattern(
     r"([+-]?[0-9]+)(?:(\.)|/([0-9]+))?"
     r"|([+-]?(?:[0-9]*\.[0-9]+|[0-9]+(?:\.[0-9]*)?(?=[a-zA-Z])))(?:([esfdlESFDL])([+-]?[0-9]+))?"
 )

@@ -10,14 +10,14 @@ A program that reads (``strict``) gets an error instead, as in SBCL.
 
 from __future__ import annotations
 
-import re
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from . import reader_errors
 from .readtables import READTABLE, SUPPRESS
 
 MOST = 20
 """So many unmatched ``)`` of a text are warnings; then something else is wrong with it, and the next is an error."""
-_LINE = re.compile(r"\n([ \t]*)([^\s;])")
+_LINE = late_pattern(r"\n([ \t]*)([^\s;])")
 
 
 def unmatched_closes(reader, offset):

@@ -14,11 +14,11 @@ from __future__ import annotations
 import functools
 import importlib.util
 import os
-import re
 import types
 from collections.abc import Callable, Iterator
 from operator import attrgetter, is_
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction
 from cramhy_runtime.kernel.reports import of_the_library
@@ -31,7 +31,7 @@ from ..types.types import type_expander
 Wanted = dict[tuple[str, str, str], tuple[bool, str]]
 """(package and name of a symbol, the current package) -> (whether that name means it there, the digest of its meaning)"""
 
-_NUMBERED = re.compile(r"\bK\d+\b")
+_NUMBERED = late_pattern(r"\bK\d+\b")
 """Names of constants. They are numbered in the order of the text, and what they hold is looked at."""
 _AROUND = set(map(sym, ("PROGN", "EVAL-WHEN", "LOCALLY")))
 _NOT_COMPILED = {sym("DECLAIM"), sym("DEFINE-SYMBOL-MACRO")}
@@ -268,7 +268,7 @@ def _globals_of(code: types.CodeType) -> list[tuple[str, bool]]:
 
 def _digest(facts: list[Any], symbol: Symbol | None = None) -> tuple[str, list[tuple[Symbol, tuple[Any, ...]]]]:
     """(the digest of ``facts``, which are about ``symbol``, the symbols that were looked at with their state)"""
-    from hashlib import sha256
+    from cramhy_runtime.storage.digests import sha256
 
     words: list[str] = []
     symbols = [] if symbol is None else [(symbol, _now(symbol))]

@@ -15,12 +15,10 @@ from __future__ import annotations
 
 import contextlib
 import importlib.util
-import linecache
 import marshal
 import os
 import functools
 import re
-import runpy
 import sys
 from pathlib import Path
 from types import CodeType
@@ -48,9 +46,9 @@ _not_used = {}
 
 
 def _sha256(text):
-    import hashlib  # a prompt that loads nothing does without it, and is there 2 ms sooner
+    from cramhy_runtime.storage.digests import sha256  # a prompt that loads nothing does without it
 
-    return hashlib.sha256(text.encode(errors="surrogatepass"))
+    return sha256(text.encode(errors="surrogatepass"))
 
 
 @functools.cache
@@ -60,7 +58,7 @@ def stamp():
     It is the same wherever cramhy stands, so that the wheel can bring kept files along. What is read for it is kept, too.
     """
     files = [(folder.name, entry) for folder in _compiling_folders() for entry in sorted(os.scandir(folder), key=lambda entry: entry.name)]
-    files = [(folder, entry) for folder, entry in files if entry.name.endswith((".py", ".hy", ".lisp"))]
+    files = [(folder, entry) for folder, entry in files if entry.name.endswith((".py", ".pyc", ".hy", ".lisp"))]  # .pyc: in a tab
     python = f"{sys.implementation.cache_tag} {importlib.util.MAGIC_NUMBER.hex()}"
     states = [(entry.path, entry.stat()) for _, entry in files]
     state = _sha256("".join([python, *(f"{path} {status.st_mtime_ns} {status.st_size} " for path, status in states)])).hexdigest()
@@ -220,6 +218,8 @@ def load_text(text, filename, stored=False, show=None, line=1, column=1, as_sour
     reader = Reader(text, filename=filename, line=line, column=column)
     unit = Unit(filename, reader.positions, stored=stored, as_source=as_source)
     if not os.path.isfile(filename):
+        import linecache  # it imports the tokenizer
+
         linecache.cache.setdefault(filename, (len(text), None, text.splitlines(True), filename))
     end, forms = object(), []
     notes = Notes(lambda: _loads.number) if stored else None
@@ -293,6 +293,8 @@ def speaks_lisp(filename):
     """Whether the text of that name, a file or what was typed, is Common Lisp, and not Hy or Python."""
     filename = file_of_text(filename)
     if filename.endswith(".hy"):
+        import linecache  # it imports the tokenizer
+
         return not is_plain_hy("".join(linecache.getlines(filename)))
     return filename.endswith((".lisp", ".asd")) or filename.startswith("<") and not filename.startswith("<stdin>")
 
@@ -304,6 +306,8 @@ def is_plain_hy(text):
 
 def _run_hy(path):
     """Run a file of Hy as ``hy FILE`` does: with its name in ``sys.argv``, and the modules in its folder can be imported."""
+    import runpy
+
     import hy  # noqa: F401  teaches `runpy` to run .hy files
 
     words, folder = sys.argv, str(path.parent.resolve())

@@ -12,6 +12,7 @@ import time
 from contextlib import nullcontext
 from pathlib import Path
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel import signals
 from cramhy_runtime.ground import packages
@@ -202,8 +203,8 @@ _RUNNERS = {"lisp-unit": _run_lisp_unit, "fiveam": _run_fiveam}
 
 # ---------------------------------------------------------------------------------------------------------------- loading
 
-TEST_NAMES = re.compile(r"(^|[-_])tests?($|[-_])")
-DEFINES_TESTS = re.compile(r"\((?:[\w.+-]+::?)?(?:define-test|def-test|test)[\s(]")
+TEST_NAMES = late_pattern(r"(^|[-_])tests?($|[-_])")
+DEFINES_TESTS = late_pattern(r"\((?:[\w.+-]+::?)?(?:define-test|def-test|test)[\s(]")
 
 
 def looks_like_tests(path):

@@ -6,7 +6,6 @@ stack is still there; of an error that ended the program its traceback is. There
 
 from __future__ import annotations
 
-import linecache
 import os
 import sys
 
@@ -76,6 +75,8 @@ def _user_calls(frames):
 
 def _text_from(position):
     """The form at ``position``, up to the end of its line."""
+    import linecache  # it imports the tokenizer
+
     line = linecache.getline(position[0], position[1] or 0)[max(0, (position[2] or 1) - 1) :]
     depth, end = 0, len(line)
     for token in TOKEN.finditer(line):

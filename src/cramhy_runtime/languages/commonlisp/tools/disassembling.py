@@ -7,20 +7,16 @@ code is shown. Source: ANSI 25.2 (DISASSEMBLE), 5.3 (FUNCTION-LAMBDA-EXPRESSION)
 
 from __future__ import annotations
 
-import ast
 import contextlib
 import io
 
-from cramhy_runtime.ground.keyword_calls import KeywordCalls
 from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, truth
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol
 from ..evaluation.control import fdefinition
-from ..evaluation.evaluator import PACKAGE, Unit, compile_lambda, compiler
-from ..evaluation.function_facts import defining_forms, lambda_expression, plain, position_of, shown_name
+from ..evaluation.evaluator import compile_lambda
+from ..evaluation.function_facts import lambda_expression, plain, position_of, shown_name
 from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
 from cramhy_runtime.ground.packages import sym
-from ..objects.makers import Maker
 from ..printer.printer import prin1_to_string
 from ..streams.streams import output_stream
 
@@ -65,6 +61,8 @@ def disassemble(fn, *, stream=None, use_labels=None):
 
 
 def _show(function, output):
+    from .python_texts import python_text
+
     text = python_text(function)
     if text is None and position_of(function) is None:
         with contextlib.suppress(OSError, TypeError):
@@ -79,52 +77,3 @@ def _show(function, output):
             dis.dis(function)
         text = code.getvalue().rstrip("\n") or "; It is part of Python itself, which shows no code of it."
     output.write(text + "\n")
-
-
-def python_text(function):
-    """The Python text of a compiled function, made again from its form; ``None`` when the form is not there."""
-    code = getattr(function, "__code__", None)
-    for form, positions, package in defining_forms(function):
-        unit = Unit(code.co_filename, positions)
-        with binding(PACKAGE, package):
-            for part in unit.toplevel_parts(form):
-                for node in ast.walk(compiler().python_tree(unit.statements(part))):
-                    if isinstance(node, (ast.FunctionDef, ast.Lambda)) and _is_it(node, code):
-                        return ast.unparse(_Named(unit.namespace).visit(node))
-    return None
-
-
-def _is_it(node, code):
-    """Whether the text ``node`` became the code object ``code``."""
-    names = [argument.arg for argument in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs)]
-    return (
-        node.lineno == code.co_firstlineno
-        and getattr(node, "name", "<lambda>") == code.co_name
-        and names == list(code.co_varnames[: len(names)])
-    )
-
-
-class _Named(ast.NodeTransformer):
-    """Puts the Lisp names of constants and runtime functions for the numbered names that the compiler gives them."""
-
-    def __init__(self, namespace):
-        self.namespace = namespace
-
-    def visit_Name(self, node):
-        value = self.namespace.get(node.id)
-        if node.id[:1] == "K" and node.id[1:].isdigit() and truth(value):
-            if isinstance(value, Symbol):
-                return ast.Name(f"«{prin1_to_string(value)}»", node.ctx)
-            if value.__class__ is dict:  # of effective functions
-                return ast.Name("{" + ", ".join(sorted(each.__name__ for each in value)) + "}", node.ctx)
-            if value.__class__ is set:  # of classes whose slot the code takes itself
-                return ast.Name("{" + ", ".join(sorted(each.__name__ for each in value)) + "}", node.ctx)
-            if isinstance(value, KeywordCalls):
-                return ast.Name(f"«{prin1_to_string(value.symbol)}»", node.ctx)
-            if isinstance(value, Maker):
-                return ast.Name(f"«{prin1_to_string(value.name)}»", node.ctx)
-            name = getattr(value, "__name__", None)
-            if callable(value) and name:
-                return ast.Name(name, node.ctx)
-            return ast.Name(f"«{prin1_to_string(value)}»", node.ctx)
-        return node

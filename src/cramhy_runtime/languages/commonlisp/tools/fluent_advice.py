@@ -6,16 +6,15 @@ the operator at the place of the error, since nobody can know that by heart.
 
 from __future__ import annotations
 
-import linecache
-import re
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.cpl.fluents.fluents import Fluent
 from cramhy_runtime.ground.condition_types import TypeError_
 from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.packages import COMMON_LISP, find_package
 from ..printer.print_controls import PACKAGE
 
-_OPERATOR = re.compile(r"""\(\s*([^\s()'"`,;]+)""")
+_OPERATOR = late_pattern(r"""\(\s*([^\s()'"`,;]+)""")
 _MAKE_NETS = "< > = + - * / eq eql not"
 """The functions of the plan language that stand for those of Common Lisp and make nets."""
 
@@ -41,6 +40,8 @@ def _operator_at(position):
     """The symbol of the operator of the form that stands at ``position`` (file, line, column), or ``None``."""
     if not position or not position[2]:
         return None
+    import linecache  # it imports the tokenizer
+
     found = _OPERATOR.match(linecache.getline(position[0], position[1]), position[2] - 1)
     if found is None:
         return None

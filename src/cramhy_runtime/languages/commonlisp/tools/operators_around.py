@@ -6,14 +6,14 @@ anybody looks for the function, so all that is signalled is that ``animals`` is 
 
 from __future__ import annotations
 
-import linecache
 import re
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.ground.data import Symbol, UndefinedFunction
 from cramhy_runtime.ground.packages import COMMON_LISP, find_package
 from ..printer.print_controls import PACKAGE
 
-TOKEN = re.compile(r'"(?:\\.|[^"\\])*"|;[^\n]*|#\|.*?\|#|#\\.[\w-]*|\(|\)|[^\s()"]+', re.S)
+TOKEN = late_pattern(r'"(?:\\.|[^"\\])*"|;[^\n]*|#\|.*?\|#|#\\.[\w-]*|\(|\)|[^\s()"]+', re.S)
 _FORMS_INSIDE = frozenset(
     """PROGN PROG1 IF WHEN UNLESS AND OR NOT SETF SETQ LET LET* RETURN DEFVAR DEFPARAMETER TOP-LEVEL SEQ PAR PURSUE
     TRY-ALL PERFORM DEF-FACT-GROUP""".split()
@@ -24,6 +24,8 @@ _FORMS_INSIDE = frozenset(
 def operators_around(position):
     """The first tokens of the lists that ``position`` (file, line, column) stands in, the outermost first; "" where a list begins one."""
     filename, line, column = (*position, None)[:3]
+    import linecache  # it imports the tokenizer
+
     text = "".join(linecache.getlines(filename)[: line - 1]) + linecache.getline(filename, line)[: (column or 1) - 1]
     stack, opened = [], False
     for token in TOKEN.findall(text):

@@ -355,6 +355,23 @@ def _catching(walk, form, env):
     return Cons(form.car, Cons(kinds, Cons(walk.form(rest.car, env), list_from(clauses))))
 
 
+@special("CRAMHY::EACH")
+def _each(walk, form, env):
+    loop, body = _two(form)
+    inner, (symbol, sequence, *rest) = env.child(), _items(loop)  # only the compiler writes this form
+    _bind(symbol, inner)
+    return Cons(form.car, Cons(lisp_list(symbol, walk.form(sequence, env), *rest), _body(walk, body, inner)))
+
+
+@special("CRAMHY::HANDLING")
+def _handling(walk, form, env):
+    bindings, body = _two(form)
+    walked = [
+        lisp_list(binding.car, walk.form(binding.cdr.car, env)) for binding in _items(bindings)
+    ]  # only macros of ours write this form
+    return Cons(form.car, Cons(list_from(walked), _body(walk, body, env)))
+
+
 # ------------------------------------------------------------------------------------------------- special forms: functions
 
 

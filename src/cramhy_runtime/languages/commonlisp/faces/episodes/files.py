@@ -11,8 +11,8 @@ Source: projection-and-events.md C1.
 
 from __future__ import annotations
 
-import re
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.cpl.failures.failure_types import PlanFailure, opened
 from cramhy_runtime.cpl.statuses import ALL, FAILED
 from cramhy_runtime.cpl.tree.task_tree import Code, TaskTreeNode
@@ -176,7 +176,7 @@ def _refuse(source, line, why):
     return error(SimpleError("~a is not a file of an episode that could be loaded: line ~d: ~a.", princ_to_string(source), line, why))
 
 
-_PIECES = re.compile(r'"(?:[^"\\]|\\.)*"?|[\[{]|[\]}]')
+_PIECES = late_pattern(r'"(?:[^"\\]|\\.)*"?|[\[{]|[\]}]')
 _DEEPEST_LINE = 2000
 
 

@@ -133,7 +133,7 @@ def define():
         "*current-ros-package*",
     )
     for _name in ("EMPTY", "SETBOOL", "TRIGGER"):  # the original uses the package of std_srvs, whose files need not be read for that
-        ROSLISP.import_symbol(messages.lisp_package("std_srvs", "SRV").intern(_name))
+        ROSLISP.import_symbol(messages.early_symbol("std_srvs", "SRV", _name))
     define_face(
         "ROSLISP-UTILITIES",
         use=["COMMON-LISP"],

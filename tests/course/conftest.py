@@ -1,0 +1,3 @@
+"""Solutions are not tests, whatever their tasks are called."""
+
+collect_ignore = ["solutions"]

@@ -1,0 +1,272 @@
+"""What the compiler writes in place instead of calling a function: handlers of conditions, and functions of a lambda and a sequence.
+
+``test_compiler_at_random.py`` compares nestings of them with an interpreter.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+
+DEFINITIONS = """
+(define-condition trouble (error) ((value :initarg :value :reader value-of)))
+(define-condition notice (condition) ())
+(defvar *log* nil)
+(defun note (thing) (push thing *log*) nil)
+(defun fails (&optional (value 1)) (error 'trouble :value value))
+(defmacro logged (&body body) `(let ((*log* nil)) (let ((value (progn ,@body))) (list value (reverse *log*)))))
+"""
+
+
+@pytest.fixture
+def evaluate(session):
+    session.package = "CL-USER"
+    session.evaluate_text(DEFINITIONS)
+
+    def run(text):
+        return " ; ".join(" ".join(prin1_to_string(value).split()) for value in session.evaluate_text(text))
+
+    return run
+
+
+def test_what_is_signalled_here_and_in_a_callee_is_handled_alike(evaluate):
+    signals = ["(error 'trouble :value 7)", "(fails 7)", "(error (make-condition 'trouble :value 7))", "(signal 'trouble :value 7)"]
+    for signal in signals:
+        for form in [
+            signal,
+            f"(list 1 {signal})",
+            f"(dolist (x '(1 2)) {signal})",
+            f"(loop {signal})",
+            f"(unwind-protect {signal} (note 1))",
+        ]:
+            assert evaluate(f"(handler-case (progn {form} 1) (type-error () 2) (trouble (c) (list (value-of c))))") == "(7)"
+
+
+def test_cleanup_runs_before_the_clause_with_the_handlers_in_force(evaluate):
+    form = "(handler-case (unwind-protect ~ (handler-case (fails 2) (notice () 5) (warning () 6))) (trouble (c) (note (value-of c)) 3))"
+    for signal in ("(error 'trouble :value 1)", "(fails 1)"):
+        assert evaluate(f"(logged {form.replace('~', signal)})") == "(3 (2))"
+
+
+def test_a_clause_runs_when_its_handlers_are_not_in_force_any_more(evaluate):
+    for signal in ("(error 'trouble :value 1)", "(fails 1)"):
+        inner = f"(handler-case {signal} (trouble () {signal}))"
+        assert evaluate(f"(handler-case {inner} (trouble () :outer))") == ":OUTER"
+        assert (
+            evaluate(
+                f"(let ((n 0)) (handler-case (loop (incf n) (handler-case {signal} (trouble () (when (> n 3) {signal})))) (error () n)))"
+            )
+            == "4"
+        )
+
+
+def test_each_run_of_a_form_is_its_own(evaluate):
+    evaluate("""(defun deep (n) (handler-case (if (= n 0) (error 'trouble :value n) (deep (1- n)))
+                   (trouble (c) (if (< (value-of c) 3) (error 'trouble :value (1+ (value-of c))) (list n (value-of c))))))""")
+    assert evaluate("(deep 5)") == "(3 3)"
+    assert evaluate("(handler-case (deep 2) (trouble (c) (value-of c)))") == "3"
+
+
+def test_restarts_are_seen_by_handlers_and_by_those_inside_first(evaluate):
+    form = """(logged (restart-case
+      (handler-bind ((trouble (lambda (c) (note :outer) (invoke-restart 'use (value-of c)))))
+        (handler-case (handler-bind ((error (lambda (c) (note (value-of c))))) (fails 9)) (notice () :wrong)))
+      (use (x) (list :used x))))"""
+    assert evaluate(form) == "((:USED 9) (9 :OUTER))"
+
+
+def test_a_handler_runs_before_the_stack_unwinds_and_may_decline(evaluate):
+    form = """(logged (handler-case (handler-bind ((trouble (lambda (c) (note (list :handler (value-of c))))))
+                                      (unwind-protect ~ (note :cleanup)))
+                        (trouble () (note :clause) 1)))"""
+    for signal in ("(error 'trouble :value 1)", "(fails 1)"):
+        assert evaluate(form.replace("~", signal)) == "(1 ((:HANDLER 1) :CLEANUP :CLAUSE))"
+
+
+def test_a_handler_may_be_named_and_is_looked_up_when_the_form_begins(evaluate):
+    evaluate("(defun handle (c) (note (value-of c)))")
+    for name in ("'handle", "#'handle", "(symbol-function 'handle)"):
+        assert evaluate(f"(logged (ignore-errors (handler-bind ((trouble {name})) (fails 4))))") == "(NIL (4))"
+    with pytest.raises(Condition) as caught:
+        evaluate("(handler-bind ((trouble 5)) 1)")
+    assert "The value\n  5\nis not of type\n  (OR FUNCTION SYMBOL)" in str(caught.value)
+
+
+def test_variables_that_the_body_of_handler_bind_assigns(evaluate):
+    form = "(let ((a 1) fs) (dolist (x '(1 2)) (handler-bind ((error (lambda (c) c (incf a x)))) (push (lambda () (incf x)) fs) (signal 'trouble :value 1)))"
+    assert evaluate(f"{form} (list a (mapcar #'funcall fs)))") == "(4 (3 2))"
+    assert evaluate("(block found (handler-bind ((trouble (lambda (c) (return-from found (value-of c))))) (fails 8)))") == "8"
+    assert evaluate("(multiple-value-list (handler-bind ((error #'print)) (values 1 2)))") == "(1 2)"
+
+
+def test_a_type_that_a_function_of_the_user_decides_is_asked_once_for_each_handler(evaluate):
+    evaluate("(defun odd-trouble (c) (note :asked) (and (typep c 'trouble) (oddp (value-of c))))")
+    for signal in ("(error 'trouble :value ~)", "(fails ~)"):
+        form = "(logged (handler-case (handler-case " + signal + " ((satisfies odd-trouble) () :odd)) (trouble () :even)))"
+        assert evaluate(form.replace("~", "1")) == "(:ODD (:ASKED))"
+        assert evaluate(form.replace("~", "2")) == "(:EVEN (:ASKED))"
+
+
+def test_a_class_that_is_defined_again_is_seen(evaluate):
+    evaluate("""(define-condition bump (condition) ())
+                (defun bumped (f) (handler-case (progn (funcall f) :declined) (error () :error) (bump () :bump)))
+                (defun bumped-here () (handler-case (progn (error 'bump) :declined) (error () :error) (bump () :bump)))""")
+    assert evaluate("(list (bumped (lambda () (signal 'bump))) (bumped-here))") == "(:BUMP :BUMP)"
+    evaluate("(define-condition bump (error) ())")
+    assert evaluate("(list (bumped (lambda () (signal 'bump))) (bumped-here))") == "(:ERROR :ERROR)"
+
+
+def test_break_on_signals_stops_at_what_is_handled_here(evaluate):
+    form = "(let ((*break-on-signals* 'trouble) (*debugger-hook* nil)) (handler-case (error 'trouble :value 1) (trouble () :handled)))"
+    with pytest.raises(Condition) as caught:
+        evaluate(form)
+    assert "BREAK was entered because of *BREAK-ON-SIGNALS*" in str(caught.value)
+    assert evaluate(form.replace("'trouble)", "'notice)", 1)) == ":HANDLED"
+
+
+def test_tasks_have_handlers_of_their_own(evaluate):
+    evaluate(
+        """(defun waits (n) (handler-case (progn (cpl:sleep n) (error 'trouble :value n)) (trouble (c) (note (list n (value-of c))))))"""
+    )
+    form = """(progn (setf *log* nil)
+       (handler-bind ((trouble (lambda (c) (note (list :outside (value-of c))))))
+         (cpl:top-level (cpl:par (waits 3) (waits 1) (handler-bind ((trouble #'print)) (cpl:sleep 2)) (waits 2))))
+       (reverse *log*))"""
+    assert evaluate(form) == "((1 1) (2 2) (3 3))"
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        "(ignore-errors (fails))",
+        "(ignore-errors (error 'trouble :value 1))",
+        "(handler-case (fails) (error () (values nil 2)))",
+        "(block b (unwind-protect (return-from b (values nil 1)) (note 1)))",
+        "(let ((*log* 1)) (values nil *log*))",
+        "(catch 'x (throw 'x (values nil 1)))",
+        "(handler-bind ((error #'print)) (values nil 1))",
+        "(block b (dolist (x '(1 2)) (when (= x 2) (return-from b (values nil x)))))",
+        "(multiple-value-prog1 (values nil 1) (note 1))",
+    ],
+)
+def test_a_test_looks_at_the_first_of_several_values_however_a_form_delivers_them(evaluate, form):
+    uses = [
+        "(if ~ 1 2)",
+        "(cond (~ 1) (t 2))",
+        "(if (and t ~) 1 2)",
+        "(if (or ~ nil) 1 2)",
+        "(if (not ~) 2 1)",
+        "(if (find-if (lambda (x) x ~) '(1)) 1 2)",
+    ]
+    for use in uses:
+        assert evaluate(use.replace("~", form)) == "2"
+        assert evaluate(use.replace("~", form.replace("nil", "'yes"))) == ("2" if form.startswith("(ignore-errors") else "1")
+
+
+# --------------------------------------------------------------------------------------------------------- sequence functions
+
+SEQUENCES = ["'(3 1 4 1 5)", "'#(3 1 4 1 5)", "'()", '"aBc"', "'#*10110", "(make-array 3 :fill-pointer 2 :initial-element 4)"]
+CALLS = ["find-if", "position-if", "count-if", "some", "every", "notany", "notevery", "remove-if", "remove-if-not"]
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_in_place_and_called_they_are_the_same(evaluate, name):
+    for sequence in SEQUENCES:
+        for test in (
+            "(lambda (x) (eql x 4))",
+            "(lambda (x) (if (numberp x) (and (> x 1) (list x)) (upper-case-p x)))",
+            "#'numberp",
+            "(lambda (x) (values nil x))",
+        ):
+            called = evaluate(f"(locally (declare (notinline {name})) ({name} {test} {sequence}))")
+            assert evaluate(f"({name} {test} {sequence})") == called, (test, sequence)
+
+
+@pytest.mark.parametrize("name", CALLS)
+@pytest.mark.parametrize("sequence", ["5", "'(1 2 . 3)", "'a"])
+def test_what_is_no_sequence_is_told_alike(evaluate, name, sequence):
+    texts = set()
+    call = f"({name} (lambda (x) {'t' if 'every' in name else '(eql x 7)'}) {sequence})"
+    for form in (call, f"(locally (declare (notinline {name})) {call})"):
+        with pytest.raises(Condition) as caught:
+            evaluate(form)
+        texts.add((type(caught.value).__name__, str(caught.value)))
+    assert len(texts) == 1
+
+
+def test_ways_out_of_the_function(evaluate):
+    evaluate("(defun first-big (list) (some (lambda (x) (when (> x 3) (return-from first-big (list :big x)))) list) :none)")
+    assert evaluate("(list (first-big '(1 2)) (first-big '(1 4)))") == "(:NONE (:BIG 4))"
+    assert evaluate("(let (fs) (every (lambda (x) (push (lambda () (incf x)) fs)) '(1 2 3)) (mapcar #'funcall fs))") == "(4 3 2)"
+    assert evaluate("(tagbody (remove-if (lambda (x) (when (= x 2) (go end))) '(1 2)) (note 1) end)") == "NIL"
+
+
+def test_the_element_that_is_found_is_not_what_the_function_made_of_its_variable(evaluate):
+    assert evaluate("(find-if (lambda (x) (setq x (* x 10)) (> x 15)) '(1 2 3))") == "2"
+    assert evaluate("(remove-if-not (lambda (x) (incf x) (> x 2)) '(1 2 3))") == "(2 3)"
+
+
+def test_a_local_function_and_a_shadowed_one_are_not_the_standard_one(evaluate):
+    assert evaluate("(flet ((check (x) (> x 1))) (find-if #'check '(1 2 3)))") == "2"
+    assert evaluate("(list (mapcar #'1+ '(1 2)) (mapcar #'car '((1) (2))) (some #'null '(1 nil)))") == "((2 3) (1 2) T)"
+
+
+def test_loops_in_place_are_interrupted(session, evaluate):
+    evaluate("(defvar *never* (let ((l (list 1))) (setf (cdr l) l)))")
+    for name in ("some", "find-if", "notany"):
+        form = f"(cpl:top-level (cpl:pursue (cpl:sleep 1) ({name} (lambda (x) (eql x 2)) *never*)) :ended)"
+        assert evaluate(form) == ":ENDED"
+
+
+# ---------------------------------------------------------------------------------------------------------------- slots by name
+
+SLOTS = """
+(defclass spot () ((x :initarg :x) (y :initform 2) (all :allocation :class :initform :shared)))
+(defclass far-spot (spot) ((z :initform 3)))
+(defun read-x (object) (slot-value object 'x))
+(defun write-x (new object) (setf (slot-value object 'x) new))
+(defun sum (object) (with-slots (x (second y)) object (setf x (+ x second)) (incf second) (list x second)))
+"""
+
+
+def test_slots_by_name_are_the_same_in_place(evaluate):
+    evaluate(SLOTS)
+    for cls in ("spot", "far-spot", "spot"):
+        assert evaluate(
+            f"(let ((spot (make-instance '{cls} :x 1))) (list (read-x spot) (write-x 5 spot) (sum spot) (sum spot) (read-x spot)))"
+        ) == ("(1 5 (7 3) (10 4) 10)")
+    assert evaluate("(let ((a (make-instance 'spot)) (b (make-instance 'spot))) (setf (slot-value a 'all) 1) (slot-value b 'all))") == "1"
+    for _ in range(2):  # in the second turn the class is known
+        assert evaluate("(handler-case (read-x (make-instance 'spot)) (unbound-slot (c) (cell-error-name c)))") == "X"
+        assert evaluate("(write-x 3 (make-instance 'spot))") == "3"
+    evaluate("(defmethod slot-unbound (class (object far-spot) name) (list :unbound name))")
+    assert evaluate("(list (read-x (make-instance 'far-spot)) (read-x (make-instance 'far-spot)))") == "((:UNBOUND X) (:UNBOUND X))"
+
+
+def test_classes_that_change_are_seen_by_slots_in_place(evaluate):
+    evaluate(SLOTS)
+    evaluate("(defparameter *spot* (make-instance 'spot :x 1)) (list (read-x *spot*) (write-x 2 *spot*) (read-x *spot*))")
+    evaluate("(defclass other () ((x :initform :other)))")
+    assert evaluate("(progn (change-class *spot* 'other) (list (read-x *spot*) (write-x 4 *spot*) (read-x *spot*)))") == "(2 4 4)"
+    evaluate("(defclass other () ((w :initform 1)))")
+    text = "When attempting to read the slot's value (slot-value), the slot X is missing from the object"
+    for _ in range(2):
+        with pytest.raises(Condition) as caught:
+            evaluate("(read-x (make-instance 'other))")
+        assert text in " ".join(str(caught.value).split())
+    evaluate("(defclass other () ((x :initform :class :allocation :class)))")
+    assert (
+        evaluate("(list (read-x (make-instance 'other)) (write-x 7 (make-instance 'other)) (read-x (make-instance 'other)))")
+        == "(:CLASS 7 7)"
+    )
+
+
+def test_slots_by_name_of_structures_and_conditions(evaluate):
+    evaluate(SLOTS + "(defstruct place x y) (define-condition lost (error) ((x :initarg :x)))")
+    for _ in range(2):
+        assert evaluate("(let ((p (make-place :x 1))) (list (read-x p) (write-x 2 p) (read-x p)))") == "(1 2 2)"
+        assert evaluate("(let ((c (make-condition 'lost :x 1))) (list (read-x c) (write-x 2 c) (read-x c)))") == "(1 2 2)"
+    with pytest.raises(Condition):
+        evaluate("(read-x 5)")
