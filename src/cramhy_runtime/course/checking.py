@@ -61,11 +61,10 @@ def _lisp_evaluator(session):
 
 
 def _hy_evaluator():
-    from cramhy_runtime.jupyter.cells import MODULE
-
-    for name in (MODULE, "__console__", "__main__"):
+    cells = sys.modules.get("cramhy_runtime.jupyter.cells")  # if this is a notebook; a tab of a browser is without that room
+    for name in (*([cells.MODULE] if cells else []), "__console__", "__main__"):
         module = sys.modules.get(name)
-        if module is not None and (name == MODULE or hasattr(module, "_hy_repl")):
+        if module is not None and ((cells and name == cells.MODULE) or hasattr(module, "_hy_repl")):
             return hy_evaluator(module)
     raise PageError("Nothing was typed in Hy: there is no prompt of Hy, and no cell.")
 
