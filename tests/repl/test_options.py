@@ -41,7 +41,7 @@ def test_help_tells_what_every_word_is():
 
 def test_every_command_that_has_a_time_takes_the_same_option():
     found = {command: parser.parse_args([*needed, "--time", "virtual"]).time for command, parser, needed in _with_time()}
-    assert found == dict.fromkeys(["repl", "swank", "jupyter", "run", "eval", "test", "turtlesim", "view"], "virtual")
+    assert found == dict.fromkeys(["repl", "learn", "swank", "jupyter", "run", "eval", "test", "turtlesim", "view"], "virtual")
 
 
 def _with_time():
@@ -50,7 +50,7 @@ def _with_time():
             yield command, parser, {"run": ["x"], "test": ["x"], "jupyter": ["kernel"]}.get(command, [])
 
 
-@pytest.mark.parametrize("command", ["repl", "swank", "jupyter kernel", "run x", "eval", "test x", "turtlesim", "view"])
+@pytest.mark.parametrize("command", ["repl", "learn", "swank", "jupyter kernel", "run x", "eval", "test x", "turtlesim", "view"])
 def test_a_wrong_time_in_the_environment_is_told(command, monkeypatch, capsys):
     monkeypatch.setenv("CRAMHY_TIME", "slow")
     assert cli.main(command.split()) == 2
