@@ -17,7 +17,7 @@ import statistics
 import time
 
 from measuring import number
-from rows import SCALES, peers, processes, rows
+from rows import SCALES, peers, processes, rows, tabs
 from workers import LEAST, MOST, SECONDS, Failed, Worker, spread
 
 
@@ -89,8 +89,11 @@ def main():
     for worker in workers.values():
         worker.close()
     if not options.quick:
-        for row, figures in processes.measured(options.only):
-            table.line(row, "", figures)
+        for row, figures in (*processes.measured(options.only), *tabs.measured(options.only)):
+            if isinstance(figures, str):
+                print(f"{row.name:52} not measured: {figures}")
+            else:
+                table.line(row, "", figures)
     table.end()
 
 

@@ -3,7 +3,7 @@
 A `Row` is measured in a worker process (``worker.py``), which has one session. The same rows serve ``table.py``, which prints them
 beside their goals and peers, and ``compare.py``, which runs two commits in lock step. So what a row calls must be there in both.
 
-The modules: `plans`, `reasoning`, `lisp`, `processes` have the rows, `peers` what other libraries need.
+The modules: `plans`, `reasoning`, `lisp`, `watching`, `processes`, `tabs` have the rows, `peers` what other libraries need.
 """
 
 from __future__ import annotations

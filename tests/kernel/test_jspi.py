@@ -176,7 +176,7 @@ def test_more_tasks_than_there_is_room_for_are_refused_and_the_others_go_on(k, m
     kernel.settle()
     refused = [task for task in tasks if task.dead]
     assert len(refused) == asked - room
-    assert {str(task.exception) for task in refused} == {jspi.SOAK}
+    assert {str(task.exception) for task in refused} == {jspi.FULL}
     for task in tasks:
         k.unpark(task)
     kernel.settle()

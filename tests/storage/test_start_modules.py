@@ -9,6 +9,7 @@ import os
 import shutil
 import subprocess
 import sys
+import zlib
 from importlib.machinery import PathFinder
 from pathlib import Path
 
@@ -107,12 +108,12 @@ def cut_off(length):
 
 
 def content(change):
-    """The file with what ``change`` makes of its content."""
+    """The file with what ``change`` makes of its index."""
 
     def spoil(data):
-        begin = len(start_modules.FIRST_LINE) + 8
+        begin = len(start_modules.FIRST_LINE) + start_modules.SIZES.size
         rest = change(marshal.loads(data[begin:]))
-        return start_modules.FIRST_LINE + len(rest).to_bytes(8, "little") + rest
+        return start_modules.FIRST_LINE + start_modules.SIZES.pack(len(rest), len(rest), zlib.crc32(rest)) + rest
 
     return spoil
 
@@ -135,6 +136,16 @@ def test_a_file_that_is_damaged_or_of_another_python_is_made_anew(package, spoil
     kept().write_bytes(spoil(good))
     assert not from_the_file(started())
     assert kept().read_bytes() == good and from_the_file(started())
+
+
+def test_no_flipped_bit_is_run(package):
+    """Wherever it is: the start is as ever, and the file is as it was after it."""
+    started()
+    good = kept().read_bytes()
+    for place in range(0, len(good), 7):
+        kept().write_bytes(good[:place] + bytes([good[place] ^ 1 << place % 8]) + good[place + 1 :])
+        assert started().value == 1
+        assert kept().read_bytes() == good, place
 
 
 def test_a_file_that_others_may_have_written_is_not_read(package):

@@ -6,6 +6,8 @@ Making the site takes half a minute of the processor, so `make soak` runs these;
 from __future__ import annotations
 
 import contextlib
+import functools
+import gzip
 import os
 import re
 import signal
@@ -68,16 +70,21 @@ def served(folder):
         end()
 
 
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """The folder of a site, which the command has written. CRAMHY_SITE names one that is there already."""
+@functools.cache
+def written(folder):
+    """The folder of a site, which the command has written below ``folder``. CRAMHY_SITE names one that is there already."""
     if "CRAMHY_SITE" in os.environ:
         return Path(os.environ["CRAMHY_SITE"])
     node()
     pyodide()
-    out = tmp_path_factory.mktemp("site") / "out"
+    out = folder / "site"
     assert cli.main(["browser", "--out", str(out)]) == 0
     return out
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    return written(tmp_path_factory.getbasetemp())
 
 
 @pytest.fixture
@@ -150,7 +157,7 @@ def test_the_prompt_has_a_history_ctrl_c_and_a_restart_that_keeps_files(visit):
     assert enter(page, "(+ 1 2)").splitlines() == ["CL-USER> (+ 1 2)", "3"]
     line = page.locator("#repl-in")
     line.press("ArrowUp")
-    assert line.input_value() == "(+ 1 2)"
+    assert line.inner_text() == "(+ 1 2)"
     line.fill("")
     for endless in ("(loop)", "(loop (sleep 1))", "(cpl:top-level (cpl:par (loop) (loop)))"):
         line.fill(endless)
@@ -188,6 +195,25 @@ def test_the_site_is_of_one_origin_and_without_inline_code(made):
     assert listed == {file.relative_to(made).as_posix() for file in made.rglob("*") if file.is_file()} - {"offline.js"}
 
 
+@takes_long
+def test_the_first_visit_fetches_less_than_nine_megabytes_from_a_host_that_packs_nothing_or_only_texts(made):
+    texts = (".js", ".mjs", ".css", ".html", ".json", ".svg")
+    sizes = {file: (file.stat().st_size, len(gzip.compress(file.read_bytes()))) for file in made.rglob("*") if file.is_file()}
+    assert sum(packed if file.suffix in texts else plain for file, (plain, packed) in sizes.items()) < 9_000_000
+    assert sum(plain for plain, _ in sizes.values()) < 10_500_000
+
+
+@takes_long
+def test_what_is_not_in_a_tab_is_told_and_what_programs_use_of_pythons_library_is_there(visit):
+    page, _ = visit
+    assert enter(page, '(py:call "statistics.mean" (list 1 2 3))').splitlines()[-1] == "2"
+    told = enter(page, '(ros-load:load-system "cram-location-costmap")')
+    assert "cramhy_runtime.robot_world.costmaps is not there in a browser's tab: it needs MuJoCo or numpy" in told
+    page.locator("#repl-in").fill("0")
+    page.locator("#repl-in").press("Enter")
+    wait_for_prompt(page)
+
+
 # ---------------------------------------------------------------------------------------------------------------- the command
 
 
@@ -220,7 +246,7 @@ def test_an_old_node_is_refused(monkeypatch):
 
 def site_of(folder, **files):
     """A folder that looks like a site."""
-    for name, text in {"offline.js": "", "index.html": "the page", **files}.items():
+    for name, text in {"worker.mjs": "1", "index.html": "the page", **files}.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text)
     return folder
@@ -228,7 +254,7 @@ def site_of(folder, **files):
 
 def test_the_local_host_serves_the_site_and_nothing_else(tmp_path):
     (tmp_path / "secret").write_text("secret")
-    folder = site_of(tmp_path / "site", **{"worker.mjs": "1", "pyodide/a.wasm": "2"})
+    folder = site_of(tmp_path / "site", **{"pyodide/a.wasm": "2"})
     with served(folder) as (address, _):
         assert urllib.request.urlopen(address).read() == b"the page"
         for name, kind in (("worker.mjs", "text/javascript"), ("pyodide/a.wasm", "application/wasm")):

@@ -34,7 +34,7 @@ def open_host(folder: str | os.PathLike[str], port: int | None = None) -> http.s
     port: where it listens on loopback, ``None`` for a free one. Errors: `SiteError` if there is no site, or if the port is taken.
     """
     folder = Path(folder)
-    if not (folder / "offline.js").is_file():
+    if not (folder / "worker.mjs").is_file():
         raise SiteError(f"There is no site of cramhy in {folder}. Write one with: cramhy browser --out {folder}")
     try:
         return http.server.ThreadingHTTPServer(("127.0.0.1", port or 0), functools.partial(Handler, directory=str(folder)))

@@ -19,7 +19,9 @@ VERSION = "314.0.7"
 FETCHED = Path(__file__).parents[3] / "webassembly" / "node_modules"
 """Where ``make pyodide`` puts Pyodide and Node, in a clone of cramhy."""
 FILES = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json")
-"""What a browser or Node loads: Pyodide, its Python, and the library of that. The lock file only says that no other package is there."""
+"""What a browser or Node loads: Pyodide, its Python, and the library of that. The lock file says that no other package is there."""
+LARGE = ("pyodide.asm.wasm", "python_stdlib.zip")
+"""Those that the worker of a page unpacks by itself."""
 CURRENT_FRAME = 52
 """Where `current_frame` lies in Python 3.14's `PyThreadState` of 32 bit, in bytes."""
 
@@ -89,5 +91,7 @@ def copied(folder: str | os.PathLike[str], target: str | os.PathLike[str]) -> Pa
         content = (source / name).read_bytes()
         if name == "pyodide.asm.mjs":
             content = mended(content.decode()).encode()
+        elif name == "pyodide-lock.json":
+            content = json.dumps({**json.loads(content), "packages": {}}).encode()  # what else could be loaded is not there
         (target / name).write_bytes(content)
     return target

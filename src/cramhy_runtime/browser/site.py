@@ -2,10 +2,11 @@
 
 ====================  ==========================================================================================================
 ``index.html``        the live page, with a prompt beside it, and a policy under which nothing but these files is loaded
-``*.js``, ``*.css``   the page's modules; ``transport.js`` is that of a tab
+``*.js``, ``*.css``   the page's modules; ``transport.js`` is that of a tab, and ``editor.js`` has CodeMirror in it
+``course.json``       the pages of the course
 ``worker.mjs``        the worker with Python; ``stacks.mjs`` is half of the kernel's back end
-``cramhy.tar.gz``     cramhy, Hy and the course, compiled by the Python that runs them
-``pyodide/``          that Python
+``packages.zst``      cramhy, Hy and the course, compiled by the Python that runs them, and Python's library
+``pyodide/``          that Python; its large files are packed by gzip, since not every host does that
 ``offline.js``        the service worker, with the list of all files and their fingerprints
 ====================  ==========================================================================================================
 
@@ -29,40 +30,18 @@ from importlib import resources
 from pathlib import Path
 
 from .. import storage
+from ..course import contents, web
 from ..view import page
-from . import packing, pyodide_files
+from . import bundling, left_out, packing, pyodide_files
 
 PACKAGES = ("cramhy", "cramhy_runtime", "hy", "hyrule", "funcparserlib")
-LEFT_OUT = ("jupyter", "lsp", "swank", "view/static", "browser/static")
-"""Folders of cramhy_runtime that no tab needs, or that stand beside the archive already."""
 POLICY = (
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; style-src 'self'; "
     "img-src 'self' data: blob:; font-src 'self'; base-uri 'none'; form-action 'none'"
 )
 HAS_JSPI = "process.exit(typeof WebAssembly.Suspending === 'function' ? 0 : 1)"
-PROMPT = """
-<section id="repl" class="repl" aria-labelledby="repl-title">
-  <div class="head">
-    <h2 id="repl-title">Lisp</h2>
-    <p id="repl-state" class="repl-state" role="status"></p>
-    <button id="repl-stop" type="button" class="chip" title="Ctrl-C: end the form that runs">Stop</button>
-    <button id="repl-restart" type="button" class="chip" title="Begin anew, in two seconds. Files are kept">Restart</button>
-  </div>
-  <pre id="repl-out" class="repl-out" tabindex="0" aria-label="What was typed and answered"></pre>
-  <form id="repl-form" class="repl-form">
-    <label for="repl-in" id="repl-prompt">CL-USER&gt;</label>
-    <textarea id="repl-in" rows="2" spellcheck="false" autocapitalize="off" autocomplete="off" aria-describedby="repl-help"></textarea>
-    <button type="submit">Enter</button>
-  </form>
-  <p id="repl-help" class="unseen">Enter sends the line, Shift and Enter begins another one, arrow up recalls what was typed, and Ctrl-C
-    stops what runs.</p>
-</section>
-<section id="unfit" class="unfit" role="alert" hidden>
-  <h2>This browser cannot run plans</h2>
-  <p>Plans wait in many places at once, and for that a browser has to suspend WebAssembly (its name is JSPI). Chrome and Edge can from
-    version 137 on, and Firefox from 153 on. Safari could not up to version 26.6. Open this address with one of the others.</p>
-</section>
-"""
+DESK = Path(__file__).with_name("desk.html")
+"""What stands beside the live page: the lesson, the editor and the prompt."""
 
 
 class SiteError(Exception):
@@ -92,10 +71,12 @@ def find_node() -> str:
 def write(out: str | os.PathLike[str], pyodide: str | os.PathLike[str]) -> Path:
     """Write the site into the folder ``out``, which is made, or holds an older site. Returns it as a path.
 
-    pyodide: the folder of the package ``pyodide`` of npm. Errors: `SiteError`, `pyodide_files.UnfitPyodide`, `OSError`.
+    pyodide: the folder of the package ``pyodide`` of npm. The packages of the editor stand beside it. Errors: `SiteError`,
+    `pyodide_files.UnfitPyodide`, `bundling.NoBundle`, `OSError`.
     """
     out = Path(out)
     source = pyodide_files.check(pyodide)
+    bundling.check(source.parent)
     node = find_node()
     if out.exists() and any(out.iterdir()) and not (out / "offline.js").exists():
         raise SiteError(f"The folder {out} is not empty, and holds no site of cramhy. Name another one.")
@@ -104,6 +85,8 @@ def write(out: str | os.PathLike[str], pyodide: str | os.PathLike[str]) -> Path:
         pyodide_files.copied(source, made / "pyodide")
         _write_packages(node, made)
         _write_page(made)
+        _put(made, "editor.js", bundling.bundle(node, source.parent))
+        _write_course(made)
         _write_offline(made)
         for file in sorted(each for each in made.rglob("*") if each.is_file()):
             target = out / file.relative_to(made)
@@ -120,15 +103,18 @@ def _sources():
     """Pairs of a place in the archive and a file, for all files that a tab needs."""
     for package in PACKAGES:
         top = _folder_of(package)
-        left_out = [top / name for name in LEFT_OUT] if package == "cramhy_runtime" else []
         for file in _files(top):
-            if not any(file.is_relative_to(folder) for folder in left_out):
-                yield f"{package}/{file.relative_to(top).as_posix()}", file
+            path = file.relative_to(top).as_posix()
+            if not (package == "cramhy_runtime" and left_out.is_left_out(path)):
+                yield f"{package}/{path}", file
     ours = _folder_of("cramhy_runtime")
     clone = ours.parents[1] / "tutorials"
     if not (ours / "tutorials").is_dir() and clone.is_dir():
         for file in _files(clone):
             yield f"cramhy_runtime/tutorials/{file.relative_to(clone).as_posix()}", file
+    if not (ours / "course" / "pages").is_dir():  # as in a clone; a tab checks tasks, and shows no pictures of theirs
+        for name in contents.NAMES:
+            yield f"cramhy_runtime/course/pages/{name}.md", contents.folder() / f"{name}.md"
 
 
 def _files(top):
@@ -136,10 +122,10 @@ def _files(top):
 
 
 def _write_packages(node, made):
-    """``cramhy.tar.gz``: the packages, compiled in Pyodide."""
+    """``packages.zst``: the packages, compiled in Pyodide. What they leave of Python's library is ``pyodide/python_stdlib.zip``."""
     stacks = _folder_of("cramhy_runtime") / "kernel" / "backends" / "stacks.mjs"
     with tempfile.TemporaryDirectory() as folder:
-        source, target = Path(folder) / "source.tar", Path(folder) / "packed.tar"
+        source, target, library = (Path(folder) / name for name in ("source.tar", "packages.zst", "library.zip"))
         with tarfile.open(source, "w", format=tarfile.PAX_FORMAT) as archive:
             for place, file in _sources():
                 entry = tarfile.TarInfo(place)
@@ -147,13 +133,18 @@ def _write_packages(node, made):
                 entry.size, entry.mtime = len(content), packing.TIME
                 archive.addfile(entry, io.BytesIO(content))
         done = subprocess.run(
-            [node, str(Path(__file__).with_name("pack.mjs")), str(made / "pyodide"), str(stacks), str(source), str(target)],
+            [node, str(Path(__file__).with_name("pack.mjs")), *map(str, (made / "pyodide", stacks, source, target, library))],
             capture_output=True,
             text=True,
         )
-        if done.returncode or not target.exists():
+        if done.returncode or not library.exists():
             raise SiteError(f"Pyodide did not compile the packages. It said:\n{(done.stdout + done.stderr)[-3000:]}")
-        (made / "cramhy.tar.gz").write_bytes(gzip.compress(target.read_bytes(), 9, mtime=0))
+        shutil.copy2(target, made)
+        shutil.copy2(library, made / "pyodide" / "python_stdlib.zip")
+    for name in pyodide_files.LARGE:
+        file = made / "pyodide" / name
+        file.with_name(f"{name}.gz").write_bytes(gzip.compress(file.read_bytes(), 9, mtime=0))
+        file.unlink()
     shutil.copy2(stacks, made / "stacks.mjs")
 
 
@@ -166,16 +157,28 @@ def _write_page(made):
     index = made / "index.html"
     text = index.read_text(encoding="utf-8")
     script = '<script type="module" src="app.js"></script>'
+    desk = DESK.read_text(encoding="utf-8")
     policy = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
     for before, after in (
         ('<meta charset="utf-8">', f'<meta charset="utf-8">\n{policy}'),
-        (script, f'<link rel="stylesheet" href="tab.css">\n{script}'),
-        ("</header>\n", f"</header>\n{PROMPT}"),
+        (script, f'<link rel="stylesheet" href="tab.css">\n<script type="module" src="desk.js"></script>\n{script}'),
+        ("</header>\n", f"</header>\n{desk}"),
+        ("<main ", '<div class="live">\n<main '),
+        ("</main>\n", "</main>\n</div>\n"),
     ):
         if text.count(before) != 1:
             raise SiteError(f"This is a defect of cramhy: {before} stands {text.count(before)} times in the page, and not once.")
         text = text.replace(before, after)
     index.write_text(text, encoding="utf-8")
+
+
+def _write_course(made):
+    """``course.json``, which the page shows before Python is there."""
+    try:
+        told = web.as_json()
+    except ImportError as problem:
+        raise SiteError(str(problem)) from None
+    _put(made, "course.json", json.dumps(told, ensure_ascii=False, separators=(",", ":")).encode())
 
 
 def _put(made, name, content):

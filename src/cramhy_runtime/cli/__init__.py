@@ -29,6 +29,7 @@ def session(options, closings, opened=True):
     from cramhy_runtime.languages.commonlisp.tools import backtrace
     from cramhy_runtime.repl.session import Session
     from cramhy_runtime.session import time_setting
+    from cramhy_runtime.session.boot import when_booted
     from cramhy_runtime.session.session import packages_above
     from .options import DEFAULT_TIMES
 
@@ -42,9 +43,12 @@ def session(options, closings, opened=True):
         time_limit=options.time_limit,
         turtlesim=not (options.no_turtlesim or getattr(options, "ros", None)),
         cleanup_limit=options.cleanup_limit,
+        whole=not (waits := _waits_at_prompt(options)),
     )
     gc.enable()
-    start_modules.note()
+    start_modules.note(over=not waits)
+    if waits:
+        when_booted.extend((gc.freeze, start_modules.note))
     if options.features:
         from cramhy_runtime.languages.commonlisp.reader.dispatch_macros import add_features
 
@@ -75,6 +79,12 @@ def session(options, closings, opened=True):
     elif options.command != "run":
         evaluate_forms(made, options.forms)
     return made
+
+
+def _waits_at_prompt(options):
+    """Whether nothing is evaluated, and nobody connects, before a first line is typed at the prompt of Lisp."""
+    before = "hy load prefer_path package forms serve view record ros".split()
+    return options.command == "repl" and options.swank is None and not any(getattr(options, name) for name in before)
 
 
 def _define_course():

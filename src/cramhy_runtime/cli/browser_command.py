@@ -10,7 +10,7 @@ from cramhy_runtime import storage
 
 def run(options):
     """Write the site, or show it, or both; the exit status."""
-    from cramhy_runtime.browser import pyodide_files, site
+    from cramhy_runtime.browser import bundling, pyodide_files, site
 
     if not options.out and not options.serve:
         print("cramhy: Say what to do: --out FOLDER writes the site, and --serve FOLDER shows it.", file=sys.stderr)
@@ -20,7 +20,7 @@ def run(options):
             _write(options)
         if options.serve:
             _serve(options)
-    except (site.SiteError, pyodide_files.UnfitPyodide) as problem:
+    except (site.SiteError, pyodide_files.UnfitPyodide, bundling.NoBundle) as problem:
         print(f"cramhy: {problem}", file=sys.stderr)
         return 1
     except OSError as problem:

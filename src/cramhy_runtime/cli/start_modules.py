@@ -5,8 +5,8 @@ half of the time that a session takes to start. `install` lets Python find the m
 the bytecode that Python itself would have read, and is used under the same condition: the source has still the date and the size that
 stand in it. All else is as ever: each module has its own file, loader and text.
 
-`note` says that the start is over: those modules are kept that are there by then. `keep` writes them, when the session ends, if the file
-lacks one of them. A file that is cut off, or was made by another Python, is as good as none.
+`note` says that the start is over, or how far it is: those modules are kept that are there by then. `keep` writes them, when the session
+ends, if the file lacks one of them. A file that is cut off, or was made by another Python, is as good as none.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import marshal
 import os
 import struct
 import sys
+import zlib
 from importlib.machinery import ModuleSpec, SourceFileLoader
 from pathlib import Path
 
@@ -24,7 +25,9 @@ from cramhy_runtime.storage.checksummed_code import Unusable, trusted_bytes
 from cramhy_runtime.storage.kept_files import keep as keep_file
 from cramhy_runtime.storage.kept_files import kept_path
 
-FIRST_LINE = b"# cramhy start modules 3\n"
+FIRST_LINE = b"# cramhy start modules 4\n"
+SIZES = struct.Struct("<QII")
+"""What follows the first line: how long the rest is, how long the index is with which it begins, and the checksum of the index."""
 _PACKAGE = cramhy_runtime.__name__
 _HEADER = 16  # bytes before the code in a file of bytecode
 
@@ -45,7 +48,7 @@ class Finder:
     """Finds the modules of cramhy that are kept. Python asks it first, as one of ``sys.meta_path``.
 
     root: the folder of cramhy's package. modules: name → (path of the source below ``root``, where Python keeps its bytecode, the bytes
-    that are there).
+    that are there, their checksum). A flipped bit in bytecode can end Python itself, so what does not fit its checksum is made anew.
     """
 
     def __init__(self, root, modules):
@@ -56,10 +59,10 @@ class Finder:
         kept = self.modules.get(name)
         if kept is None:
             return None
-        place, cached, bytecode = kept
+        place, cached, bytecode, checksum = kept
         origin = f"{self.root}{os.sep}{place}"
         try:
-            if bytecode[:_HEADER] != _header(os.stat(origin)):
+            if bytecode[:_HEADER] != _header(os.stat(origin)) or zlib.crc32(bytecode) != checksum:
                 raise FileNotFoundError
         except OSError:
             self.outdated = True
@@ -105,20 +108,25 @@ def install():
 def _read(root):
     try:
         data = memoryview(trusted_bytes(kept_path(_source()), mapped=True))
-        begin, end = len(FIRST_LINE) + 8, len(data)
-        if data[: begin - 8] == FIRST_LINE and end - begin == int.from_bytes(data[begin - 8 : begin], "little"):
-            maker, index = marshal.loads(data[begin:])
+        begin, end = len(FIRST_LINE) + SIZES.size, len(data)
+        length, of_index, checksum = SIZES.unpack(data[begin - SIZES.size : begin])
+        found = data[begin : begin + of_index]
+        if data[: len(FIRST_LINE)] == FIRST_LINE and end - begin == length and zlib.crc32(found) == checksum:
+            maker, index = marshal.loads(found)
             if maker == _maker(root):
-                return {name: (place, cached, data[end - start : end - stop]) for name, (place, cached, start, stop) in index.items()}
-    except (Unusable, OSError, ValueError, EOFError, TypeError):
+                return {
+                    name: (place, cached, data[end - start : end - stop], crc) for name, (place, cached, start, stop, crc) in index.items()
+                }
+    except (Unusable, OSError, ValueError, EOFError, TypeError, struct.error):
         pass
     return {}
 
 
-def note():
-    """The session has started."""
-    if _Start.finder is not None and _Start.wanted is None:
-        sys.meta_path.remove(_Start.finder)  # what comes later is not in the file
+def note(over=True):
+    """The session has started. over: whether it has all that it starts with."""
+    if _Start.finder in sys.meta_path:
+        if over:
+            sys.meta_path.remove(_Start.finder)  # what comes later is not in the file
         _Start.wanted = [name for name in sys.modules if name.startswith(f"{_PACKAGE}.")]
 
 
@@ -141,7 +149,7 @@ def _bytecode(finder, name):
     try:
         bytecode = Path(spec.cached).read_bytes()
         if isinstance(spec.loader, SourceFileLoader) and bytecode[:_HEADER] == _header(os.stat(spec.origin)):
-            return os.path.relpath(spec.origin, finder.root), spec.cached, bytecode
+            return os.path.relpath(spec.origin, finder.root), spec.cached, bytecode, zlib.crc32(bytecode)
     except (OSError, TypeError, ValueError, AttributeError):
         pass
     return None
@@ -149,12 +157,13 @@ def _bytecode(finder, name):
 
 def _written(root, modules):
     """The file. An index tells of each module where its bytecode begins and ends, counted from the end of the file."""
-    left, index = sum(len(bytecode) for _, _, bytecode in modules.values()), {}
-    for name, (place, cached, bytecode) in modules.items():
-        index[name] = place, cached, left, left - len(bytecode)
+    left, index = sum(len(bytecode) for _, _, bytecode, _ in modules.values()), {}
+    for name, (place, cached, bytecode, checksum) in modules.items():
+        index[name] = place, cached, left, left - len(bytecode), checksum
         left -= len(bytecode)
-    content = marshal.dumps((_maker(root), index)) + b"".join([bytecode for _, _, bytecode in modules.values()])
-    return FIRST_LINE + len(content).to_bytes(8, "little") + content
+    head = marshal.dumps((_maker(root), index))
+    rest = b"".join([head, *(bytecode for _, _, bytecode, _ in modules.values())])
+    return FIRST_LINE + SIZES.pack(len(rest), len(head), zlib.crc32(head)) + rest
 
 
 __all__ = ["install", "keep", "note"]

@@ -192,9 +192,9 @@ def install():
 
 
 def read_line(file):
-    """The next line of the text file FILE, or "" at its end. Other tasks run while the current one waits for it, and an interrupt ends
-    the wait without loss of a line."""
-    if not isinstance(file, StandardInput):
+    """The next line of the text file FILE, or "" at its end. Other tasks run while the current one waits for it. An interrupt ends the
+    wait without loss of a line where FILE has a method ``wake``, as a `StandardInput` has."""
+    if not hasattr(file, "wake"):
         return run_blocking(file.readline)
 
     def line():

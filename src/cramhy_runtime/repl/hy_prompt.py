@@ -44,7 +44,6 @@ from cramhy_runtime.languages.hy.reader import TypedReader, is_way_back, more_wa
 
 from .console import Console, exit_status
 from .history import History, place
-from .hy_lines import HyLines
 from .line_input import BROKEN_OFF, Lines
 from .listener import Listener, at_the_prompt
 from .open_forms import OpenForms, of_lisp
@@ -110,11 +109,18 @@ def text_of(compiler):
 # ---------------------------------------------------------------------------------------------------------- a prompt of Hy's
 
 
-class HyPrompt(Listener):
-    """The Lisp of ``repl``, a `hy.REPL`. ``in_lisp``: whether what is typed there is Lisp now."""
+def _terminal_lines(repl, in_lisp):
+    from .hy_lines import HyLines  # it needs readline, which a browser has not
 
-    def __init__(self, repl, session):
-        super().__init__(session, HyLines(repl, lambda: self.in_lisp))
+    return HyLines(repl, in_lisp)
+
+
+class HyPrompt(Listener):
+    """The Lisp of ``repl``, a `hy.REPL`. ``in_lisp``: whether what is typed there is Lisp now. lines: where its lines come from; by default
+    the terminal."""
+
+    def __init__(self, repl, session, lines=None):
+        super().__init__(session, lines or _terminal_lines(repl, lambda: self.in_lisp))
         self.repl = repl
         self.in_lisp = False
         self._warnings = streams.ERROR_OUTPUT.value
@@ -400,18 +406,36 @@ def run(make_session, banner=None, kind=HyPrompt, farewell=None):
         report(condition_of(problem))
         return 1
     try:
-        repl = hy.REPL()
-        attend(repl, session, kind)
-        repl.runsource("(require cramhy *)")
-        repl.interact = functools.partial(_interact, repl, farewell=farewell)
-        if banner is not None:
-            repl.banner = lambda: banner
-        return repl.run()
+        return _repl_of(session, kind, functools.partial(_interact, farewell=farewell), banner).run()
     except SystemExit as leaving:
         return exit_status(leaving)
     finally:
         conditions.install_debugger(None)
         kernel.stop()
+
+
+def converse(session, lines, text="", begun=lambda repl: None):
+    """Answer what ``lines`` brings at a prompt of Hy in ``session``, until their end. Raises SystemExit when the user leaves.
+
+    text: Hy that is answered first. begun: called with the `hy.REPL` before its first prompt.
+    """
+    repl = _repl_of(session, functools.partial(HyPrompt, lines=lines), banner="")
+    begun(repl)
+    if text:
+        repl.lisp._answer_in_hy(text)
+    repl.run()
+
+
+def _repl_of(session, kind=HyPrompt, interact=None, banner=None):
+    """A `hy.REPL` with the macros of the plan language. interact: its loop, a function of the REPL and the banner; by default its own."""
+    repl = hy.REPL()
+    attend(repl, session, kind)
+    repl.runsource("(require cramhy *)")
+    if interact is not None:
+        repl.interact = functools.partial(interact, repl)
+    if banner is not None:
+        repl.banner = lambda: banner
+    return repl
 
 
 def _interact(repl, banner, farewell=None):

@@ -96,6 +96,10 @@ class Lines:
     def remember(self, text):
         """Keep ``text``, whole forms, in the history, if there is one."""
 
+    def choosing(self, condition, restarts):
+        """A context in which the debugger of ``condition`` asks for lines, one of which may be the number of one of ``restarts``."""
+        return nullcontext()
+
     def wake(self):
         """End the wait that goes on. May be called by a signal handler, and by any thread."""
 

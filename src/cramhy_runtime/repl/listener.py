@@ -33,6 +33,7 @@ from . import commands, prompt_words
 from .line_input import BROKEN_OFF, Lines
 from .open_forms import of_lisp
 from .progress import Progress
+from cramhy_runtime.session.boot import boot
 from cramhy_runtime.session.session import Interruption, leave, signalled_here
 
 
@@ -111,6 +112,7 @@ class Listener:
                 continue
             if line is None:
                 return "\n".join(lines) if lines else None
+            boot()  # the prompt does without what forms need
             streams.CONSOLE_OUTPUT.record(f"{'' if lines else prompt}{line}\n")
             if not lines:
                 opened = of_lisp()
@@ -309,13 +311,14 @@ class Listener:
         self.announce(condition, restarts)
         self.level += 1
         try:
-            while True:
-                text = self.read_text(f"{self.level - 1}] ")
-                if text is None:
-                    if not any(restart.name is ABORT for restart in restarts):
-                        return None  # nobody has a place to go on: the error is raised
-                    return conditions.invoke_restart(ABORT)
-                self.answer(text.strip(), restarts, condition)
+            with self.input.choosing(condition, restarts) if isinstance(self.input, Lines) else nullcontext():
+                while True:
+                    text = self.read_text(f"{self.level - 1}] ")
+                    if text is None:
+                        if not any(restart.name is ABORT for restart in restarts):
+                            return None  # nobody has a place to go on: the error is raised
+                        return conditions.invoke_restart(ABORT)
+                    self.answer(text.strip(), restarts, condition)
         finally:
             self.level -= 1
 

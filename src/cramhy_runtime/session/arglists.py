@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from cramhy_runtime.cpl.forms.plans import plan_property
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction
 from cramhy_runtime.ground.dynamic import binding
@@ -156,6 +158,39 @@ def _key(items, keyword):
     for at in range(start, len(items)):
         if items[at].strip("(").split(" ")[0].strip("(:") == keyword.upper():
             return at
+    return None
+
+
+_TOKEN = re.compile(r'"(?:\\.|[^"\\])*(?:"|\Z)|;[^\n]*|#\|.*?(?:\|#|\Z)|#\\(?:[\w-]+|.)|\(|\)|\|[^|]*(?:\||\Z)|[^\s()";]+', re.S)
+
+
+def call_being_typed(text, package):
+    """(name, items of its arglist, number of the item that is being typed or ``None``) of the innermost call that is known and open at the
+    end of ``text``; ``None`` if there is none. package: the one that ``text`` is read in."""
+    calls = []  # the items of each list that is open: words, or None for what is not a word
+    end = 0
+    for match in _TOKEN.finditer(text):
+        token, end = match[0], match.end()
+        if token.startswith((";", "#|")):
+            continue
+        if token == ")":
+            del calls[-1:]
+        elif calls:
+            calls[-1].append(None if token[0] in '("' else token)
+        if token == "(":
+            calls.append([])
+    for depth, call in enumerate(reversed(calls)):
+        if not call or call[0] is None or (depth == 0 and len(call) == 1 and end == len(text)):
+            continue  # its name is not there, or is being typed
+        symbol = symbol_named(call[0].lstrip("#'"), package)
+        items = arglist(symbol) if symbol is not None and is_symbol(symbol) else None
+        if items is None:
+            continue
+        words = call[1:]
+        at_new_one = depth == 0 and (not words or end < len(text))
+        keyword = next((word[1:] for word in (words[-1:] if at_new_one else words[-2:]) if word and word.startswith(":")), None)
+        index = len(words) - (0 if at_new_one else 1)
+        return call[0], items, place_of_argument(items, index, keyword)
     return None
 
 

@@ -1,15 +1,19 @@
 """Starting: the packages of all rooms, and what a session begins with.
 
 `boot` makes the packages of every room and lets Python import Lisp systems. What wants Lisp calls it first: the command line,
-the pytest plugin, and the Hy module ``cramhy``.
+the pytest plugin, and the Hy module ``cramhy``. A prompt that waits for its first line needs Common Lisp only, a third less: it has
+`begin`, and `boot` follows when the line is there.
 """
 
 from __future__ import annotations
 
 import functools
+import gc
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from cramhy_runtime.kernel.signatures import Backend, BackendName, Clock, ClockName
 
 
@@ -23,18 +27,18 @@ TF_PACKAGES = ("CL-TRANSFORMS-STAMPED", "TF-TYPES", "CL-TF", "TF", "CL-TF2")
 """The packages of the room ``tf`` with their nicknames."""
 
 
+when_booted: list[Callable[[], object]] = []
+"""Functions that are called when `boot` has made all packages."""
+
+
 @functools.cache
-def boot():
-    """Make the packages; with no kernel active, start one in virtual time. Calling it again does nothing."""
+def begin():
+    """Make the packages of Common Lisp; with no kernel active, start one in virtual time. Calling it again does nothing."""
     from cramhy_runtime import kernel
-    from cramhy_runtime.kernel import images
     from cramhy_runtime.languages.commonlisp import package
     from cramhy_runtime.ground import packages
     from cramhy_runtime.languages.commonlisp.evaluation import evaluator
-    from cramhy_runtime.languages.commonlisp.systems import asdf, importer, ros_load, systems, uiop, unit_tests
-    from cramhy_runtime.languages.commonlisp.faces.all_faces import FACES
-    from cramhy_runtime.languages.commonlisp.packages.face_definition import define_face
-    from cramhy_runtime.ground.packages import COMMON_LISP_USER
+    from cramhy_runtime.languages.commonlisp.systems import importer
     from cramhy_runtime.languages.commonlisp.tools import advice
     from . import time_setting
 
@@ -43,6 +47,38 @@ def boot():
         kernel.start(time_setting.decide())
     with packages.our_own:
         package.fill()
+    importer.install()
+    kernel.install_reporter(advice.LispReporter())
+    evaluator.PACKAGE.value = packages.COMMON_LISP_USER
+
+
+@functools.cache
+def boot():
+    """Make the packages of all rooms; with no kernel active, start one in virtual time. Calling it again does nothing."""
+    from cramhy_runtime import kernel
+
+    begin()
+    collecting = gc.isenabled()
+    gc.disable()  # what is made now is kept
+    try:
+        with kernel.shield():  # Ctrl-C at the prompt shall not leave half of the packages
+            _complete()
+    finally:
+        if collecting:
+            gc.enable()
+    for function in when_booted:
+        function()
+
+
+def _complete():
+    from cramhy_runtime.kernel import images
+    from cramhy_runtime.ground import packages
+    from cramhy_runtime.languages.commonlisp.systems import asdf, ros_load, systems, uiop, unit_tests
+    from cramhy_runtime.languages.commonlisp.faces.all_faces import FACES
+    from cramhy_runtime.languages.commonlisp.packages.face_definition import define_face
+    from . import time_setting
+
+    with packages.our_own:
         for face in FACES:
             face.define()
         systems.provide_system(SYSTEMS)
@@ -56,9 +92,6 @@ def boot():
         define_face(
             "CRAMHY", functions={"within-limit": unit_tests.within_limit, "time": time_setting.time, "define-costmaps": define_costmaps}
         )
-    importer.install()
-    kernel.install_reporter(advice.LispReporter())
-    evaluator.PACKAGE.value = COMMON_LISP_USER
     images.keep_core()
 
 
@@ -105,17 +138,19 @@ def fresh_start(
     seed: int | None = None,
     time_limit: float | None = None,
     turtlesim: bool = True,
+    whole: bool = True,
     **options: Any,
 ) -> None:
     """Start a kernel with an image: nothing runs, the random numbers begin anew, the simulator waits for the first node.
 
-    clock: "virtual", "wall", or a clock; ``None``: as CRAMHY_TIME says, or virtual. options: more of `kernel.start`.
+    clock: "virtual", "wall", or a clock; ``None``: as CRAMHY_TIME says, or virtual. whole: whether the packages of all rooms are made now;
+    else the caller calls `boot` before anything is read or evaluated. options: more of `kernel.start`.
     """
     from cramhy_runtime import kernel
     from . import time_setting
 
     kernel.start(clock=clock or time_setting.decide(), backend=backend, seed=seed, time_limit=time_limit, **options)
-    boot()
+    boot() if whole else begin()
     from cramhy_runtime.languages.commonlisp.numbers.random_state import seed_random
     from cramhy_runtime.turtlesim.node import start_with_first_node
 

@@ -12,6 +12,7 @@ from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda
 from cramhy_runtime.languages.hy.brackets import open_brackets
 from cramhy_runtime.languages.operators import operator_of
 from .arglists import lambda_list_in_call
+from .boot import boot
 
 _WORD = re.compile(r"""[^\s()'"`,;]*$""")
 _HEAD = re.compile(r"""\(([^\s()\[\]{}'"`,;]+)\s""")
@@ -24,6 +25,7 @@ def completions(text, package=None):
     ``cpl:pa``, is completed with names of that package. ``:na`` is completed with keywords of the call that it stands in, or, where
     these are not known, with all keywords.
     """
+    boot()  # the first key at a prompt may be TAB
     word = _WORD.search(text.rpartition("#'")[2]).group()
     package = package or evaluator.PACKAGE.value
     prefix, colons, short = word.rpartition(":")

@@ -91,7 +91,7 @@ class Session:
     time: "virtual" or "wall". seed: of the scheduler's order, ``None`` for first come, first served. backend: "auto",
     "threads" or "greenlet" (see `kernel.start`). time_limit: seconds of plan time after which a form is ended. turtlesim: whether the
     simulator starts with the first node. cleanup_limit: seconds that plans get for their cleanup when the session ends, or ``None``.
-    options: more of `kernel.start`.
+    whole: see `fresh_start`. options: more of `kernel.start`.
     """
 
     def __init__(
@@ -102,9 +102,10 @@ class Session:
         time_limit: float | None = None,
         turtlesim: bool = True,
         cleanup_limit: float | None = kernel.CLEANUP_LIMIT,
+        whole: bool = True,
         **options: Any,
     ):
-        fresh_start(time, backend, seed, time_limit, turtlesim, cleanup_limit=cleanup_limit, **options)
+        fresh_start(time, backend, seed, time_limit, turtlesim, whole, cleanup_limit=cleanup_limit, **options)
         self._begin()
 
     @classmethod

@@ -1,140 +1,112 @@
-// The prompt of the session in the worker: what it prints, the line that is typed, its history, Ctrl-C, and the button that starts Python
+// The prompt of the session in the worker: what it prints, the form that is typed, its history, Ctrl-C, and the button that starts Python
 // anew when nothing else helps.
 
+import { Arguments, completer } from "./asking.js";
 import { byId } from "./dom.js";
+import { Editor } from "./editor.js";
+import { isOpen } from "./forms.js";
+import { tab } from "./tab.js";
+import { t } from "./texts.js";
 
-const DEAF = 2000; // ms after Ctrl-C without an answer, after which the page says what helps
 const MOST = 400_000; // characters of the transcript that are kept
 const KEPT = 200; // forms of the history that are kept between visits
+const HISTORY = "cramhy-history";
+const HELP =
+  "Enter sends a form that is complete, Shift and Enter begins another line, the arrow keys recall what was typed, Tab completes, and " +
+  "Ctrl-C stops what runs.";
 
-export const supported = typeof WebAssembly === "object" && typeof WebAssembly.Suspending === "function";
-
-class Tab {
+export class Prompt {
   constructor() {
-    this.sockets = new Set(); // that wait for the session or talk with it
+    this.out = byId("repl-out");
     this.printed = 0; // characters
-    this.prompts = 0; // that there have been
+    this.atEnd = true; // whether the last line is to be in sight
+    this.top = 0;
+    this.history = remembered();
+    this.place = this.history.length;
+    const language = () => tab.prompt.language;
+    this.input = new Editor({
+      place: byId("repl-place"),
+      id: "repl-in",
+      label: t("Form to evaluate"),
+      describedBy: t(HELP),
+      complete: completer(() => ({ language: language() })),
+      moved: () => this.arguments?.look(this.input.text.slice(0, this.input.cursor), { language: language() }),
+      keys: [
+        { key: "Enter", run: () => this.#enterIfComplete(), shift: () => (this.input.insert("\n"), true) },
+        { key: "Ctrl-c", run: () => this.#interruptUnlessChosen() },
+        { key: "ArrowUp", run: () => this.#recall(-1) },
+        { key: "ArrowDown", run: () => this.#recall(1) },
+      ],
+    });
+    this.arguments = new Arguments(byId("repl-args"));
+    byId("repl-form").addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.enter();
+    });
+    byId("repl-prompt").addEventListener("click", () => this.input.focus());
+    byId("repl-stop").addEventListener("click", () => tab.interrupt());
+    byId("repl-restart").addEventListener("click", () => {
+      tab.restart();
+      this.note(t("Started anew. What was defined is gone; files are kept."));
+    });
+    new ResizeObserver(() => this.atEnd && this.#toEnd()).observe(this.out); // a debugger takes room from it
+    this.out.addEventListener("scroll", () => this.#scrolled());
+    this.#listen();
   }
 
-  begin() {
-    this.ready = false;
-    this.worker = new Worker(`worker.mjs${location.search}`, { type: "module" });
-    this.worker.onmessage = ({ data: { kind, value } }) => this.#told[kind]?.(value);
-    this.worker.onerror = (event) => this.failed(event.message || "the worker cannot be loaded");
-    document.body.dataset.prompt = "begins";
-    this.say("loading Python …");
+  #listen() {
+    tab.on("state", (state) => {
+      if (state === "begins") this.say(t("loading Python …"));
+      else if (state === "waits") this.say("");
+      else if (state === "reads") this.say(t("The program reads a line."));
+      else if (state === "ended") this.say(t("The session has ended. Press Restart for another one."));
+      else if (state === "failed") this.say(t("Python has stopped."));
+    });
+    tab.on("python", () => this.say(t("Python is there; unpacking …")));
+    tab.on("imported", () => this.say(t("making the session …")));
+    tab.on("text", (text) => this.print(text));
+    tab.on("prompt", ({ text, language = "lisp" }) => {
+      byId("repl-prompt").textContent = text;
+      byId("repl-title").textContent = language === "hy" ? "Hy" : "Lisp";
+      if (this.input.language !== language) this.input.speak(language);
+    });
+    tab.on("deaf", () => this.say(t("No answer to Ctrl-C: the program computes outside of Lisp. Restart ends it; files are kept.")));
+    tab.on("failed", (why) => this.note(t("Python has stopped: {why}\nPress Restart: your files are kept.", { why })));
+    tab.on("unkept", (why) =>
+      this.note(
+        why === "another tab"
+          ? t("This course is open in another tab, which keeps the files. What you save here is gone when this tab is closed.")
+          : t("The browser keeps no files here: {why}. What you save is gone when this tab is closed.", { why }),
+      ),
+    );
   }
-
-  // ---------------------------------------------------------------------------------------------------------- the views
-
-  // Call CALL once, when there is a session.
-  whenReady(call) {
-    this.told = call;
-    if (this.ready) call();
-  }
-
-  join(socket, port) {
-    this.worker?.postMessage({ kind: "port" }, [port]);
-    this.sockets.add(socket);
-    if (this.ready) queueMicrotask(() => socket.onopen?.());
-  }
-
-  leave(socket) {
-    if (this.sockets.delete(socket)) queueMicrotask(() => socket.onclose?.({ code: 1000, reason: "" }));
-  }
-
-  // ------------------------------------------------------------------------------------------------- what the worker tells
-
-  #told = {
-    python: () => this.say("Python is there; unpacking …"),
-    imported: () => this.say("making the session …"),
-    ready: () => {
-      this.ready = true;
-      this.told?.();
-      for (const socket of this.sockets) socket.onopen?.();
-    },
-    text: (value) => this.print(value),
-    prompt: (value) => {
-      clearTimeout(this.deaf);
-      this.say("");
-      byId("repl-prompt").textContent = value;
-      document.body.dataset.prompts = ++this.prompts;
-      document.body.dataset.prompt = "waits";
-    },
-    busy: () => (document.body.dataset.prompt = "busy"),
-    unkept: (value) => this.note(`The browser keeps no files here: ${value}. What you save is gone when this tab is closed.`),
-    ended: () => {
-      this.say("The session has ended. Press Restart for another one.");
-      document.body.dataset.prompt = "ended";
-    },
-    failed: (value) => this.failed(value),
-  };
 
   print(text) {
-    const { out } = this;
-    const atEnd = out.scrollHeight - out.scrollTop - out.clientHeight < 40;
+    const { out, atEnd } = this;
     out.append(text);
     this.printed += text.length;
     while (this.printed > MOST && out.childNodes.length > 1) {
       this.printed -= out.firstChild.textContent.length;
       out.firstChild.remove();
     }
-    if (atEnd) out.scrollTop = out.scrollHeight;
-  }
-
-  failed(value) {
-    this.note(`Python has stopped: ${value}\nPress Restart: your files are kept.`);
-    document.body.dataset.prompt = "failed";
-    this.say("Python has stopped.");
-  }
-
-  // ------------------------------------------------------------------------------------------------------------ the user
-
-  open() {
-    this.out = byId("repl-out");
-    this.input = byId("repl-in");
-    this.history = this.#remembered();
-    this.place = this.history.length;
-    this.input.addEventListener("keydown", (event) => this.#key(event));
-    byId("repl-form").addEventListener("submit", (event) => {
-      event.preventDefault();
-      this.enter();
-    });
-    byId("repl-stop").addEventListener("click", () => this.interrupt());
-    byId("repl-restart").addEventListener("click", () => this.restart());
-    this.begin();
+    if (atEnd) this.#toEnd();
   }
 
   enter() {
-    const text = this.input.value;
-    this.input.value = "";
-    this.type(text);
+    const { text } = this.input;
+    this.input.open("", this.input.language);
+    this.remember(text);
+    tab.type(text);
   }
 
-  // Text as if it had been typed, with the Enter key after each of its lines.
-  type(text) {
+  remember(text) {
     if (text.trim() && this.history.at(-1) !== text) this.history.push(text);
     this.place = this.history.length;
     try {
-      localStorage.setItem("cramhy-history", JSON.stringify(this.history.slice(-KEPT)));
+      localStorage.setItem(HISTORY, JSON.stringify(this.history.slice(-KEPT)));
     } catch {
       // a private window keeps nothing
     }
-    this.worker.postMessage({ kind: "lines", value: text.split("\n") });
-  }
-
-  interrupt() {
-    this.worker.postMessage({ kind: "interrupt" });
-    clearTimeout(this.deaf);
-    this.deaf = setTimeout(() => this.say("No answer to Ctrl-C: the program computes outside of Lisp. Restart ends it; files are kept."), DEAF);
-  }
-
-  restart() {
-    clearTimeout(this.deaf);
-    this.worker.terminate();
-    for (const socket of [...this.sockets]) this.leave(socket);
-    this.note("Started anew. What was defined is gone; files are kept.");
-    this.begin();
   }
 
   say(text) {
@@ -145,51 +117,53 @@ class Tab {
     const line = document.createElement("em");
     line.textContent = `\n${text}\n`;
     this.out.append(line);
+    this.#toEnd();
+  }
+
+  #toEnd() {
     this.out.scrollTop = this.out.scrollHeight;
+    this.atEnd = true;
+    this.top = this.out.scrollTop;
   }
 
-  #remembered() {
-    try {
-      const found = JSON.parse(localStorage.getItem("cramhy-history") ?? "[]");
-      return Array.isArray(found) ? found.filter((each) => typeof each === "string") : [];
-    } catch {
-      return [];
-    }
+  // Only the user leaves the end; a box that becomes smaller does not.
+  #scrolled() {
+    const { scrollTop, scrollHeight, clientHeight } = this.out;
+    this.atEnd = scrollHeight - scrollTop - clientHeight < 40 || (this.atEnd && scrollTop >= this.top);
+    this.top = scrollTop;
   }
 
-  #key(event) {
-    const { input } = this;
-    const nothingChosen = input.selectionStart === input.selectionEnd;
-    if (event.key === "Enter" && !event.shiftKey && !event.isComposing) {
-      event.preventDefault();
-      this.enter();
-    } else if (event.key === "c" && event.ctrlKey && nothingChosen) {
-      event.preventDefault();
-      input.value = "";
-      this.interrupt();
-    } else if (event.key === "ArrowUp" && nothingChosen && !input.value.slice(0, input.selectionStart).includes("\n")) {
-      event.preventDefault();
-      this.#recall(-1);
-    } else if (event.key === "ArrowDown" && nothingChosen && !input.value.slice(input.selectionEnd).includes("\n")) {
-      event.preventDefault();
-      this.#recall(1);
-    }
+  // Enter behind a form that is open begins another line, as in a terminal.
+  #enterIfComplete() {
+    const { text, cursor } = this.input;
+    if (!text.slice(cursor).trim() && tab.state !== "reads" && isOpen(text)) return false;
+    this.enter();
+    return true;
+  }
+
+  #interruptUnlessChosen() {
+    if (this.input.chosen.text) return false; // the browser copies it
+    this.input.open("", this.input.language);
+    tab.interrupt();
+    return true;
   }
 
   #recall(step) {
+    const { text, cursor } = this.input;
     const place = this.place + step;
-    if (place < 0 || place > this.history.length) return;
+    if (this.input.completes || (step < 0 ? text.slice(0, cursor) : text.slice(cursor)).includes("\n")) return false;
+    if (place < 0 || place > this.history.length) return true;
     this.place = place;
-    this.input.value = this.history[place] ?? "";
+    this.input.text = this.history[place] ?? "";
+    return true;
   }
 }
 
-export const tab = new Tab();
-
-if (supported) {
-  tab.open();
-  navigator.serviceWorker?.register("offline.js").catch(() => {}); // without one the page needs its network again
-} else {
-  byId("unfit").hidden = false;
-  document.body.dataset.prompt = "unfit";
+function remembered() {
+  try {
+    const found = JSON.parse(localStorage.getItem(HISTORY) ?? "[]");
+    return Array.isArray(found) ? found.filter((each) => typeof each === "string") : [];
+  } catch {
+    return [];
+  }
 }

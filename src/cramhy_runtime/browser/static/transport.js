@@ -1,6 +1,6 @@
 // How the page reaches its session: by a port to the worker, which looks to `connection.js` like a WebSocket.
 
-import { tab } from "./prompt.js";
+import { tab } from "./tab.js";
 
 export const url = "worker:///";
 export const token = "of this tab";

@@ -1,13 +1,17 @@
 // The worker of a tab: Python, a session in it, and its two connections with the page. By postMessage go the prompt's lines, what is
-// printed, and Ctrl-C; by a port of its own go the operations of rosbridge, for the views.
+// printed, Ctrl-C, questions, and what is done with files; by a port of its own go the operations of rosbridge, for the views.
 
+import { packages } from "./unpacking.mjs";
 import { loadPyodide } from "./pyodide/pyodide.mjs";
+import { Folder } from "./folder.mjs";
 import { host } from "./stacks.mjs";
 
 const HOME = "/home/pyodide"; // is kept in the browser, between visits and when the worker is ended
+const KEEP = 2000; // ms between two times that files are kept while a form runs: somebody may close the tab. At the prompt all are kept
 const PACKAGES = "/lib/python3.14/site-packages";
 
 let page = null; // the port of the views
+let folder = null; // the user's files
 let waiting = null; // resolves the promise that the prompt waits for
 const lines = []; // that were typed ahead
 
@@ -19,7 +23,10 @@ Object.defineProperties(
   Object.getOwnPropertyDescriptors({
     receive: null, // set by Python: takes an operation of the page
     interrupt: null, // set by Python: Ctrl-C
-    prompt: "",
+    ask: null, // set by Python: a question of the page
+    prompt: "{}", // JSON: what the page is told of the prompt
+    answer: (text) => tell("answer", JSON.parse(text)),
+    debug: (text) => tell("debug", JSON.parse(text)),
     say: (text) => page?.postMessage(text),
     later: (milliseconds, call) => {
       setTimeout(call, milliseconds);
@@ -30,8 +37,8 @@ Object.defineProperties(
     },
     get line() {
       if (lines.length) return Promise.resolve(lines.shift());
-      tell("prompt", host.prompt);
-      keep();
+      tell("prompt", JSON.parse(host.prompt));
+      folder.keep();
       return new Promise((resolve) => {
         waiting = (line) => {
           waiting = null;
@@ -56,48 +63,29 @@ const requests = {
     lines.length = 0;
     host.interrupt?.();
   },
+  ask: (question) => {
+    if (host.ask) host.ask(JSON.stringify(question));
+    else tell("answer", { id: question.id, refused: "Python is not there yet." });
+  },
+  file: async ({ id, what, ...rest }) => {
+    try {
+      if (!folder) throw new Error("the files are not there yet");
+      tell("answer", { id, answer: await folder[what](rest) });
+    } catch (problem) {
+      tell("answer", { id, refused: String(problem.message ?? problem) });
+    }
+  },
 };
+const wanted = new Promise((resolve) => {
+  requests.begin = resolve; // until then this is a spare, made ready for a restart
+});
 onmessage = ({ data: { kind, value }, ports }) => requests[kind]?.(value, ports);
 
 let python = null;
-let keeping = false;
-
-// Write the user's files into the browser's storage. Without it (a private window) the session goes on.
-function keep() {
-  if (keeping) return;
-  keeping = true;
-  python.FS.syncfs(false, (problem) => {
-    keeping = false;
-    if (problem) tell("unkept", String(problem.message ?? problem));
-  });
-}
-
-function restored() {
-  return new Promise((resolve) => {
-    try {
-      python.FS.mount(python.FS.filesystems.IDBFS, {}, HOME);
-      python.FS.syncfs(true, (problem) => {
-        if (problem) tell("unkept", String(problem.message ?? problem));
-        resolve();
-      });
-    } catch (problem) {
-      tell("unkept", String(problem.message ?? problem));
-      resolve();
-    }
-  });
-}
-
-async function unpacked(path) {
-  const answer = await fetch(path);
-  if (!answer.ok) throw new Error(`${path} cannot be fetched (${answer.status})`);
-  const bytes = new Uint8Array(await answer.arrayBuffer());
-  if (bytes[0] !== 0x1f || bytes[1] !== 0x8b) return bytes; // a host has said that gzip is its encoding, and the browser has unpacked it
-  return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer());
-}
 
 async function begin() {
-  const packages = unpacked("./cramhy.tar.gz");
-  python = await loadPyodide({ env: { HOME, PYTHONHASHSEED: "0", ROS_PACKAGE_PATH: `${PACKAGES}/cramhy_runtime/tutorials` } });
+  const unpack = packages("./packages.zst");
+  python = await loadPyodide({ env: { HOME, PYTHONHASHSEED: "0", ROS_PACKAGE_PATH: `${HOME}:${PACKAGES}/cramhy_runtime/tutorials` } });
   tell("python");
   const decoder = new TextDecoder();
   const out = {
@@ -110,20 +98,21 @@ async function begin() {
   python.setStdout(out);
   python.setStderr(out);
   python.registerJsModule("cramhy_host", { host });
-  python.FS.writeFile("/tmp/cramhy.tar", await packages);
-  await restored();
-  const speed = new URLSearchParams(location.search).get("speed");
+  await unpack(python);
   const main = python.runPython(`
-import os, tarfile
-with tarfile.open("/tmp/cramhy.tar") as archive:  # by Python's own, which keeps the times: compiled Lisp is stamped with them
-    archive.extractall("${PACKAGES}", filter="fully_trusted")
-os.remove("/tmp/cramhy.tar")
-os.chdir("${HOME}")
+from cramhy_runtime.browser import left_out
+left_out.install()
 from cramhy_runtime.browser.tab import main
 main`);
+  await wanted;
+  folder = await Folder.open(python.FS, HOME, (why) => tell("unkept", why));
+  tell("files");
+  setInterval(() => waiting ?? folder.keep(), KEEP);
+  const speed = new URLSearchParams(location.search).get("speed");
+  python.FS.chdir(HOME);
   tell("imported");
   const status = await main.callPromising(speed === "unbounded" ? undefined : Number(speed ?? 1));
-  keep();
+  folder.keep();
   tell("ended", status);
 }
 

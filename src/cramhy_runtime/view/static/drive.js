@@ -9,7 +9,7 @@ const SCALE = 2; // m/s and rad/s, the original's, unless the parameters say oth
 const PARAMETERS = ["scale_linear", "scale_angular"];
 const FIRST_REPEAT = 500; // ms
 const REPEAT = 50;
-const OWN_ARROWS = "input, select, [role=radiogroup], .scroll, .room, .room-controls"; // these use the arrow keys themselves
+const OWN_ARROWS = "input, select, [role=radiogroup], .scroll, .room, .room-controls, .own-arrows"; // these use the arrow keys themselves
 const BUTTONS = [
   ["ArrowUp", "forward", "M6 2.5 10.5 8h-9z"],
   ["ArrowLeft", "turn left", "M2.5 6 8 1.5v9z"],

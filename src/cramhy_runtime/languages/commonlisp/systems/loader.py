@@ -46,9 +46,9 @@ _not_used = {}
 
 
 def _sha256(text):
-    import hashlib  # a prompt that loads nothing does without it, and is there 2 ms sooner
+    from cramhy_runtime.storage.digests import sha256  # a prompt that loads nothing does without it
 
-    return hashlib.sha256(text.encode(errors="surrogatepass"))
+    return sha256(text.encode(errors="surrogatepass"))
 
 
 @functools.cache
@@ -58,7 +58,7 @@ def stamp():
     It is the same wherever cramhy stands, so that the wheel can bring kept files along. What is read for it is kept, too.
     """
     files = [(folder.name, entry) for folder in _compiling_folders() for entry in sorted(os.scandir(folder), key=lambda entry: entry.name)]
-    files = [(folder, entry) for folder, entry in files if entry.name.endswith((".py", ".hy", ".lisp"))]
+    files = [(folder, entry) for folder, entry in files if entry.name.endswith((".py", ".pyc", ".hy", ".lisp"))]  # .pyc: in a tab
     python = f"{sys.implementation.cache_tag} {importlib.util.MAGIC_NUMBER.hex()}"
     states = [(entry.path, entry.stat()) for _, entry in files]
     state = _sha256("".join([python, *(f"{path} {status.st_mtime_ns} {status.st_size} " for path, status in states)])).hexdigest()
