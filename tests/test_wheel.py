@@ -102,6 +102,15 @@ def test_the_manifest_of_the_course_names_the_same_licence():
     assert "<license>BSD-3-Clause</license>" in (ROOT / "tutorials/cram_my_beginner_tutorial/package.xml").read_text()
 
 
+def test_the_wheel_teaches_the_course(unpacked):
+    """Its pages are there, and `cramhy learn` shows the first one."""
+    site, _ = unpacked
+    environment = {**os.environ, "PYTHONPATH": str(site), "HOME": str(site.parent), "CRAMHY_HISTORY": ""}
+    words = [sys.executable, "-m", "cramhy_runtime.cli", "learn"]
+    done = subprocess.run(words, cwd=site.parent, env=environment, input=":pages\n:quit\n", capture_output=True, text=True, timeout=100)
+    assert done.returncode == 0 and "Your first forms" in done.stdout and "11  Tests" in done.stdout, done.stdout + done.stderr
+
+
 @pytest.mark.parametrize("folder", ["src/cramhy_runtime", "hy_src/cramhy", "tutorials"])
 def test_the_wheel_has_every_file_of_the_tree(wheel, folder):
     tracked = subprocess.run(["git", "ls-files", folder], cwd=ROOT, capture_output=True, text=True)

@@ -19,7 +19,7 @@ from pathlib import Path
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from cramhy_runtime.course.reading import TASK  # noqa: E402
+from cramhy_runtime.course.reading import tasks_in  # noqa: E402
 from tests.docs.pages import COURSE, DOCS, FENCE, LECTURES, Block, Page, exchanges  # noqa: E402
 
 TUTORIALS = DOCS / "tutorials"
@@ -42,11 +42,10 @@ CHECK = "check"
 def with_checks(text):
     """The text of a page with a block of the language `CHECK` in place of the comment of each task, behind the task's text."""
     found, end = "", 0
-    for match in TASK.finditer(FENCE.sub(lambda block: re.sub(r"[^\n]", " ", block[0]), text)):
-        comment = slice(match.start("comment"), match.end("comment"))
-        body = slice(match.end("comment"), match.end())
-        found += f"{text[end : comment.start]}{text[body]}\n```{CHECK}\n{match['name']}\n```\n"
-        end = match.end()
+    for match, after in tasks_in(text):
+        body = text[match.end("comment") : after]
+        found += f"{text[end : match.start('comment')]}{body}\n```{CHECK}\n{match['name']}\n```\n"
+        end = after
     return found + text[end:]
 
 

@@ -218,3 +218,55 @@ def test_loops_in_place_are_interrupted(session, evaluate):
     for name in ("some", "find-if", "notany"):
         form = f"(cpl:top-level (cpl:pursue (cpl:sleep 1) ({name} (lambda (x) (eql x 2)) *never*)) :ended)"
         assert evaluate(form) == ":ENDED"
+
+
+# ---------------------------------------------------------------------------------------------------------------- slots by name
+
+SLOTS = """
+(defclass spot () ((x :initarg :x) (y :initform 2) (all :allocation :class :initform :shared)))
+(defclass far-spot (spot) ((z :initform 3)))
+(defun read-x (object) (slot-value object 'x))
+(defun write-x (new object) (setf (slot-value object 'x) new))
+(defun sum (object) (with-slots (x (second y)) object (setf x (+ x second)) (incf second) (list x second)))
+"""
+
+
+def test_slots_by_name_are_the_same_in_place(evaluate):
+    evaluate(SLOTS)
+    for cls in ("spot", "far-spot", "spot"):
+        assert evaluate(
+            f"(let ((spot (make-instance '{cls} :x 1))) (list (read-x spot) (write-x 5 spot) (sum spot) (sum spot) (read-x spot)))"
+        ) == ("(1 5 (7 3) (10 4) 10)")
+    assert evaluate("(let ((a (make-instance 'spot)) (b (make-instance 'spot))) (setf (slot-value a 'all) 1) (slot-value b 'all))") == "1"
+    for _ in range(2):  # in the second turn the class is known
+        assert evaluate("(handler-case (read-x (make-instance 'spot)) (unbound-slot (c) (cell-error-name c)))") == "X"
+        assert evaluate("(write-x 3 (make-instance 'spot))") == "3"
+    evaluate("(defmethod slot-unbound (class (object far-spot) name) (list :unbound name))")
+    assert evaluate("(list (read-x (make-instance 'far-spot)) (read-x (make-instance 'far-spot)))") == "((:UNBOUND X) (:UNBOUND X))"
+
+
+def test_classes_that_change_are_seen_by_slots_in_place(evaluate):
+    evaluate(SLOTS)
+    evaluate("(defparameter *spot* (make-instance 'spot :x 1)) (list (read-x *spot*) (write-x 2 *spot*) (read-x *spot*))")
+    evaluate("(defclass other () ((x :initform :other)))")
+    assert evaluate("(progn (change-class *spot* 'other) (list (read-x *spot*) (write-x 4 *spot*) (read-x *spot*)))") == "(2 4 4)"
+    evaluate("(defclass other () ((w :initform 1)))")
+    text = "When attempting to read the slot's value (slot-value), the slot X is missing from the object"
+    for _ in range(2):
+        with pytest.raises(Condition) as caught:
+            evaluate("(read-x (make-instance 'other))")
+        assert text in " ".join(str(caught.value).split())
+    evaluate("(defclass other () ((x :initform :class :allocation :class)))")
+    assert (
+        evaluate("(list (read-x (make-instance 'other)) (write-x 7 (make-instance 'other)) (read-x (make-instance 'other)))")
+        == "(:CLASS 7 7)"
+    )
+
+
+def test_slots_by_name_of_structures_and_conditions(evaluate):
+    evaluate(SLOTS + "(defstruct place x y) (define-condition lost (error) ((x :initarg :x)))")
+    for _ in range(2):
+        assert evaluate("(let ((p (make-place :x 1))) (list (read-x p) (write-x 2 p) (read-x p)))") == "(1 2 2)"
+        assert evaluate("(let ((c (make-condition 'lost :x 1))) (list (read-x c) (write-x 2 c) (read-x c)))") == "(1 2 2)"
+    with pytest.raises(Condition):
+        evaluate("(read-x 5)")

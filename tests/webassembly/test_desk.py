@@ -100,28 +100,36 @@ def test_packages_leave_and_come_back(ask, tmp_path):
     )
 
 
-def test_a_check_runs_beside_the_prompt_and_tells_what_it_found(ask, monkeypatch):
-    course = types.ModuleType("cramhy_runtime.course")
-
-    def check(task, session):
-        kernel.sleep(2)
-        session.evaluate_text("(list unbound)" if task == "wrong" else "1")
-        return {"passed": task == "square", "told": [f"{task} was looked at."]}
-
-    course.check = check
-    monkeypatch.setitem(sys.modules, "cramhy_runtime.course", course)
-    monkeypatch.setattr("cramhy_runtime.course", course, raising=False)
-
+def test_a_task_is_checked_beside_the_prompt_and_the_answer_comes_later(ask):
     answers = []
     ask.desk._say = lambda text: answers.append(json.loads(text))
-    for task in ("square", "circle", "wrong"):
-        ask.desk.ask(json.dumps({"id": task, "what": "check", "task": task}))
-        kernel.sleep(3)
-    assert answers[:2] == [
-        {"id": "square", "answer": {"passed": True, "told": ["square was looked at."]}},
-        {"id": "circle", "answer": {"passed": False, "told": ["circle was looked at."]}},
-    ]
-    assert answers[2]["id"] == "wrong" and "UNBOUND is unbound" in answers[2]["refused"]
+
+    def check(task, language="lisp"):
+        ask.desk.ask(json.dumps({"id": task, "what": "check", "task": task, "language": language}))
+        assert answers == [] or language == "hy"
+        kernel.sleep(1)
+        return answers.pop()["answer"]
+
+    ask.session.evaluate_text("(defun rectangle-around (width height) (+ width height))")
+    wrong = check("rectangle")
+    assert not wrong["passed"] and wrong["told"] != []
+    ask.session.evaluate_text("(defun rectangle-around (width height) (* 2 (+ width height)))")
+    assert check("rectangle")["passed"]
+    ask.session.evaluate_text("(defun rectangle-around (width height) (car width height) (loop while t do (sleep 1)))")
+    assert not check("rectangle")["passed"]
+    assert check("rectangle", "hy") == {"passed": False, "told": ["Nothing was typed in Hy yet. The form (in-hy) leads there."]}
+    module = types.ModuleType("typed_here")
+    hy.eval(hy.read("(defn rectangle-around [width height] (* 2 (+ width height)))"), module=module)
+    ask.desk.hy_module = lambda: module
+    assert check("rectangle", "hy")["passed"]
+
+
+def test_a_task_that_there_is_not_is_told(ask):
+    answers = []
+    ask.desk._say = lambda text: answers.append(json.loads(text))
+    ask.desk.ask(json.dumps({"id": 1, "what": "check", "task": "rectangel"}))
+    kernel.sleep(1)
+    assert answers == [{"id": 1, "refused": "There is no task rectangel. Did you mean rectangle?"}]
 
 
 def test_a_question_that_goes_wrong_is_refused_and_the_next_is_answered(ask, monkeypatch):

@@ -21,6 +21,7 @@ LIMIT = 60_000  # ms; for a machine that is busy with other things
 SQUARE = {
     "kind": "task",
     "name": "square",
+    "title": "A square",
     "html": "<p>Drive a <em>square</em>.</p>",
     "start": {"lisp": "(defun square ())\n", "hy": "(defn square [])\n"},
     "hints": ["<p>Four sides.</p>", "<p>Four corners.</p>"],
@@ -32,7 +33,9 @@ COURSE = {
             "title": "1. A turtle",
             "parts": [
                 {"kind": "text", "html": "<p>This starts a <b>node</b>.</p>"},
-                {"kind": "code", "lisp": '(start-ros-node "turtle1")', "hy": '(start-node "turtle1")', "answer": "the answer"},
+                {"kind": "code", "lisp": '(start-ros-node "turtle1")', "hy": '(start-node "turtle1")', "answer": "T\n", "answer_hy": ""},
+                {"kind": "code", "lisp": "(lisp-alone)", "hy": "", "answer": "", "answer_hy": ""},
+                {"kind": "file", "lisp": {"name": "walks/src/walk.lisp", "text": "(walk)\n"}, "hy": None},
                 SQUARE,
             ],
         },
@@ -106,10 +109,10 @@ def text_of_editor(page):
     return "\n".join(code(page).locator(".cm-line").all_text_contents())
 
 
-def open_file(page, name):
+def open_file(page, name, text):
+    """Open a file, in which TEXT stands."""
     page.locator("#code-file").select_option(name)
-    page.locator(f'#code-file option[value="{name}"]:checked').wait_for(state="attached")
-    page.wait_for_timeout(50)
+    wait_for(page, "#code-in .cm-line", text)
 
 
 def choose(page, *words):
@@ -133,7 +136,7 @@ def test_the_editor_evaluates_a_form_a_choice_and_a_file_at_the_prompt(visit):
     page.locator("#code-load").click()
     wait_for(page, "#repl-out", "(load")
     assert transcript(page).endswith('TUT> (drive "a)" 1)\n14\nTUT> (load "plans.lisp")\n19\n')
-    open_file(page, "turtle.hy")
+    open_file(page, "turtle.hy", "(defn two [] 2)")
     code(page).click()
     page.keyboard.press("Alt+Enter")
     wait_for(page, "#repl-out", "=> (defn")
@@ -211,8 +214,7 @@ def test_files_are_made_saved_renamed_deleted_and_come_back_after_a_restart(visi
     page.evaluate("localStorage.setItem('cramhy-draft:lost.lisp', '(lost)')")  # as when a tab is closed in the middle of a word
     page.locator("#repl-restart").click()
     page.locator('#code-file option[value="lost.lisp"]').wait_for(state="attached")
-    open_file(page, "lost.lisp")
-    wait_for(page, "#code-in .cm-line", "(lost)")
+    open_file(page, "lost.lisp", "(lost)")
     assert page.evaluate("Object.keys(localStorage).filter((key) => key.startsWith('cramhy-draft:'))") == []
 
 
@@ -259,12 +261,21 @@ def test_the_lesson_is_read_typed_copied_and_its_task_is_hinted_at_and_checked(v
     page = visit()
     assert page.locator("#lesson-page h2").inner_text() == "1. A turtle"
     assert page.locator("#lesson-done").inner_text() == "0 of 1 tasks"
-    page.get_by_role("button", name="Type it for me").click()
+    page.get_by_role("button", name="Type it for me").first.click()
     wait_for(page, "#repl-out", "(start-ros-node")
-    page.get_by_role("button", name="Copy into the editor").click()
+    page.get_by_role("button", name="Copy into the editor").first.click()
     wait_for(page, "#code-in", '(start-ros-node "turtle1")')
+    page.get_by_role("button", name="Write it for me").click()
+    wait_for(page, "#code-in .cm-line", "(walk)")
+    assert page.locator("#code-file").input_value() == "walks/src/walk.lisp"
+    code(page).press("Control+End")
+    page.keyboard.type("mine")
+    page.get_by_role("button", name="Write it for me").click()
+    wait_for(page, "dialog", "The file walks/src/walk.lisp has another text. Replace it?")
+    page.get_by_role("button", name="Cancel").click()
+    assert text_of_editor(page) == "(walk)\nmine"
     page.locator("#lesson-languages").get_by_text("Hy").click()
-    assert page.locator(".sample code").inner_text() == '(start-node "turtle1")'
+    assert page.locator(".sample code").all_inner_texts() == ['(start-node "turtle1")']
     page.get_by_role("button", name="Type it for me").click()
     wait_for(page, "#repl-out", "=> (start-node")
     page.get_by_role("button", name="Hint 1 of 2").click()

@@ -11,6 +11,7 @@ import base64
 import json
 import os
 import re
+import textwrap
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.packages import COMMON_LISP_USER, find_package
@@ -166,13 +167,17 @@ class Desk:
 
     # ---------------------------------------------------------------------------------------------------------------- tasks
 
-    def _check(self, number, task):
-        """{"passed": bool, "told": [texts]} of the lesson's task of that name."""
+    def _check(self, number, task, language="lisp"):
+        """{"passed": bool, "told": [texts]} of the lesson's task of that name, solved in that language."""
+        module = self.hy_module()
+        if language == "hy" and module is None:
+            return {"passed": False, "told": ["Nothing was typed in Hy yet. The form (in-hy) leads there."]}
 
         def work():
-            from cramhy_runtime import course
+            from cramhy_runtime.course import checking
 
-            return course.check(task, self.session)
+            evaluate = checking.hy_evaluator(module) if language == "hy" else None
+            return checking.check(task, self.session, language, evaluate)
 
         def finished(request):
             if request.outcome == requests.DONE:
@@ -180,9 +185,9 @@ class Desk:
             elif request.outcome == requests.INTERRUPTED:
                 self._refuse(number, "The check was interrupted.")
             else:
-                self._refuse(number, explanation(condition_of(request.failure)))
+                self._refuse(number, textwrap.dedent(explanation(condition_of(request.failure))).strip())
 
-        kernel.active().post(lambda: Request(work, finished, name="the check of a task"))
+        kernel.active().post(lambda: Request(work, finished, debugger=lambda condition: None, name="the check of a task"))
         return LATER
 
 

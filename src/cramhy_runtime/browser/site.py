@@ -3,7 +3,7 @@
 ====================  ==========================================================================================================
 ``index.html``        the live page, with a prompt beside it, and a policy under which nothing but these files is loaded
 ``*.js``, ``*.css``   the page's modules; ``transport.js`` is that of a tab, and ``editor.js`` has CodeMirror in it
-``course.json``       the lesson, if there is one
+``course.json``       the pages of the course
 ``worker.mjs``        the worker with Python; ``stacks.mjs`` is half of the kernel's back end
 ``packages.zst``      cramhy, Hy and the course, compiled by the Python that runs them, and Python's library
 ``pyodide/``          that Python; its large files are packed by gzip, since not every host does that
@@ -30,6 +30,7 @@ from importlib import resources
 from pathlib import Path
 
 from .. import storage
+from ..course import contents, web
 from ..view import page
 from . import bundling, left_out, packing, pyodide_files
 
@@ -111,6 +112,9 @@ def _sources():
     if not (ours / "tutorials").is_dir() and clone.is_dir():
         for file in _files(clone):
             yield f"cramhy_runtime/tutorials/{file.relative_to(clone).as_posix()}", file
+    if not (ours / "course" / "pages").is_dir():  # as in a clone; a tab checks tasks, and shows no pictures of theirs
+        for name in contents.NAMES:
+            yield f"cramhy_runtime/course/pages/{name}.md", contents.folder() / f"{name}.md"
 
 
 def _files(top):
@@ -169,11 +173,11 @@ def _write_page(made):
 
 
 def _write_course(made):
-    """``course.json``, which the page shows before Python is there. Without a course it has no pages."""
-    if importlib.util.find_spec("cramhy_runtime.course") is None:
-        told = {"pages": []}
-    else:
-        told = importlib.import_module("cramhy_runtime.course").as_json()
+    """``course.json``, which the page shows before Python is there."""
+    try:
+        told = web.as_json()
+    except ImportError as problem:
+        raise SiteError(str(problem)) from None
     _put(made, "course.json", json.dumps(told, ensure_ascii=False, separators=(",", ":")).encode())
 
 

@@ -22,6 +22,7 @@ from ..languages.commonlisp.streams import streams
 from ..repl.console import Console
 from ..repl.line_input import BROKEN_OFF, Lines
 from ..ros import graph
+from ..session import requests
 from ..session.session import Session
 from . import debugging
 from .desk import Desk
@@ -173,6 +174,7 @@ def main(speed: float | None = 1.0) -> int:
         port = Port(graph.active(), host.say, _later)
         lines.desk = Desk(session, host.answer)
         host.receive, host.ask = create_proxy(port.receive), create_proxy(lines.desk.ask)
+        requests.ask_whoever_asked()  # what goes wrong in a check opens no debugger at the prompt
         chronicle.start()
         kernel.pace().set_speed(speed)
         host.ready()

@@ -73,6 +73,8 @@ class Guided(Listener):
         if isinstance(self.input, Lines):
             self.input.remember(line.strip())
         try:
+            if self.ctrl_c_came():
+                kernel.interrupt()
             if name != "check":
                 self.say(self.guide.do(name, argument))
             elif self.level or not at_the_prompt():

@@ -4,7 +4,7 @@
 a block of ``lisp`` with a prompt, of ``hy``     a piece of the session (`Code`); below ``<!-- tabs -->`` both languages are one part
 with ``=> ``
 a block with ``title="NAME"``                    a file (`File`)
-``<!-- task: NAME`` TOML ``-->``                 below a heading: the rest, up to the next heading, is a `Task`; the TOML has its checks
+``<!-- task: NAME`` TOML ``-->``                 below a heading: the rest, up to the last hint, is a `Task`; the TOML has its checks
 a block with ``title="Begin with"``              in a task: the code to begin with
 ``<details><summary>Hint</summary>`` ...         in a task: a hint
 ``<!-- installed -->`` ... ``<!-- anywhere -->``  what only concerns those who read the page beside a terminal of their own; the course
@@ -35,7 +35,7 @@ TASK = re.compile(
     r"^#+ (?:Task: )?(?P<title>[^\n]*)\n+(?P<comment><!-- task: (?P<name>[\w-]+)\n(?P<toml>.*?)^-->$\n)(?P<body>.*?)(?=^#+ |\Z)",
     re.M | re.S,
 )
-"""A task, in the text of a page in which code is blank."""
+"""A task and what follows it, in the text of a page in which code is blank (`tasks_in`)."""
 _HINT = re.compile(r"^<details><summary>[^\n]*</summary>\n(.*?)^</details>$\n?", re.M | re.S)
 
 
@@ -62,12 +62,20 @@ def read(name: str, text: str) -> Page:
     title, text = _title(name, _INSTEAD.sub(r"\1", _APART.sub("", text)))
     parts: list[Part] = []
     end = 0
-    for match in TASK.finditer(_without_code(text)):
+    for match, after in tasks_in(text):
         parts += _parts(text[end : match.start()])
-        parts.append(_task(name, match["title"], match["name"], text[slice(*match.span("toml"))], text[slice(*match.span("body"))]))
-        end = match.end()
+        parts.append(_task(name, match["title"], match["name"], text[slice(*match.span("toml"))], text[match.start("body") : after]))
+        end = after
     parts += _parts(text[end:])
     return Page(name, title, tuple(parts))
+
+
+def tasks_in(text: str):
+    """The matches of `TASK` in the text of a page, each with the place where the task ends: behind its last hint."""
+    blank = FENCE.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)  # a # in code is no heading
+    for match in TASK.finditer(blank):
+        hints = [hint.end() for hint in _HINT.finditer(blank, match.start("body"), match.end())]
+        yield match, hints[-1] if hints else match.end()
 
 
 def _title(name, text):
@@ -75,11 +83,6 @@ def _title(name, text):
     if match is None:
         raise PageError(f"{name}.md: its first line is not a heading that begins with #.")
     return match[1], text[match.end() :]
-
-
-def _without_code(text):
-    """``text`` with spaces in place of the code in it, so that a # there is not taken for a heading."""
-    return FENCE.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
 
 
 def _parts(text):

@@ -67,7 +67,7 @@ def _paragraphs(markdown, style):
 
 def _paragraph(paragraph, style):
     if paragraph.startswith("#"):
-        return style.bold(_marks(paragraph.lstrip("# "), Style()))
+        return style.bold(_filled(paragraph.lstrip("# "), Style(style.width)))
     if paragraph.startswith("|"):
         return _table(paragraph, style)
     if _ITEM.match(paragraph):

@@ -7,14 +7,12 @@ from __future__ import annotations
 
 import re
 
-from .typing_names import Any
-
 
 class _LatePattern:
-    def __init__(self, text, flags=0):
+    def __init__(self, text: str, flags: int = 0) -> None:
         self._text, self._flags = text, flags
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> object:
         value = getattr(re.compile(self._text, self._flags), name)
         setattr(self, name, value)  # so the next use takes no call
         return value

@@ -18,7 +18,7 @@ that folder.
 `partial_files` writes a file, in one go or for hours; `partial_names` gives it its names and locks meanwhile. `atomic_write` replaces a
 file at once, `file_transactions` several. `leftovers` removes or recovers what killed processes left. `backups` keeps the older version
 of a file. `checksummed_code` is for compiled code: it proves whose a file is and that it is undamaged before anybody reads it;
-`kept_files` says where such files are. `owners` says whose a file is, and `system_errors` what to try.
+`kept_files` says where such files are, `digests` has the sum. `owners` says whose a file is, and `system_errors` what to try.
 """
 
 from .leftovers import tidy, tidy_once

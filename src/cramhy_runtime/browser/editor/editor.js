@@ -58,7 +58,7 @@ export class Editor {
       looks,
       EditorView.lineWrapping,
       EditorView.contentAttributes.of({ ...named, autocapitalize: "off", autocorrect: "off", spellcheck: "false" }),
-      autocompletion({ override: [(context) => this.#completions(context)], activateOnTyping: false, icons: false }),
+      autocompletion({ override: [(context) => this.#completions(context)], activateOnTyping: false, interactionDelay: 0, icons: false }),
       Prec.highest(keymap.of(keys)),
       keymap.of([
         { key: "Tab", run: (view) => acceptCompletion(view) || this.#indentOrComplete(view) },

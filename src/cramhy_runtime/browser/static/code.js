@@ -166,6 +166,20 @@ export class Code {
     this.editor.focus();
   }
 
+  // Make TEXT the text of the file PATH. If it has another one, the user is asked.
+  async write(path, text) {
+    this.show();
+    const { files } = this;
+    await files.there;
+    await files.save();
+    await files.refresh();
+    if (files.paths.includes(path) && (await tab.file("read", { path })) !== text) {
+      if (!(await ask({ text: t("The file {path} has another text. Replace it?", { path }), ok: t("Replace") }))) return;
+    }
+    await files.write(path, text);
+    this.editor.focus();
+  }
+
   // -------------------------------------------------------------------------------------------------------------- packages
 
   async export() {

@@ -108,6 +108,14 @@ export class Files {
     return free;
   }
 
+  // Make TEXT the whole of a file, and show it.
+  async write(path, text) {
+    if (path === this.path) this.editor.text = text;
+    else await tab.file("write", { path, text });
+    await this.refresh();
+    await this.open(path);
+  }
+
   async #nameFor(path, text) {
     const [, stem, suffix] = /^(.*?)(\.[^./]*)?$/s.exec(path);
     for (let number = 1; ; number++) {

@@ -60,25 +60,24 @@ export class Lesson {
     const tasks = this.pages.flatMap(({ parts }) => parts.filter(({ kind }) => kind === "task"));
     const done = tasks.filter(({ name }) => this.progress.done.includes(name)).length;
     setText(byId("lesson-done"), tasks.length ? t("{done} of {all} tasks", { done, all: tasks.length }) : "");
-    const kinds = { text: (part) => this.#text(part), code: (part) => this.#code(part), task: (part) => this.#task(part) };
-    byId("lesson-page").replaceChildren(el("h2", {}, page.title), ...page.parts.map((part) => kinds[part.kind](part)));
+    const kinds = {
+      text: (part) => marked("div", part.html, "text"),
+      code: (part) => this.#code(part),
+      file: (part) => this.#file(part),
+      task: (part) => this.#task(part),
+    };
+    const parts = page.parts.map((part) => kinds[part.kind](part)).filter(Boolean);
+    byId("lesson-page").replaceChildren(el("h2", {}, page.title), ...parts);
   }
 
   // ----------------------------------------------------------------------------------------------------------------- parts
 
-  #text({ html }) {
-    return marked("div", html, "text");
-  }
-
-  // The text of a part in the chosen language, or in the only one that it has: [text, language].
-  #chosen(part) {
-    const language = part[this.progress.language] ? this.progress.language : part.lisp ? "lisp" : "hy";
-    return [part[language] ?? "", language];
-  }
-
+  // Nothing where there is nothing to type in the chosen language.
   #code(part) {
-    const [text, language] = this.#chosen(part);
-    const answer = typeof part.answer === "object" && part.answer ? part.answer[language] : part.answer;
+    const { language } = this.progress;
+    const text = part[language];
+    const answer = language === "hy" ? part.answer_hy : part.answer;
+    if (!text) return null;
     return el(
       "figure",
       { class: "sample" },
@@ -88,9 +87,33 @@ export class Lesson {
         { class: "choices" },
         el("button", { type: "button", class: "chip", on: { click: () => this.#type(text, language) } }, t("Type it for me")),
         el("button", { type: "button", class: "chip", on: { click: () => this.#copy(text, language) } }, t("Copy into the editor")),
+        answer ? el("details", {}, el("summary", {}, t("Answer")), el("pre", {}, answer.replace(/^\n+|\n$/g, ""))) : null,
       ),
-      answer ? el("details", {}, el("summary", {}, t("What it answers")), el("pre", { class: "answer" }, answer)) : null,
     );
+  }
+
+  #file(part) {
+    const file = part[this.progress.language];
+    if (!file) return null;
+    return el(
+      "figure",
+      { class: "sample" },
+      el("figcaption", {}, t("File"), " ", el("code", {}, file.name)),
+      el("pre", {}, el("code", {}, file.text)),
+      el(
+        "div",
+        { class: "choices" },
+        el("button", { type: "button", class: "chip", on: { click: () => this.#write(file) } }, t("Write it for me")),
+      ),
+    );
+  }
+
+  async #write({ name, text }) {
+    try {
+      await this.code.write(name, text);
+    } catch (problem) {
+      this.code.files.fail(problem);
+    }
   }
 
   #type(text, language) {
@@ -110,21 +133,22 @@ export class Lesson {
   }
 
   #task(part) {
-    const [start, language] = this.#chosen(part.start ?? {});
+    const { language } = this.progress;
+    const start = part.start?.[language];
     const file = `${part.name}${language === "hy" ? ".hy" : ".lisp"}`;
     const told = this.tellings.get(part.name) ?? el("div", { class: "told", role: "status" });
     this.tellings.set(part.name, told);
     const done = this.progress.done.includes(part.name);
     const section = el("section", { class: `task-box${done ? " done" : ""}`, "aria-label": t("Task") });
     const check = el("button", { type: "button", class: "chip main" }, t("Check"));
-    check.addEventListener("click", () => this.#check(part, file, check, told));
+    check.addEventListener("click", () => this.#check(part, start ? file : null, language, check, told));
     section.append(
-      el("p", { class: "kind" }, done ? t("Task, solved") : t("Task")),
+      el("p", { class: "kind" }, done ? t("Task, solved") : t("Task"), part.title ? `: ${part.title}` : ""),
       marked("div", part.html, "text"),
       el(
         "div",
         { class: "choices" },
-        el("button", { type: "button", class: "chip", on: { click: () => this.#open(file, start) } }, t("Open in the editor")),
+        start ? el("button", { type: "button", class: "chip", on: { click: () => this.#open(file, start) } }, t("Open in the editor")) : "",
         check,
       ),
       ...this.#hints(part),
@@ -155,14 +179,14 @@ export class Lesson {
     return [list, button];
   }
 
-  // Load the file of a task, and have the session checked.
-  async #check({ name }, file, button, told) {
+  // Load the file of a task, if it has one, and have the session checked.
+  async #check({ name }, file, language, button, told) {
     button.disabled = true;
     told.className = "told";
     told.replaceChildren(t("checking …"));
     try {
-      await this.#load(file);
-      const { passed, told: texts } = await tab.ask("check", { task: name });
+      if (file) await this.#load(file);
+      const { passed, told: texts } = await tab.ask("check", { task: name, language });
       told.className = `told ${passed ? "passed" : "missed"}`;
       told.replaceChildren(el("p", {}, passed ? t("Solved.") : t("Not yet.")), el("ul", {}, ...texts.map((text) => el("li", {}, text))));
       if (passed && !this.progress.done.includes(name)) {

@@ -17,6 +17,7 @@ from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Symbol
 from ..format.format_pieces import Piece
 from ..numbers.complex_numbers import parts
 from ..objects.makers import Maker
+from ..objects.slots import NamedSlot
 from ..syntax.backquote import Comma
 from .core import List, expression, word
 
@@ -141,6 +142,8 @@ class Constants:
             return expression(word("Lpiece"), obj.control, obj.index)
         if kind is Case:
             return expression(word("Lcase"), self.builder(obj.specifiers))
+        if kind is NamedSlot:
+            return expression(word("Lnamed_slot"), self.builder(obj.name))
         if kind is Maker:
             return expression(word("Lmaker"), self.builder(obj.name), *map(self.builder, obj.keys))
         raise NotStorable(obj)

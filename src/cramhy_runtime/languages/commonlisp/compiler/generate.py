@@ -17,7 +17,7 @@ from .constants import Constants, float_model
 from .core import expression, word
 from .destinations import EFFECT, FIRST_OF_VALUES, NONE, RAW, TRUE, VALUE, VALUES, Destination
 from .facts import study, walk
-from .generate_calls import CallGenerator
+from .generate_calls import SLOT_VALUE, CallGenerator, slot_named_by
 from .generate_exits import ERROR, ExitGenerator
 from .generate_functions import FunctionGenerator
 from .arithmetic.functions import NUMBER_FUNCTIONS
@@ -360,6 +360,8 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         arguments = self.arguments(node.arguments)
         if (attribute := written_attribute(node.symbol)) is not None and len(arguments) == 2:
             return self.by_statements(node, destination, lambda inner: self.slot_written(node, attribute, arguments, inner))
+        if node.symbol is SLOT_VALUE and len(arguments) == 3 and (named := slot_named_by(node.arguments[2])) is not None:
+            return self.by_statements(node, destination, lambda inner: self.named_slot_written(node, named, arguments, inner))
         if node.symbol in KNOWN_SETTERS:
             setter = word(self.constants.name("setf_function", node.symbol))
         else:

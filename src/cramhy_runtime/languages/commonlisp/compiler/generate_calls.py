@@ -14,13 +14,14 @@ from cramhy_runtime.ground.dispatch.reached_slots import read_attribute
 from cramhy_runtime.ground.keyword_calls import keyword_calls, name_of_key, takes_keywords
 from cramhy_runtime.ground.packages import sym
 from ..objects.makers import maker
+from ..objects.slots import named_slot
 from . import core, nodes
 from .core import NONE, TRUE, List, Tuple, expression, word
 from .destinations import VALUES as ALL_VALUES
 from .arithmetic.operations import AND, DOT, IF, INT_CLASS, IS, IS_NOT, SETX, class_of
 
 FIND, FLOOR, GETHASH, LIST, VALUES = map(sym, "FIND FLOOR GETHASH LIST VALUES".split())
-MAKE_INSTANCE, SAME_CHARACTER = sym("MAKE-INSTANCE"), sym("CHAR=")
+MAKE_INSTANCE, SAME_CHARACTER, SLOT_VALUE = map(sym, "MAKE-INSTANCE CHAR= SLOT-VALUE".split())
 CHARACTER, GET, PLUS, SETV = map(word, "Lcharacter get + setv".split())
 
 
@@ -74,6 +75,11 @@ class CallGenerator:
             slow = self.positioned(expression(self.known_function(symbol), name, divisor), node)
             quick = expression(word("LMultipleValues"), self.call("divmod", name, divisor))
             return expression(IF, expression(IS, class_of(number), INT_CLASS), quick, slow)
+        if symbol is SLOT_VALUE and count == 2 and (named := slot_named_by(arguments[1])) is not None:
+            (target,) = self.stable_names(self.arguments(arguments[:1]))
+            classes = self.constant(named)
+            slow = self.positioned(expression(expression(DOT, classes, word("read")), target), node)
+            return expression(IF, self.among(target, classes), expression(DOT, target, word(named.attribute)), self.first_value(slow))
         if symbol is LIST and count > 4:
             return self.call("list", *self.arguments(arguments))
         if symbol is SAME_CHARACTER and count == 2:
@@ -148,10 +154,19 @@ class CallGenerator:
 
     def slot_written(self, node, attribute, models, destination):
         """``(setf (accessor object) new)``, with the new value and the object as ``models``."""
-        new, target = self.stable_names(models)
         classes = word(self.constants.name(f"writes.of_{attribute}", node.symbol))
+        self.attribute_set(node, attribute, models, destination, classes, self.call("setf_function", self.constant(node.symbol)))
+
+    def named_slot_written(self, node, named, models, destination):
+        """``(setf (slot-value object 'name) new)``"""
+        classes = self.constant(named)
+        self.attribute_set(node, named.attribute, models[:2], destination, classes, expression(DOT, classes, word("write")))
+
+    def attribute_set(self, node, attribute, models, destination, classes, function):
+        """Set an attribute of an object that is an instance of one of ``classes``, or call ``function``."""
+        new, target = self.stable_names(models)
         quick, _ = self.captured(lambda: self.finish(new, nodes.Constant(None), destination, pure=True))
-        call = self.positioned(expression(self.call("setf_function", self.constant(node.symbol)), new, target), node)
+        call = self.positioned(expression(function, new, target), node)
         slow, _ = self.captured(lambda: self.finish(call, node, destination))
         store = expression(word("setv"), expression(DOT, target, word(attribute)), new)
         self.branch(self.among(target, classes), [store, *quick], slow)
@@ -234,6 +249,12 @@ def _keys_begin(function, arguments):
     return count if all(key.__class__ is nodes.Constant and key.value.__class__ is Keyword for key in keys) else None
 
 
+def slot_named_by(node):
+    """The `NamedSlot` of the symbol that ``node`` is; ``None`` for anything else."""
+    name = node.value if node.__class__ is nodes.Constant else None
+    return named_slot(name) if name.__class__ is Symbol and name.package is not None else None
+
+
 def _is_text(node):
     return node.__class__ is nodes.Constant and node.value.__class__ is str
 
@@ -264,4 +285,4 @@ def sorted_arguments(function, models, arguments):
     return done
 
 
-__all__ = ["CallGenerator"]
+__all__ = ["SLOT_VALUE", "CallGenerator", "slot_named_by"]

@@ -31,11 +31,11 @@ CRAMHY::COLLECT CRAMHY::CAR-OF-CONS CRAMHY::CDR-OF-CONS CRAMHY::LOOP-VECTOR""".s
 }
 """Functions that neither call functions of users nor take long: a loop of nothing else need not look at every turn whether its
 slice is over."""
-QUICK_OF_TWO = {sym(name) for name in "FIND POSITION MEMBER ASSOC COUNT STRING= STRING/= STRING< STRING> EQUAL".split()}
+QUICK_OF_TWO = {sym(name) for name in "FIND POSITION MEMBER ASSOC COUNT STRING= STRING/= STRING< STRING> EQUAL SLOT-VALUE".split()}
 """The same, if they are called with two arguments. Where an argument is long, they look by themselves whether the slice is over."""
 CHANGES = {sym(name) for name in "VECTOR-PUSH VECTOR-PUSH-EXTEND".split()}
 """Functions that are as quick, but change the length of a vector."""
-SETTERS = {sym(name) for name in "GETHASH AREF SVREF CHAR".split()}
+SETTERS = {sym(name) for name in "GETHASH AREF SVREF CHAR SLOT-VALUE".split()}
 """Places whose setters are as quick, but change what a loop may walk along."""
 
 

@@ -61,6 +61,7 @@ from ..format.format_templates import decimal, piece_of, prin1_atom, princ_atom
 from ..numbers import arithmetic
 from ..numbers.irrational import complex_
 from ..objects.makers import maker
+from ..objects.slots import named_slot
 from cramhy_runtime.ground.packages import intern, keyword, printed
 from ..syntax.backquote import Comma
 from .declared_types import checked
@@ -353,6 +354,7 @@ NAMESPACE = {
     "Lbudget": budget,
     "Lnext_method_exists": next_method_exists,
     "Lmaker": maker,
+    "Lnamed_slot": named_slot,
     "Lkey_parser": key_parser,
     "Lkeyword_calls": keyword_calls,
     "Lintern": intern,

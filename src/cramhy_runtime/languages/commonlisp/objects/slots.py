@@ -14,9 +14,10 @@ from operator import attrgetter
 from cramhy_runtime.ground.condition_types import MissingSlot
 from cramhy_runtime.ground.condition_types import shown
 from cramhy_runtime.ground.conditions import Condition, SimpleError, UnboundSlot, ask_value, error, restart_case, type_error
-from cramhy_runtime.ground.data import UNBOUND, Symbol, boolean, list_from, one, truth
+from cramhy_runtime.ground.data import UNBOUND, Classes, Symbol, boolean, list_from, one, truth
 from cramhy_runtime.ground.packages import sym
-from .class_objects import ClassSlot, InstanceSlot, effective_slots, find_slot
+from cramhy_runtime.ground.python_names import python_name
+from .class_objects import ClassSlot, InstanceSlot, StandardObject, effective_slots, find_slot
 from cramhy_runtime.ground.classes import when_classes_change
 from .classes import class_of
 
@@ -26,9 +27,53 @@ _attributes: dict = {}
 """For each class a dict from slot name to attribute; class slots have attributes too."""
 
 
+_named: dict = {}
+"""The `NamedSlot` of each name that compiled code quotes."""
+
+
 @when_classes_change
 def _forget():
     _attributes.clear()
+    for named in _named.values():
+        named.replace(())
+
+
+class NamedSlot(Classes):
+    """The classes from whose instances compiled code takes the slot ``name`` itself: it is the attribute ``attribute`` of them.
+
+    A class comes in when `read` or `write` was called for an instance of it.
+    """
+
+    __slots__ = ("name", "attribute")
+
+    def __init__(self, name):
+        super().__init__()
+        self.name, self.attribute, self.last = name, python_name(name.name), None
+
+    def read(self, instance):
+        """``(slot-value instance name)``"""
+        value = slot_value(instance, self.name)
+        self._note(instance.__class__)
+        return value
+
+    def write(self, new, instance):
+        """``(setf (slot-value instance name) new)``"""
+        set_slot_value(new, instance, self.name)
+        self._note(instance.__class__)
+        return new
+
+    def _note(self, cls):
+        if issubclass(cls, StandardObject) and _attributes.get(cls, {}).get(self.name) == self.attribute:
+            self.add(cls)
+            self.last = cls
+
+
+def named_slot(name):
+    """The `NamedSlot` of the symbol ``name``."""
+    found = _named.get(name)
+    if found is None:
+        found = _named[name] = NamedSlot(name)
+    return found
 
 
 def _attribute(obj, name):

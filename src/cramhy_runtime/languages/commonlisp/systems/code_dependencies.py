@@ -268,7 +268,7 @@ def _globals_of(code: types.CodeType) -> list[tuple[str, bool]]:
 
 def _digest(facts: list[Any], symbol: Symbol | None = None) -> tuple[str, list[tuple[Symbol, tuple[Any, ...]]]]:
     """(the digest of ``facts``, which are about ``symbol``, the symbols that were looked at with their state)"""
-    from hashlib import sha256
+    from cramhy_runtime.storage.digests import sha256
 
     words: list[str] = []
     symbols = [] if symbol is None else [(symbol, _now(symbol))]
