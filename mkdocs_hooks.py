@@ -45,7 +45,17 @@ def on_page_markdown(markdown, page, config, files):
     text = with_links(markdown, source, place, {file.src_uri for file in files})
     if not place.startswith("reference/") and place not in ("glossary.md", "CHANGELOG.md"):
         text = with_glossary(text, posixpath.relpath("glossary.md", posixpath.dirname(place) or "."))
-    return with_tabs(text.replace("<details><summary>", '<details markdown="1"><summary>'))
+    return with_tabs(with_hints(text))
+
+
+def with_hints(text):
+    """A page's text in which Markdown within ``<details>`` counts, but not where a block of code shows one."""
+    parts = re.split(r"(^(`{3,}).*?^\2$)", text, flags=re.M | re.S)
+    return "".join(
+        part if place % 3 == 1 else part.replace("<details><summary>", '<details markdown="1"><summary>')
+        for place, part in enumerate(parts)
+        if place % 3 != 2
+    )
 
 
 def with_links(text, source, place, there):

@@ -86,3 +86,10 @@ def test_the_tools_of_the_site_are_an_extra():
 )
 def test_headings_have_the_anchors_of_github(heading, expected):
     assert slug(heading) == expected
+
+
+def test_hints_are_closed_and_formatted_and_checks_are_not_shown(site):
+    page = (site / "tutorials" / "first-forms.html").read_text(encoding="utf-8")
+    assert re.search(r"<details>\s*<summary>Hint 1</summary>\s*<p>The function that multiplies is <code>\*</code>", page)
+    assert "86400</" not in page.partition("the seconds of a day")[2].partition("<h2")[0]
+    assert "details markdown" not in (site / "how-to" / "learn.html").read_text(encoding="utf-8"), "what a block shows stays as it is"

@@ -29,9 +29,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 _MISSING = re.compile(
-    r"(?P<form>\(.*) ended with an error:\n\s*(?:The function (?P<lisp>\S+) is undefined|name '(?P<hy>\S+)' is not defined$)", re.S
+    r"(?P<form>[^\n]*) ended with an error:\n\s*"
+    r"(?:The (?:function|variable) (?P<lisp>\S+) is (?:undefined|unbound)|name '(?P<hy>\S+)' is not defined$)"
 )
-"""The report of a form with a function that may not be there."""
+"""The report of a form with a name that may not have a meaning yet."""
 NO_TURTLE = "There is no turtle yet. Start it as the page says, and check again."
 
 
@@ -75,17 +76,20 @@ def faults(title: str, tables: list[dict[str, Any]], evaluate: Callable[[str], l
 
 @contextmanager
 def _fast():
-    """In the block virtual time passes as fast as the machine computes."""
+    """In the block virtual time passes as fast as the machine computes, though a page has slowed it down or paused it."""
     pace = kernel.pace()
-    speed = pace.speed
-    if not pace.virtual or speed is None:
+    speed, paused = pace.speed, pace.paused
+    if not pace.virtual:
         yield
         return
     pace.set_speed(None)
+    pace.resume()
     try:
         yield
     finally:
         pace.set_speed(speed)
+        if paused:
+            pace.pause()
 
 
 def _looks(table):
@@ -124,12 +128,15 @@ def _tried(exercise: Exercise, check: Check, seed: int, evaluate):
 
 
 def _plainer(sentence):
-    """A sentence for a student who has not defined the function yet; any other ``sentence`` as it is."""
+    """A sentence for a student who has not defined what is asked for; any other ``sentence`` as it is."""
     match = _MISSING.match(sentence)
     if match is None:
         return sentence
     missing = (match["hy"] or match["lisp"].rpartition(":")[2]).lower().replace("_", "-")
-    called = re.search(rf"\({re.escape(missing)}[\s)]", match["form"].lower().replace("_", "-"))
+    form = match["form"].lower().replace("_", "-")
+    if form == missing:
+        return f"There is no variable {missing} yet."
+    called = re.search(rf"\({re.escape(missing)}[\s)]", form)
     return sentence if called is None else f"There is no function {missing} yet."
 
 
