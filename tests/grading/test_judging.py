@@ -8,6 +8,7 @@ import pytest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.grading import drawings, expressions, forms, judging, paths, performing
+from cramhy_runtime.grading.exercise import Exercise, own_exercises
 from cramhy_runtime.grading.problems import ExerciseError
 from cramhy_runtime.grading.replay import Replay, WrongReport
 from cramhy_runtime.grading.told import Told
@@ -97,6 +98,16 @@ def test_a_line_beside_its_target_is_right_within_the_tolerance():
     moved = paths.lines("repeat 4 [ forward 2 left 90 ]", {}, (2.1, 2, 0))
     assert drawings.difference(SQUARE, moved, 0.15).missing == 0
     assert drawings.difference(SQUARE, moved, 0.05).missing > 3
+
+
+def test_a_circle_is_no_square():
+    """With the tolerance of the exercise. At 0.25 m a circle was one."""
+    circle = [(None, [(3 + 1.207 * math.cos(part / 20), 3 + 1.207 * math.sin(part / 20)) for part in range(127)])]
+    exercise = Exercise.read(own_exercises()["square"])
+    tolerance = exercise.checks[0].table["paper"]["tolerance"]
+    assert drawings.difference(SQUARE, circle, 0.25) == (0, None, 0, None)
+    found = drawings.difference(SQUARE, circle, tolerance)
+    assert min(found.missing, found.much) > judging.SLACK
 
 
 def test_colours_count_if_the_target_names_them():

@@ -96,6 +96,65 @@ def test_the_order_of_arguments_counts_where_it_means_something():
     assert shapes("(- a b c d e)") != shapes("(- a b c d d)")
 
 
+RACE = (SOLUTIONS / "race" / "race.lisp").read_text()
+RACE_OF_EVE = """
+(in-package :tut)
+(defun permutations (items)
+  (if (null items) (list nil)
+    (loop for item in items
+          append (loop for tail in (permutations (remove item items)) collect (cons item tail)))))
+(defun hypot (x y) (sqrt (+ (* x x) (* y y))))
+(defun length-of (way)
+  (loop for (a b) on way while b sum (hypot (- (first b) (first a)) (- (second b) (second a)))))
+(defun go-straight (x y)
+  (send-vel-cmd 0 (relative-angle-to (make-3d-vector x y 0) (value *turtle-pose*)))
+  (wait-duration 1.2)
+  (with-fields ((x0 x) (y0 y)) (value *turtle-pose*)
+    (send-vel-cmd (hypot (- x x0) (- y y0)) 0)
+    (wait-duration 1.2)))
+(defun race (points)
+  (top-level
+    (let* ((begin (with-fields (x y) (value *turtle-pose*) (list x y)))
+           (ways (mapcar (lambda (way) (cons begin way)) (permutations points)))
+           (best (first (sort ways (lambda (a b) (< (length-of a) (length-of b)))))))
+      (loop for (x y) in (rest best) do (go-straight x y)))))
+"""
+"""Another author's solution of the same exercise, with the same idea."""
+COPIES = {
+    "other words": [
+        ("(first ", "(car "),
+        ("(second ", "(cadr "),
+        ("(null points)", "(not points)"),
+        ("(expt (- x x0) 2)", "(* (- x x0) (- x x0))"),
+    ],
+    "numbers": [("1.008", "1.01"), ("1.1", "1.05")],
+    "printing": [("(turn-to goal)", '(progn (format t "turning") (turn-to goal))'), ("(top-level", "(top-level (print points)")],
+    "a helper": [
+        ("(sqrt (+ (expt (- x x0) 2) (expt (- y y0) 2)))", "(dist x y x0 y0)"),
+        ("(defun orders", "(defun dist (a b c d) (sqrt (+ (expt (- a c) 2) (expt (- b d) 2))))\n(defun orders"),
+    ],
+    "dead code": [
+        (
+            "(defun orders",
+            '(defun unused (a b) (let ((c (* a b))) (format t "~a" c) (if (> c 3) (list a b c) (list c b a))))\n(defun orders',
+        )
+    ],
+}
+
+
+@pytest.mark.parametrize("way", COPIES)
+def test_a_copy_that_was_worked_over_is_found_and_the_other_authors_solution_is_not(tmp_path, way):
+    copy = RACE
+    for old, new in COPIES[way]:
+        assert old in copy
+        copy = copy.replace(old, new)
+    for name in ("orders", "points", "point", "begin", "goal", "turn-to", "way-length", "shortest"):
+        copy = copy.replace(name, f"my-{name[::-1]}")
+    found = similar_pairs(folder(tmp_path, ann=RACE, bob=copy, eve=RACE_OF_EVE))
+    assert [(pair.one, pair.other) for pair in found] == [("ann", "bob")]
+    assert similar_pairs(tmp_path, least=0.25)[1:] == []
+
+
 def test_programs_in_hy_and_python_are_compared_too(tmp_path):
     one = "def draw(size):\n    for side in range(4):\n        drive(size)\n        turn(90 + side * 0)\n    return size\n"
     for name, text in (("a", one), ("b", one.replace("size", "laenge").replace("side", "i")), ("c", "print('hello', 1, 2, 3, 4, 5, 6)\n")):

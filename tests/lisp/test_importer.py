@@ -10,7 +10,8 @@ import sys
 import hy
 import pytest
 
-from cramhy_runtime.ground.conditions import SimpleProgramError, TypeError_, from_python
+from cramhy_runtime.ground.python_exceptions import from_python
+from cramhy_runtime.ground.conditions import SimpleProgramError, TypeError_
 from cramhy_runtime.ground.data import lisp_list
 from cramhy_runtime.languages.commonlisp.systems import importer
 

@@ -258,6 +258,6 @@ def test_an_exception_without_a_class_in_lisp_is_still_a_python_error(lisp):
 
 
 def _condition(lisp):
-    from cramhy_runtime.ground.conditions import from_python
+    from cramhy_runtime.ground.python_exceptions import from_python
 
     return from_python(LookupError("x"))

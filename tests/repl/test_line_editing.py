@@ -107,6 +107,16 @@ def test_tab_completes_the_name_of_a_file_in_a_string(prompt, tmp_path):
         terminal.expect('\n"my only plan.lisp"\n')
 
 
+def test_tab_as_the_first_key_knows_the_names_of_all_rooms(prompt):
+    """A prompt without options begins with Common Lisp alone."""
+    with prompt() as terminal:
+        terminal.expect("CL-USER> ")
+        terminal.press("(cpl:make-flu\t")
+        terminal.expect("make-fluent")
+        terminal.type(" :value 17)")
+        terminal.expect(r"#<FLUENT FLUENT-1 \[17\]>")
+
+
 def test_hy_says_what_is_open_and_keeps_forms_in_a_file_of_ours_alone(tmp_path):
     pytest.importorskip("readline")
     history = tmp_path / "hy"

@@ -6,6 +6,7 @@ Making the site takes half a minute of the processor, so `make soak` runs these;
 from __future__ import annotations
 
 import contextlib
+import functools
 import gzip
 import os
 import re
@@ -69,16 +70,21 @@ def served(folder):
         end()
 
 
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """The folder of a site, which the command has written. CRAMHY_SITE names one that is there already."""
+@functools.cache
+def written(folder):
+    """The folder of a site, which the command has written below ``folder``. CRAMHY_SITE names one that is there already."""
     if "CRAMHY_SITE" in os.environ:
         return Path(os.environ["CRAMHY_SITE"])
     node()
     pyodide()
-    out = tmp_path_factory.mktemp("site") / "out"
+    out = folder / "site"
     assert cli.main(["browser", "--out", str(out)]) == 0
     return out
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    return written(tmp_path_factory.getbasetemp())
 
 
 @pytest.fixture

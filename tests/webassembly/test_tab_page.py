@@ -260,7 +260,7 @@ def test_a_link_holds_a_file_which_is_shown_and_not_run_and_one_that_was_cut_is_
 def test_the_lesson_is_read_typed_copied_and_its_task_is_hinted_at_and_checked(visit):
     page = visit()
     assert page.locator("#lesson-page h2").inner_text() == "1. A turtle"
-    assert page.locator("#lesson-done").inner_text() == "0 of 1 tasks"
+    assert page.locator("#lesson-done").get_attribute("title") == "0 of 1 tasks are solved"
     page.get_by_role("button", name="Type it for me").first.click()
     wait_for(page, "#repl-out", "(start-ros-node")
     page.get_by_role("button", name="Copy into the editor").first.click()
@@ -292,7 +292,7 @@ def test_the_lesson_is_read_typed_copied_and_its_task_is_hinted_at_and_checked(v
     page.reload()
     page.locator("body[data-prompt=waits]").wait_for()
     page.locator("#lesson-page h2", has_text="2. Plans").wait_for()
-    assert page.locator("#lesson-done").inner_text() == "1 of 1 tasks"
+    assert page.locator("#lesson-done").get_attribute("title") == "1 of 1 tasks are solved"
 
 
 @pytest.mark.parametrize(
@@ -327,7 +327,7 @@ def test_the_page_speaks_the_language_of_the_system(visit):
     assert page.locator("html").get_attribute("lang") == "de"
     assert page.locator("#code-load").inner_text() == "Datei laden"
     assert page.locator("#repl-stop").get_attribute("title") == "Ctrl-C: die laufende Form beenden"
-    assert page.locator("#lesson-done").inner_text() == "0 von 1 Aufgaben"
+    assert page.locator("#lesson-done").get_attribute("title") == "0 von 1 Aufgaben sind gelöst"
     assert visit(locale="fr-FR").locator("#code-load").inner_text() == "Load file"
 
 
@@ -367,6 +367,21 @@ def test_everything_is_reached_by_the_keyboard_and_has_a_name(visit):
 def test_the_packages_of_the_editor_are_those_that_npm_fetches():
     fetched = json.loads((Path(__file__).parents[2] / "webassembly" / "package.json").read_text())["dependencies"]
     assert {name: version for name, version in fetched.items() if name != "pyodide"} == bundling.PACKAGES
+
+
+def test_the_licenses_of_what_is_in_the_editor_come_along():
+    text = (
+        bundling.licenses(pyodide_files.FETCHED)
+        if (pyodide_files.FETCHED / "esbuild").is_dir()
+        else pytest.skip("make pyodide fetches them")
+    )
+    assert [line for line in text.splitlines() if line in ("@codemirror/view", "@lezer/common", "crelt", "style-mod")] == [
+        "@codemirror/view",
+        "@lezer/common",
+        "crelt",
+        "style-mod",
+    ]
+    assert text.count("Permission is hereby granted") == text.count("THE SOFTWARE IS PROVIDED") >= 12
 
 
 def test_without_the_packages_of_the_editor_the_command_says_what_to_type(tmp_path):

@@ -25,6 +25,10 @@ PACKAGES = {
 """Names of packages of npm and their versions."""
 
 
+AUTHORS = ("@codemirror", "@lezer", "@marijn", "crelt", "style-mod", "w3c-keyname")
+"""The packages, and folders of packages, of which something is in the file."""
+
+
 class NoBundle(Exception):
     """The file cannot be made. The text says why and what to try."""
 
@@ -61,3 +65,11 @@ def bundle(node: str, folder: str | os.PathLike[str]) -> bytes:
     if done.returncode:
         raise NoBundle(f"esbuild did not make the page's editor. It said:\n{done.stderr.decode(errors='replace')[-3000:]}")
     return done.stdout
+
+
+def licenses(folder: str | os.PathLike[str]) -> str:
+    """The licenses of the packages in the file, as their authors want them passed on. folder: as for `check`. Errors: `NoBundle`."""
+    found = sorted(file for name in AUTHORS for file in (check(folder) / name).rglob("LICENSE"))
+    return (
+        "\n\n".join(f"{file.parent.relative_to(folder).as_posix()}\n\n{file.read_text(encoding='utf-8').strip()}" for file in found) + "\n"
+    )

@@ -4,6 +4,7 @@
 ``index.html``        the live page, with a prompt beside it, and a policy under which nothing but these files is loaded
 ``*.js``, ``*.css``   the page's modules; ``transport.js`` is that of a tab, and ``editor.js`` has CodeMirror in it
 ``course.json``       the pages of the course
+``licenses.txt``      of those whose work is in ``editor.js``
 ``worker.mjs``        the worker with Python; ``stacks.mjs`` is half of the kernel's back end
 ``packages.zst``      cramhy, Hy and the course, compiled by the Python that runs them, and Python's library
 ``pyodide/``          that Python; its large files are packed by gzip, since not every host does that
@@ -40,6 +41,10 @@ POLICY = (
     "img-src 'self' data: blob:; font-src 'self'; base-uri 'none'; form-action 'none'"
 )
 HAS_JSPI = "process.exit(typeof WebAssembly.Suspending === 'function' ? 0 : 1)"
+SCRIPTS = """<link rel="stylesheet" href="tab.css">
+<script defer src="old.js"></script>
+<script type="module" src="desk.js"></script>
+"""
 DESK = Path(__file__).with_name("desk.html")
 """What stands beside the live page: the lesson, the editor and the prompt."""
 
@@ -86,6 +91,7 @@ def write(out: str | os.PathLike[str], pyodide: str | os.PathLike[str]) -> Path:
         _write_packages(node, made)
         _write_page(made)
         _put(made, "editor.js", bundling.bundle(node, source.parent))
+        _put(made, "licenses.txt", bundling.licenses(source.parent).encode())
         _write_course(made)
         _write_offline(made)
         for file in sorted(each for each in made.rglob("*") if each.is_file()):
@@ -161,7 +167,7 @@ def _write_page(made):
     policy = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
     for before, after in (
         ('<meta charset="utf-8">', f'<meta charset="utf-8">\n{policy}'),
-        (script, f'<link rel="stylesheet" href="tab.css">\n<script type="module" src="desk.js"></script>\n{script}'),
+        (script, f"{SCRIPTS}{script}"),
         ("</header>\n", f"</header>\n{desk}"),
         ("<main ", '<div class="live">\n<main '),
         ("</main>\n", "</main>\n</div>\n"),

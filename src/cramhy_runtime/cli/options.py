@@ -334,8 +334,8 @@ def _add_replay(commands):
 
 def _add_browser(commands):
     browser = commands.add_parser("browser", help="write the course as static files, which run in a browser's tab, and show them")
-    browser.add_argument("--out", metavar="FOLDER", help="write them there: an empty folder, or that of an older site")
-    browser.add_argument("--serve", metavar="FOLDER", help="show those of that folder in a browser, until Ctrl-C")
+    browser.add_argument("--out", metavar="FOLDER", help="write them there: an empty folder, or that of an older site (none)")
+    browser.add_argument("--serve", metavar="FOLDER", help="show those of that folder in a browser, until Ctrl-C (none)")
     browser.add_argument("--port", type=_port, default=None, metavar="N", help="where --serve listens on this machine (a free port)")
     browser.add_argument(
         "--pyodide",

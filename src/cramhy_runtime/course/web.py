@@ -76,7 +76,7 @@ def as_html(text: str) -> str:
     try:
         import markdown
     except ImportError:
-        raise ImportError(f"The pages of the course become HTML with the package markdown. {install_command('docs')}") from None
+        raise ImportError(f"The pages of the course become HTML with the package markdown. {install_command('web')}") from None
     text = _PICTURE.sub(_picture, _LINK.sub(r"\1", re.sub(r"<!--.*?-->\n?", "", text, flags=re.S)))
     return markdown.markdown(text, extensions=["tables", "fenced_code"])
 

@@ -65,7 +65,7 @@ class Task(Generic[T]):
         self.owner: Any = None
         self._local: SimpleNamespace | None = None
         self.dynamic: Dynamic | None = None
-        self.handlers: Any = None  # of conditions, those in force: the ground's own
+        self.handlers: object = None  # of conditions, those in force: the ground's own
         self.result: T | None = None
         self.cancelled_delivered = False
         self.state = RUNNABLE

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import Condition, SimpleWarning
-from cramhy_runtime.ground.conditions import from_python
+from cramhy_runtime.ground.python_exceptions import from_python
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol
 from cramhy_runtime.ground.packages import is_symbol, near_names, symbol_name
 from cramhy_runtime.languages.commonlisp.evaluation.evaluator import PACKAGE, evaluate

@@ -28,16 +28,8 @@ from cramhy_runtime.cpl.statuses import FAILED as TASK_FAILED
 from ..cpl.task_variables import inherit
 from ..designators.classes import Designator
 from ..designators.equating import current_desig
-from cramhy_runtime.ground.conditions import (
-    DEBUGGER_HOOK,
-    Error,
-    enter_debugger,
-    error,
-    from_python,
-    handler_bind,
-    restart_case,
-    type_error,
-)
+from cramhy_runtime.ground.python_exceptions import from_python
+from cramhy_runtime.ground.conditions import DEBUGGER_HOOK, Error, enter_debugger, error, handler_bind, restart_case, type_error
 from cramhy_runtime.ground.data import Symbol, all_values, list_from, truth
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.source_places import circumstance

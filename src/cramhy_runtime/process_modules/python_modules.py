@@ -31,7 +31,7 @@ from ..designators.classes import Designator
 from ..designators.python_grounding import kind_goals
 from ..designators.python_kinds import Kind
 from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.conditions import from_python
+from cramhy_runtime.ground.python_exceptions import from_python
 from cramhy_runtime.ground.data import MultipleValues, Symbol, list_from
 from cramhy_runtime.ground.classes import register_class
 from cramhy_runtime.ground.packages import sym

@@ -14,7 +14,8 @@ from cramhy_runtime import kernel
 from cramhy_runtime.cpl.failures.failure_types import opened
 from cramhy_runtime.cpl.tasks.pausing import pause
 from ..cpl.task_variables import inherit
-from cramhy_runtime.ground.conditions import SimpleError, as_name, error, from_python
+from cramhy_runtime.ground.python_exceptions import from_python
+from cramhy_runtime.ground.conditions import SimpleError, as_name, error
 from cramhy_runtime.ground.data import Symbol, list_from
 from cramhy_runtime.ground.source_places import describe, locate
 from cramhy_runtime.ground.packages import near_names

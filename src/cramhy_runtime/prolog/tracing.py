@@ -19,7 +19,8 @@ from contextlib import contextmanager
 
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import Condition, HandlerExit, error, warn
+from cramhy_runtime.ground.catching import HandlerExit
+from cramhy_runtime.ground.conditions import Condition, error, warn
 from cramhy_runtime.ground.data import Cons, Keyword, list_from
 from cramhy_runtime.ground.output import trace_output
 

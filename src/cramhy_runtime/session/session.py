@@ -82,7 +82,7 @@ class Interruption(Exception):
 def quiet_collector():
     """Let the garbage collector leave the image alone, which lives as long as the process, and come less often: Lisp makes conses."""
     gc.freeze()
-    gc.set_threshold(50_000, 20, 20)
+    gc.set_threshold(30_000, 20, 20)
 
 
 class Session:

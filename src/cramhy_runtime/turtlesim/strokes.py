@@ -84,7 +84,8 @@ class Ink:
 
     def polylines(self) -> list[Polyline]:
         """[(colour, width, [(x, y), ...]), ...], in metres on the screen (y down), thinned out."""
-        pens, found, ending = list(self._table), [], {}
+        pens, found = list(self._table), []
+        ending: dict[tuple[float, float, int], list[Point]] = {}
         ends = self._ends
         for index, pen in enumerate(self._pens):
             if index % _TOGETHER == 0:

@@ -47,8 +47,7 @@ async function start() {
   const wanted = kept("part", "lesson");
   document.body.dataset.book = "lesson";
   show(PARTS.includes(wanted) ? wanted : "lesson");
-  if (!supported) {
-    byId("unfit").hidden = false;
+  if (!supported) { // old.js has told it
     tab.unfit();
     return;
   }

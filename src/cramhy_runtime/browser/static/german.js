@@ -22,7 +22,7 @@ export const GERMAN = {
   "Page of the lesson": "Seite der Lektion",
   "Language of the lesson": "Sprache der Lektion",
   "Text of the lesson": "Text der Lektion",
-  "{done} of {all} tasks": "{done} von {all} Aufgaben",
+  "{done} of {all} tasks are solved": "{done} von {all} Aufgaben sind gelöst",
   "Type it for me": "Für mich eintippen",
   "Copy into the editor": "In den Editor kopieren",
   "Answer": "Antwort",

@@ -59,7 +59,8 @@ export class Lesson {
     byId("lesson-after").disabled = this.number === this.pages.length - 1;
     const tasks = this.pages.flatMap(({ parts }) => parts.filter(({ kind }) => kind === "task"));
     const done = tasks.filter(({ name }) => this.progress.done.includes(name)).length;
-    setText(byId("lesson-done"), tasks.length ? t("{done} of {all} tasks", { done, all: tasks.length }) : "");
+    setText(byId("lesson-done"), tasks.length ? `${done}/${tasks.length}` : "");
+    byId("lesson-done").title = t("{done} of {all} tasks are solved", { done, all: tasks.length });
     const kinds = {
       text: (part) => marked("div", part.html, "text"),
       code: (part) => this.#code(part),

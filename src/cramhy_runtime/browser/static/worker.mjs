@@ -7,6 +7,7 @@ import { Folder } from "./folder.mjs";
 import { host } from "./stacks.mjs";
 
 const HOME = "/home/pyodide"; // is kept in the browser, between visits and when the worker is ended
+const KEEP = 2000; // ms between two times that files are kept while a form runs: somebody may close the tab. At the prompt all are kept
 const PACKAGES = "/lib/python3.14/site-packages";
 
 let page = null; // the port of the views
@@ -106,6 +107,7 @@ main`);
   await wanted;
   folder = await Folder.open(python.FS, HOME, (why) => tell("unkept", why));
   tell("files");
+  setInterval(() => waiting ?? folder.keep(), KEEP);
   const speed = new URLSearchParams(location.search).get("speed");
   python.FS.chdir(HOME);
   tell("imported");

@@ -14,17 +14,8 @@ from cramhy_runtime import kernel
 from cramhy_runtime.kernel.active import ACTIVE
 
 from cramhy_runtime.ground import condition_types as types
-from cramhy_runtime.ground.conditions import (
-    Cluster,
-    HandlerExit,
-    error,
-    make_condition,
-    matches,
-    offer_late,
-    raised_by_handler,
-    signal_condition,
-    type_error,
-)
+from cramhy_runtime.ground.catching import Cluster, HandlerExit
+from cramhy_runtime.ground.conditions import error, make_condition, matches, offer_late, raised_by_handler, signal_condition, type_error
 from cramhy_runtime.ground.data import lisp_list, list_from
 from cramhy_runtime.ground.source_places import locate
 from cramhy_runtime.ground.classes import class_name
@@ -139,7 +130,7 @@ class Handling(Cluster, BaseException):
         self.values, self.left = value, True
         raise self
 
-    def offer(self, condition: types.Condition, clusters: Any) -> None:
+    def offer(self, condition: types.Condition, clusters: tuple[object, object]) -> None:
         """Try the clauses of the form in order (cpl.md 4.5, points 4 and 5). Returns if all of them decline."""
         if self.task.cancelled_delivered and not self.ending:
             return
@@ -256,7 +247,7 @@ class Attempt(HandlerExit, Cluster):
             raise failure
         return None, failure
 
-    def offer(self, condition: Any, clusters: object) -> None:
+    def offer(self, condition: Any, clusters: tuple[object, object]) -> None:
         """Leave the attempt if ``condition`` is a plan failure."""
         if isinstance(condition, PlanFailure):
             self.condition = condition

@@ -25,7 +25,8 @@ from cramhy_runtime.kernel.images import Cell
 from cramhy_runtime.kernel.tasks import shield
 
 from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.conditions import SimpleTypeError, error, from_python, program_error
+from cramhy_runtime.ground.python_exceptions import from_python
+from cramhy_runtime.ground.conditions import SimpleTypeError, error, program_error
 from cramhy_runtime.ground.data import MultipleValues, Symbol, lisp_list, one, truth
 from cramhy_runtime.ground.equality import eql
 from cramhy_runtime.ground import functions

@@ -25,7 +25,8 @@ from cramhy_runtime import kernel
 from cramhy_runtime.kernel.active import ACTIVE
 
 from cramhy_runtime.ground import condition_types as types
-from cramhy_runtime.ground.conditions import error, from_python, type_error
+from cramhy_runtime.ground.python_exceptions import from_python
+from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import NO_VALUES, Cons, Keyword, Symbol, truth
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.source_places import locate

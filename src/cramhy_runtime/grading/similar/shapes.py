@@ -2,7 +2,8 @@
 
 In a shape, a name that the program defines or binds (a function, a variable, an argument) is a place: 1 for the first one in the form,
 2 for the second. Names of the language and of the course stay, because they are what a program does. Numbers, strings and characters are
-marks of their kinds. The arguments of ``+`` and of other operators whose order means nothing are sorted, as are the clauses of ``par``.
+marks of their kinds. Words that mean nearly the same, such as ``first`` and ``car``, are one. The arguments of ``+`` and of other operators
+whose order means nothing are sorted, as are the clauses of ``par``.
 Source of the idea: fingerprinting by trees, as in Baxter et al., "Clone Detection Using Abstract Syntax Trees" (1998).
 """
 
@@ -25,6 +26,11 @@ _LOCAL_FUNCTIONS = {"flet", "labels", "macrolet"}
 _ONE_VARIABLE = {"dolist", "dotimes", "for", "lazy-dolist"}
 _SEVERAL_VARIABLES = {"with-fields", "multiple-value-bind", "destructuring-bind", "with-desig-props", "with-slots"}
 _UNORDERED = {"+", "*", "and", "or", "par", "pursue", "try-all", "max", "min", "=", "eql", "equal"}
+_SYNONYMS = {
+    **{"first": "car", "second": "cadr", "third": "caddr", "fourth": "cadddr", "rest": "cdr"},
+    **{"null": "not", "endp": "not", "let*": "let", "setq": "setf", "prog": "let", "do*": "do", "eql": "equal", "eq": "equal"},
+}
+"""Words that somebody puts for others to hide a copy, and that mean nearly the same."""
 _QUOTING = {"declare", "in-package", "require", "export", "import"}
 
 
@@ -114,7 +120,7 @@ def _shape(form, own, places):
             return word
         if word in own or form in own or (word.startswith("?") and len(word) > 1):
             return f"#{places.setdefault(word, len(places) + 1)}"
-        return "number" if _NUMBER.match(word) else word
+        return "number" if _NUMBER.match(word) else _SYNONYMS.get(word, word)
     if form and isinstance(form[0], str) and form[0] in _UNORDERED:
         # sorted by what they look like without new places, so that the same arguments get the same places in any order
         rest = sorted(form[1:], key=lambda part: (_shape(part, own, _Known({})), _shape(part, own, _Known(places))))

@@ -27,7 +27,7 @@ from hy.reader.exceptions import LexException
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.conditions import from_python
+from cramhy_runtime.ground.python_exceptions import from_python
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import COMMON_LISP_USER
 from cramhy_runtime.ground.source_places import describe, excerpt, exception_position, file_of_text, frame_position, locate

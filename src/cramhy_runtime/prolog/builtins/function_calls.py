@@ -9,8 +9,8 @@ Plan failures and other conditions that are not errors pass. Source: prolog.md s
 from __future__ import annotations
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.catching import CATCHABLE, Case, caught
-from cramhy_runtime.ground.conditions import Error, HandlerExit, SimpleWarning, StorageCondition, type_error, undefined_function, warn
+from cramhy_runtime.ground.catching import CATCHABLE, Case, HandlerExit, caught
+from cramhy_runtime.ground.conditions import Error, SimpleWarning, StorageCondition, type_error, undefined_function, warn
 from cramhy_runtime.ground.data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, lisp_list, truth
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.source_places import exception_position

@@ -396,7 +396,8 @@ note_traits(
     "mod rem abs symbol-name make-symbol symbol-value symbol-function string intern-keyword elt aref svref char mapcar mapc "
     "mapcan member assoc find position count remove delete sort concatenate format princ prin1 print terpri write-string "
     "gensym error make-hash-table vector copy-list cadr cddr caar cdar caddr string-upcase string-downcase coerce reduce "
-    "cramhy::car-of-cons cramhy::cdr-of-cons cramhy::collect cramhy::loop-vector "
+    "cramhy::car-of-cons cramhy::cdr-of-cons cramhy::collect cramhy::loop-vector cramhy::slot-spec cramhy::structure-slot "
+    "cramhy::check-shape cramhy::key-table cramhy::key-value cramhy::key-given-p "
     "rplaca rplacd list-length subseq type-of class-of identity random sqrt sin cos atan expt exp log tan asin acos "
     "float gcd lcm isqrt logand logior logxor ash array-dimension make-array",
     "single",

@@ -165,12 +165,16 @@ class Tagbody(_Exit):
 
 
 class Env:
-    """A lexical environment: the inner scope first."""
+    """A lexical environment: the inner scope first.
 
-    __slots__ = ("parent", "variables", "functions", "blocks", "tags", "scope")
+    around: the next one outside that has functions, for few have. They are entered before an environment gets children.
+    """
+
+    __slots__ = ("parent", "around", "variables", "functions", "blocks", "tags", "scope")
 
     def __init__(self, parent=None, scope=None):
         self.parent = parent
+        self.around = None if parent is None else parent if parent.functions else parent.around
         self.scope = scope or (parent.scope if parent else FunctionScope())
         self.variables = {}
         self.functions = {}
@@ -198,14 +202,11 @@ class Env:
             env = env.parent
         return None
 
-    def function(self, name):  # so does this
-        env = self
-        while env is not None:
-            found = env.functions.get(name)
-            if found is not None:
-                return found
-            env = env.parent
-        return None
+    def function(self, name):
+        found, env = self.functions.get(name), self.around
+        while found is None and env is not None:
+            found, env = env.functions.get(name), env.around
+        return found
 
     def block(self, symbol):
         # nil as a block name is the key None, which a dictionary takes like any other

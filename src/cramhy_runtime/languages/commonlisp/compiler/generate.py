@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.data import DoubleFloat, Symbol, UndefinedFunction
 from cramhy_runtime.ground.dispatch.reached_slots import written_attribute
-from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym
+from cramhy_runtime.ground.packages import COMMON_LISP, CRAMHY, is_symbol, sym
 from . import core, nodes
 from .constants import Constants, float_model
 from .core import expression, word
@@ -247,9 +247,9 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
     # --------------------------------------------------------------------------------------------------------------- calls
 
     @staticmethod
-    def standard(symbol):
-        """Whether ``symbol`` names a function of Common Lisp, which nobody may redefine."""
-        return isinstance(symbol, Symbol) and symbol.package is COMMON_LISP and not isinstance(symbol.function, UndefinedFunction)
+    def standard(symbol, package=COMMON_LISP):
+        """Whether ``symbol`` names a function of Common Lisp, or of the other ``package``, which nobody may redefine."""
+        return isinstance(symbol, Symbol) and symbol.package is package and not isinstance(symbol.function, UndefinedFunction)
 
     def Call(self, node, destination):
         symbol, arguments = node.symbol, node.arguments
@@ -302,7 +302,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         model = self.through_object(node, symbol, models)
         if model is not None:
             return self.finish(model, node, destination)
-        if self.standard(symbol):
+        if self.standard(symbol) or self.standard(symbol, CRAMHY):
             model = self.standard_function(symbol, models, arguments)
         elif is_symbol(symbol) and not isinstance(symbol, Symbol):
             model = self.call("undefined", self.constant(symbol), *models)

@@ -32,7 +32,7 @@ class CallGenerator:
         """The call of a standard function with the values ``models`` of the nodes ``arguments``."""
         function = symbol.function
         python = getattr(function, "python", None)
-        if python is not None:
+        if hasattr(python, "__code__"):
             sorted_ = sorted_arguments(function, models, arguments)
             if sorted_ is not None:
                 return expression(word(self.constants.name("function.python", symbol)), *sorted_)

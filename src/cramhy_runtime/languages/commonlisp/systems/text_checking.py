@@ -8,7 +8,7 @@ Values of variables, and every other form, are compiled only.
 from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.conditions import from_python
+from cramhy_runtime.ground.python_exceptions import from_python
 from cramhy_runtime.ground.data import Cons
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import is_symbol, symbol_name

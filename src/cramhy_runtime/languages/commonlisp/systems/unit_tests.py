@@ -16,7 +16,8 @@ from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel import signals
 from cramhy_runtime.ground import packages
-from cramhy_runtime.ground.conditions import SimpleError, error, from_python
+from cramhy_runtime.ground.python_exceptions import from_python
+from cramhy_runtime.ground.conditions import SimpleError, error
 from cramhy_runtime.ground.data import list_from
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import sym

@@ -11,7 +11,8 @@ from itertools import islice
 from cramhy_runtime import kernel
 
 from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.conditions import SimpleStyleWarning, from_python, types
+from cramhy_runtime.ground.python_exceptions import from_python
+from cramhy_runtime.ground.conditions import SimpleStyleWarning, types
 from cramhy_runtime.ground.data import Symbol, UNBOUND, UndefinedFunction, list_from
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.source_places import describe, describe_frame, excerpt, locate

@@ -13,7 +13,7 @@ from __future__ import annotations
 import sys
 
 from cramhy_runtime.ground.classes import class_name
-from cramhy_runtime.ground.conditions import from_python
+from cramhy_runtime.ground.python_exceptions import from_python
 from cramhy_runtime.ground.packages import COMMON_LISP, printed, symbol_name, symbol_package
 from cramhy_runtime.ground.source_places import locate
 
