@@ -71,6 +71,25 @@ def test_the_form_at_the_cursor():
 
 
 @node
+def test_the_editor_of_the_tab_finds_the_same_forms():
+    """VS Code loads scripts of Node, a browser modules, so each has its own file: they agree at every tenth place of the course's files."""
+    tab = Path(cramhy_runtime.__file__).parent / "browser" / "static" / "forms.js"
+    texts = [TEXT, *(file.read_text(encoding="utf-8") for file in sorted(COURSE.rglob("*.hy"))[:6])]
+    program = f"""const f = require('./forms');
+        import("data:text/javascript;base64," + require('fs').readFileSync({json.dumps(str(tab))}).toString('base64')).then((t) => {{
+          const differ = [];
+          let looked = 0;
+          for (const text of {json.dumps(texts)})
+            for (let at = 0; at <= text.length; at += 10, looked++) {{
+              const both = [[f.formAt(text, at), f.packageAt(text, at)], [t.formAt(text, at)?.text ?? "", t.surroundings(text, at, "x.lisp").name ?? ""]];
+              if (JSON.stringify(both[0]) !== JSON.stringify(both[1])) differ.push([at, ...both]);
+            }}
+          console.log(JSON.stringify([looked > 300, differ]));
+        }});"""
+    assert run_node(program) == [True, []]
+
+
+@node
 def test_the_package_and_what_is_sent_to_the_prompt():
     text = json.dumps(TEXT)
     program = f"""const f = require('./forms');
