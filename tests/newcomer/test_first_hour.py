@@ -9,10 +9,12 @@ from __future__ import annotations
 import itertools
 import re
 import runpy
+import shutil
 import signal
 import subprocess
 import sys
 import time
+import urllib.request
 
 import pytest
 
@@ -78,6 +80,19 @@ def test_make_tutorial_types_both_lectures(newcomer):
     assert (newcomer.clone / "turtle.png").read_bytes().startswith(b"\x89PNG")
     assert sum(path.lstat().st_size for path in (newcomer.clone / ".venv").rglob("*")) < 100 * 2**20
     assert newcomer.start(".venv/bin/python -c 'import pytest'", stderr=subprocess.DEVNULL).wait(), "the tests' part is not needed"
+
+
+@takes_long
+def test_two_commands_show_the_course_in_a_tab(newcomer):
+    if not shutil.which("npm", path=newcomer.variables["PATH"]):
+        pytest.skip("npm is not installed")
+    assert "Wrote " in newcomer.run("make course")
+    with newcomer.terminal(".venv/bin/cramhy browser --serve course-site") as terminal:
+        address = terminal.expect(r"http://127\.0\.0\.1:\d+/").rpartition("http")[2]
+        with urllib.request.urlopen(f"http{address}", timeout=60) as page:
+            assert page.status == 200 and b"<html" in page.read() and page.headers["Content-Type"].startswith("text/html")
+        terminal.control_c()
+        assert terminal.status() == 0
 
 
 def mistakes(prompt):
