@@ -15,6 +15,25 @@ def chromium_path():
     return os.environ.get("CRAMHY_CHROMIUM") or next(filter(None, map(shutil.which, names)), None)
 
 
+class _Driver:
+    """The one driver of Playwright's of this process: a second one would not start while it runs."""
+
+    running, users = None, 0
+
+
+@contextmanager
+def _driver(playwright):
+    if not _Driver.users:
+        _Driver.running = playwright.sync_playwright().start()
+    _Driver.users += 1
+    try:
+        yield _Driver.running
+    finally:
+        _Driver.users -= 1
+        if not _Driver.users:
+            _Driver.running.stop()
+
+
 @contextmanager
 def chromium():
     """A Chromium of Playwright's, which ends with the block."""
@@ -22,7 +41,7 @@ def chromium():
     path = chromium_path()
     if path is None:
         pytest.skip("no Chromium is on the PATH to test the page in: apt-get install chromium, or set CRAMHY_CHROMIUM")
-    with playwright.sync_playwright() as driver:
+    with _driver(playwright) as driver:
         started = driver.chromium.launch(executable_path=path, headless=True, args=["--no-sandbox", "--disable-dev-shm-usage"])
         yield started
         started.close()

@@ -131,7 +131,7 @@ def test_objects_come_back_with_their_slots_and_are_not_initialised(lisp):
     assert read_again(lisp, "(make-instance 'box :size 3)", "(list (size *it*) (slot-boundp *it* 'lid) (notes))") == (
         "(3 NIL (:INITIALISED))"
     )
-    assert read_again(lisp, "(make-cup :owner 'me)", "*it*") == "#S(CUP :SOAK T :OWNER ME)"
+    assert read_again(lisp, "(make-cup :owner 'me)", "*it*") == "#S(CUP :FULL T :OWNER ME)"
     assert read_again(lisp, "(make-condition 'leak :what 'cup)", '(format nil "~a ~a" *it* (typep *it* \'leak))') == '"CUP leaks T"'
     assert (
         read_again(lisp, "(make-condition 'simple-error :format-control \"a ~a\" :format-arguments '(b))", "(princ-to-string *it*)")

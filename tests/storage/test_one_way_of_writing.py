@@ -29,6 +29,7 @@ RENAMERS = {"replace", "rename", "renames", "link"}
 EXCEPT = {
     ("browser/pyodide_files.py", "write_bytes"): "into the folder of a site that is being made, which appears as a whole",
     ("browser/site.py", "write_bytes"): "as above",
+    ("browser/packing.py", "write_bytes"): "into the memory of the Python that compiles a site's files",
     ("browser/site.py", "write_text"): "as above",
     ("browser/site.py", "copy2"): "as above",
     ("grading/cage/folders.py", "open"): "a folder, to allow it: nothing is written",

@@ -6,7 +6,6 @@ their own, and the other pages find cramhy's package.
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 from cramhy_runtime import storage
@@ -28,8 +27,17 @@ def work_folder(page: Page, language: str, top: Path) -> Path | None:
     place = top / ("lectures" if page.name in contents.GROWING else "turtle")
     place.mkdir(parents=True, exist_ok=True)
     if imports and not (place / HY_PACKAGE).exists():
-        shutil.copytree(_tutorials() / HY_PACKAGE, place / HY_PACKAGE, ignore=shutil.ignore_patterns("__pycache__"))
+        _copy(_tutorials() / HY_PACKAGE, place / HY_PACKAGE)
     return place
+
+
+def _copy(package, place):
+    with storage.Tree() as made:
+        for file in sorted(package.rglob("*")):
+            if file.is_file() and "__pycache__" not in file.parts:
+                target = place / file.relative_to(package)
+                made.folder(target.parent)
+                made.write(target, file.read_bytes())
 
 
 def _imports_hy_package(page):

@@ -21,7 +21,8 @@
                 (minusp '(integer #.most-negative-fixnum -1))
                 (non-plusp '(integer #.most-negative-fixnum 0))
                 (non-minusp '(integer 0 #.most-positive-fixnum))))
-      (t (cons kind range)))))
+      ((float rational real integer) (cons kind range))
+      (t (cons kind (subst (coerce 0 kind) 0 range)))))) ; limits of the kind itself, as the standard wants them
 
 (define-signed-types fixnum integer rational real float short-float single-float double-float long-float)
 

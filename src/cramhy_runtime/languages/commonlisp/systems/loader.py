@@ -79,7 +79,10 @@ def _compiling_folders():
     here = Path(__file__).parents[1]
     libraries, ground = here.parents[1] / "libraries", here.parents[1] / "ground"
     inside = [
-        Path(entry) for room in (here, here / "compiler", here / "faces", libraries, ground) for entry in os.scandir(room) if entry.is_dir()
+        Path(entry)
+        for room in (here, here / "compiler", here / "faces", libraries, ground)
+        for entry in os.scandir(room)
+        if entry.is_dir() and entry.name != "__pycache__"
     ]
     folders = [here, ground, here.parent / "operators", here.parent / "hy", *sorted(inside, key=lambda folder: folder.parts)]
     language = importlib.util.find_spec("cramhy")
