@@ -103,6 +103,13 @@ def test_a_command_in_the_middle_of_a_form_belongs_to_the_form(typed):
     assert "(1\n :NEXT)" in typed(["'(1", ":next", ")", ":quit"]).replace("(1 :NEXT)", "(1\n :NEXT)")
 
 
+@pytest.mark.parametrize("language", ["lisp", "hy"])
+@pytest.mark.parametrize(("line", "told"), [(":next", True), (":n", True), (":red", False), ("next", False)])
+def test_a_command_in_an_open_form_is_told_to_be_none(typed, language, line, told):
+    shown = typed(["(defn f []" if language == "hy" else "(defun f ()", line, "1)", ":quit"], language=language)
+    assert ("A form is open, and :next is taken for a part of it." in shown) is told
+
+
 def test_all_forms_typed_is_told_once(typed):
     shown = typed(["42", "(+ 1  2)", "(max 3 7 5)", "1", "1", ":quit"])
     assert shown.count("To see the next step, type :next") == 1

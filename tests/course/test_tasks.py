@@ -19,6 +19,8 @@ WRONG = [
     ("rectangle", "hy", "(+ width height)", "(+ width 3)"),
     ("turn-left", "lisp", "1.57", "-1.57"),
     ("turn-left", "hy", "1.57", "-1.57"),
+    ("turn-left", "lisp", "(sleep 1)", "nil"),
+    ("turn-left", "hy", "(sleep 1)", "None"),
     ("first-square", "lisp", "(ahead 2)", "(ahead 1)"),
     ("first-square", "hy", "(ahead 2)", "(ahead 1)"),
 ]

@@ -151,6 +151,14 @@ def test_forms_are_evaluated_in_the_debugger_and_errors_there_nest(type_in):
     ) in text
 
 
+@pytest.mark.parametrize("macro", ["(defun twice number (* 2 number))", "(let ((x 1 2)) x)", "(broken 1)"])
+def test_what_is_typed_in_the_debugger_is_no_part_of_the_macro_call_that_opened_it(type_in, macro):
+    text = type_in(f'(defmacro broken (x) (error "no ~a" x))\n(defun half (x) (/ x 2))\n{macro}\n(half)\n(car \'a)\nq\nq\nq\n')
+    later = text[text.index("0] (half)") :]
+    assert "HALF takes 1 argument." in later and "(car 'a)" in later
+    assert "in the expansion of the macro call" not in later
+
+
 @pytest.mark.parametrize(
     "bound, typed, shown",
     [

@@ -53,7 +53,11 @@ class Guided(Listener):
             if self._begins() and not self.level and (cue := self.guide.cue()):
                 self.say(cue)
             line = super().read_line(prompt)
-            if line is None or line is BROKEN_OFF or not self._begins():
+            if line is None or line is BROKEN_OFF:
+                return line
+            if not self._begins():
+                if (found := guide.command(line)) and line.lstrip().startswith(":"):
+                    self.say(f"; A form is open, and :{found[0]} is taken for a part of it. Close its parentheses, or press Ctrl-C.")
                 return line
             line = _PROMPT.sub("", line, count=1)  # copied from the page with what stands before it
             found = guide.command(line)
@@ -78,7 +82,7 @@ class Guided(Listener):
             if name != "check":
                 self.say(self.guide.do(name, argument))
             elif self.level or not at_the_prompt():
-                self.say("; The debugger is open. Leave it first: q leads back to the prompt. Then check.")
+                self.say("; The debugger is open. Leave it first: type q until the prompt from before is there. Then check.")
             else:
                 self.say(self.guide.check(self.evaluator()))
         except kernel.Terminated:

@@ -21,7 +21,7 @@ from cramhy_runtime.ground import conditions
 from cramhy_runtime.languages.commonlisp.printer.printing_support import with_readable_input
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.tools import backtrace
-from cramhy_runtime.languages.commonlisp.tools.advice import explanation
+from cramhy_runtime.languages.commonlisp.tools.advice import explanation, typed_meanwhile
 from cramhy_runtime.languages.commonlisp.tools.describing import describe
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of, condition_type
 from cramhy_runtime.ground.conditions import Condition
@@ -338,6 +338,7 @@ class Listener:
         output.write("\n".join(lines) + "\n")
         output.flush()
 
+    @typed_meanwhile()
     @circumstance.begins_with
     def answer(self, text, restarts, condition):
         """What the user typed in the debugger of ``condition``: the number or the name of a restart, a word, or a form."""

@@ -6,6 +6,7 @@ looked up: a variable whose stars were forgotten, a function of another package,
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from itertools import islice
 
 from cramhy_runtime import kernel
@@ -92,6 +93,13 @@ class LispReporter(kernel.reports.PlainReporter):
         output.fresh_line()
         output.write(f"An error ended {task.name}, and nobody waited for it:\n{explanation(condition)}\n")
         output.flush()
+
+
+@contextmanager
+def typed_meanwhile():
+    """In the body nothing is being compiled: what is typed in a debugger is no part of the form in which the debugger was opened."""
+    with binding(COMPILATION_UNIT, None):
+        yield
 
 
 def _expansion(condition, position):
