@@ -21,6 +21,7 @@ from pathlib import Path, PurePosixPath
 from xml.etree import ElementTree
 
 from .. import storage
+from ..ros import new_packages
 
 MOST_BYTES = 20_000_000  # of all files of a package
 MOST_FILES = 2_000
@@ -92,8 +93,8 @@ def _checked_name(name, lower=True):
 def _wrapped(name, loose):
     """The files of a new package ``name``: those of ``loose``, and what a package has to have."""
     found = {
-        "package.xml": PACKAGE_XML.format(name=name, depends="\n".join(f"  <depend>{each}</depend>" for each in ROS_DEPENDS)).encode(),
-        "CMakeLists.txt": CMAKE.format(name=name).encode(),
+        "package.xml": new_packages.manifest(name, ROS_DEPENDS, "Plans that were written in a browser.", ["depend"]).encode(),
+        "CMakeLists.txt": new_packages.cmake_lists(name, ROS_DEPENDS).encode(),
     }
     if any(file.endswith(".asd") for file in loose):  # they say themselves where the files of their systems are
         return {**found, **loose}
@@ -126,22 +127,6 @@ def _zipped(top, files):
     return buffer.getvalue()
 
 
-PACKAGE_XML = """<?xml version="1.0"?>
-<package format="2">
-  <name>{name}</name>
-  <version>0.1.0</version>
-  <description>Plans that were written in a browser.</description>
-  <maintainer email="user@example.org">user</maintainer>
-  <license>BSD-3-Clause</license>
-  <buildtool_depend>catkin</buildtool_depend>
-{depends}
-</package>
-"""
-CMAKE = """cmake_minimum_required(VERSION 3.0.2)
-project({name})
-find_package(catkin REQUIRED)
-catkin_package()
-"""
 ASD = """;; The files are loaded in this order. Change it if one needs another that stands below it.
 (defsystem {system}
   :depends-on ({depends})

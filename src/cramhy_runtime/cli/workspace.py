@@ -23,6 +23,8 @@ def _fail(text, status=1):
 
 def catkin_create_pkg(arguments):
     """``catkin_create_pkg NAME [DEPENDENCY ...]``: a folder with a manifest, in the current one."""
+    from cramhy_runtime.ros import new_packages
+
     names = [argument for argument in arguments if not argument.startswith("-")]
     if not names:
         return _fail("usage: catkin_create_pkg NAME [DEPENDENCY ...]", 2)
@@ -38,36 +40,13 @@ def catkin_create_pkg(arguments):
     with storage.Tree() as made:
         for sub in ("", "src", f"include/{name}"):
             made.folder(folder / sub)
-        made.write(folder / "CMakeLists.txt", _cmake(name, dependencies))
-        made.write(folder / "package.xml", _manifest(name, dependencies))  # with it, it is a package
+        made.write(folder / "CMakeLists.txt", new_packages.cmake_lists(name, dependencies))
+        made.write(folder / "package.xml", new_packages.manifest(name, dependencies))  # with it, it is a package
     print(
         f"Created file {name}/package.xml\nCreated file {name}/CMakeLists.txt\nCreated folder {name}/include/{name}\n"
         f"Created folder {name}/src\nSuccessfully created files in {folder}. Please adjust the values in package.xml."
     )
     return 0
-
-
-def _manifest(name, dependencies):
-    lines = [
-        '<?xml version="1.0"?>',
-        '<package format="2">',
-        f"  <name>{name}</name>",
-        "  <version>0.0.0</version>",
-        f"  <description>The {name} package</description>",
-        '  <maintainer email="user@example.org">user</maintainer>',
-        "  <license>unknown</license>",
-        "  <buildtool_depend>catkin</buildtool_depend>",
-    ]
-    for kind in ("build_depend", "build_export_depend", "exec_depend"):
-        lines += [f"  <{kind}>{dependency}</{kind}>" for dependency in dependencies]
-    return "\n".join([*lines, "</package>", ""])
-
-
-def _cmake(name, dependencies):
-    components = " ".join(dependencies)
-    return (
-        f"cmake_minimum_required(VERSION 3.0.2)\nproject({name})\nfind_package(catkin REQUIRED COMPONENTS {components})\ncatkin_package()\n"
-    )
 
 
 def catkin_make(arguments):
