@@ -349,7 +349,7 @@ class Listener:
         aborts = [restart for restart in restarts if symbol_name(restart.name) == "ABORT"]
         if aborts and prompt_words.word(text, prompt_words.BACK):
             return conditions.invoke_restart_interactively(aborts[0])
-        if aborts and prompt_words.word(text, prompt_words.LEAVING):
+        if aborts and prompt_words.word(text, prompt_words.OUT):
             return conditions.invoke_restart_interactively(aborts[-1])
         if prompt_words.word(text, prompt_words.BACKTRACE):
             return self.say("\n".join(backtrace.calls(condition, sys._getframe(1))))
