@@ -56,6 +56,11 @@ class TestLeaving:
         shown = type_in("(car 1)\n(exit :code 5)\n:here")
         assert type_in.status == 5 and ":HERE" not in shown
 
+    def test_a_key_of_the_debugger_typed_at_the_prompt_is_no_error(self, type_in):
+        shown = type_in("(car 1)\nq\nq\n:here")
+        assert "; This is the prompt: no debugger is open." in shown and shown.count("debugger invoked") == 1 and shown.endswith(":HERE\n")
+        assert answers(type_in("(defvar q 42)\nq"))[-1] == "42\n"
+
     def test_in_the_debugger_of_a_task_it_ends_the_plan_through_its_cleanup(self, type_in, backend):
         plan = "(top-level (par (unwind-protect (progn (break) 1) (print :cleaned)) (sleep 5)))"
         shown = type_in(f"{plan}\n(exit :code 7)\n:here", backend=backend)

@@ -231,6 +231,8 @@ class Listener:
                     leave()
                 if prompt_words.word(text, prompt_words.BACKTRACE):
                     return self.say("There is no error here. In the debugger, backtrace shows the calls that led to it.")
+                if prompt_words.word(text, prompt_words.KEYS):
+                    return self.say("; This is the prompt: no debugger is open. (exit) ends the session.")
             reader = self.session.reader(text)
             for form in self.session.forms(reader):
                 begun = None

@@ -19,6 +19,8 @@ BACK = ("a", "abort")
 """In the debugger: one level back."""
 OUT = ("q", *LEAVING)
 """In the debugger: back to the prompt, out of all levels. ``a`` and ``q`` are the keys of SLIME's debugger."""
+KEYS = ("q",)
+"""What is typed at the prompt by those who take it for the debugger."""
 HELP = ("help", "?")
 BACKTRACE = ("backtrace", "bt")
 
