@@ -9,7 +9,7 @@ import difflib
 from typing import NamedTuple
 
 from . import checking, contents, files, shown
-from .parts import Code, File, Page, Task, Text
+from .parts import Code, File, Page, Task, Text, text_in
 from .progress import Progress
 from .reading import PageError, page, pages
 from .shown import Style
@@ -44,7 +44,7 @@ def steps(wanted: Page, language: str) -> list[Step]:
     found, texts = [], []
     for part in wanted.parts:
         if isinstance(part, Text):
-            texts.append(part.markdown)
+            texts += filter(None, [text_in(part.markdown, language)])
         elif isinstance(part, Task) or getattr(part, language):
             found.append(Step(tuple(texts), part))
             texts = []
@@ -132,7 +132,7 @@ class Guide:
 
     def _task(self, task):
         solved = " (solved)" if task.name in self.progress.solved else ""
-        found = [self.style.bold(f"Task: {task.title}{solved}"), shown.text(task.markdown, self.style)]
+        found = [self.style.bold(f"Task: {task.title}{solved}"), shown.text(text_in(task.markdown, self.language), self.style)]
         if self.language in task.start:
             found += ["Begin with this, and change it:", shown.code(task.start[self.language], self.style)]
         return "\n\n".join(found)
@@ -214,7 +214,7 @@ class Guide:
             return "; There are no more hints. :hint begins with the first one again."
         self.hints += 1
         head = self.style.bold(f"Hint {self.hints} of {len(part.hints)}")
-        return f"{head}\n\n{shown.text(part.hints[self.hints - 1], self.style)}"
+        return f"{head}\n\n{shown.text(text_in(part.hints[self.hints - 1], self.language), self.style)}"
 
     def _write(self):
         if not isinstance(self.step.part, File):

@@ -10,6 +10,7 @@ a block with ``title="Begin with"``              in a task: the code to begin wi
 ``<!-- installed -->`` ... ``<!-- anywhere -->``  what only concerns those who read the page beside a terminal of their own; the course
                                                  leaves it out
 ``<!-- in the course`` ... ``-->``               text that the course has in its place
+``<!-- lisp -->`` or ``<!-- hy -->``             the paragraph below is for those who learn in this language
 ===============================================  ==========================================================================
 
 All else is text.
