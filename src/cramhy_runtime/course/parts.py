@@ -51,10 +51,14 @@ class Typed:
 
 @dataclass(frozen=True)
 class Code:
-    """A piece of a session. ``lisp``, ``hy``: what is typed in each language; empty if there is nothing in that one."""
+    """A piece of a session. ``lisp``, ``hy``: what is typed in each language; empty if there is nothing in that one.
+
+    ``apart``: those who learn in the other language do not even read it.
+    """
 
     lisp: tuple[Typed, ...] = ()
     hy: tuple[Typed, ...] = ()
+    apart: bool = False
 
 
 @dataclass(frozen=True)
