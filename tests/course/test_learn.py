@@ -270,11 +270,12 @@ def test_an_error_ends_what_is_typed_again(typed, tmp_path):
 
 def test_tasks_that_are_left_unsolved_are_told(typed):
     shown = typed([TASK["lisp"], ":next", ":page 1 10", ":quit"])
-    assert "The task is not solved yet: The seconds of a day. :back leads back to it." in shown
+    assert "You have not typed :check for this task: The seconds of a day. :back leads back to it." in shown
     end = shown[shown.index("step 10 of 10") :]
     assert "; Not solved yet: The seconds of a day (:page 1 4)\n; Not solved yet: Turn to the left (:page 1 8)\n" in end
     shown = typed([TASK["lisp"], "(* 24 60 60)", ":check", ":next", ":page 1 10", ":quit"])
-    assert "The seconds of a day (:page" not in shown and "is not solved yet" not in shown
+    assert "The seconds of a day (:page" not in shown and ":back leads back" not in shown
+    assert "The task is not solved yet: The seconds of a day." in typed([TASK["lisp"], "(* 24 60)", ":check", ":next", ":quit"])
 
 
 @pytest.mark.parametrize(
@@ -299,3 +300,62 @@ def test_remarks_are_filled_to_the_width_of_the_terminal():
 
     assert filled("; one two three four five six seven eight", Style(30)) == "; one two three four five six\n; seven eight"
     assert filled("short", Style(30)) == "short" and filled("    code " * 9, Style(30)) == "    code " * 9
+
+
+# ------------------------------------------------------------------------------------------------------------- what beginners run into
+
+
+@pytest.mark.parametrize("language", ["lisp", "hy"])
+def test_the_forms_of_a_step_are_typed_for_you(typed, language):
+    shown = typed([":type", ":t", ":type", ":type", TASK[language], ":type", ":quit"], language=language)
+    assert "(max 3 7 5)\n7\n" in shown and shown.count("To see the next step, type :next") == 1
+    assert "This step has nothing more to type." in shown and "A task is for you to type." in shown
+
+
+def test_the_mistake_on_purpose_is_typed_too_and_left(typed):
+    for out in ("q", "3", ":type"):
+        shown = typed([":page 1 3", ":type", out, ":type", ":quit"])
+        assert shown.count("To see the next step, type :next") == 1 and shown.count("debugger invoked on") == 2, out
+
+
+def test_a_form_that_fails_is_still_to_be_typed(typed):
+    lines = [":page 1 5", "(in-package :nowhere)", "q", '(ros-load:load-system "cram_my_beginner_tutorial" :cram-my-beginner-tutorial)']
+    before = typed([*lines, "(init)", "q", "(in-package :tut)", ":quit"])
+    assert "To see the next step" not in before
+    assert "To see the next step" in typed([*lines, "(in-package :tut)", "(init)", ":quit"])
+
+
+@pytest.mark.parametrize("language", ["lisp", "hy"])
+@pytest.mark.parametrize(
+    ("line", "told"), [("", "A form is open. Close it by )), or"), ("q", "and q is taken for a part of it"), ("7", None)]
+)
+def test_who_does_not_see_that_a_form_is_open_is_told(typed, language, line, told):
+    shown = typed(["(+ 1 (* 2 3", line, "))" if line != "q" else "(abs 1)))", ":quit"], language=language)
+    assert (told in shown) if told else ("A form is open" not in shown)
+
+
+@pytest.mark.parametrize("language", ["lisp", "hy"])
+def test_a_function_that_was_defined_again_is_typed_again_as_it_was_last(typed, tmp_path, language):
+    path = str(tmp_path / "learn.json")
+    define = "(defun f (x) (* {} x))" if language == "lisp" else "(defn f [x] (* {} x))"
+    typed(
+        [":n", define.format(2), "(setf *a* 1)" if language == "lisp" else "(setv a 1)", define.format(3), ":quit"],
+        language=language,
+        progress=Progress(path),
+    )
+    shown = typed([":replay", "(f 7)", ":quit"], None, language, Progress(path))
+    assert "; Typed again: 2 texts." in shown and "(* 2 x)" not in shown and "\n21\n" in shown
+
+
+def test_hints_go_on_where_they_were(typed):
+    shown = typed([TASK["lisp"], ":hint", ":next", ":back", ":hint", ":quit"])
+    assert shown.count("Hint 1 of 2") == 1 and shown.count("Hint 2 of 2") == 1
+
+
+LOAD = ['(ros-load:load-system "cram_my_beginner_tutorial" :cram-my-beginner-tutorial)', "(in-package :tut)", "(init)"]
+
+
+def test_another_node_that_drives_the_turtle_is_named(typed):
+    shown = typed([*LOAD, ":page 1 9", "(turtlesim:draw-square)", "(defun drive-square () 1)", ":check", ":quit"])
+    assert "The node /draw_square may drive the turtle, too. End it: rosnode kill /draw_square" in shown
+    assert "may drive the turtle" not in typed([*LOAD, ":page 1 9", "(defun drive-square () 1)", ":check", ":quit"])

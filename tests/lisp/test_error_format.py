@@ -35,7 +35,7 @@ EXPANSION = [
   at plan.lisp:2:3
       (dolist x '(1 2)
       ^
-  It is written (dolist (variable list [result]) form...).""",
+  It is written (dolist (variable list [result]) form...), for example (dolist (x '(1 2 3)) (print x))""",
     ),
     (
         "(defun f (x)\n  (cond (= x 1) 2))",
@@ -135,7 +135,7 @@ COMPILATION = [
   at plan.lisp:2:3
       (24 * 60 * 60))
       ^
-  The name of the function comes first: (* 24 60 60)""",
+  The name of the function comes first: (* 24 ...)""",
     ),
     (
         '(defvar *it*\n  (1 "a" x))',

@@ -10,7 +10,7 @@ import re
 from typing import NamedTuple
 
 from . import checking, contents, files, shown
-from .parts import Code, File, Page, Task, Text, text_in
+from .parts import Code, File, Page, Task, Text, Typed, text_in
 from .progress import Progress
 from .reading import PageError, page, pages
 from .replay import Replay
@@ -18,6 +18,7 @@ from .shown import Style
 
 COMMANDS = {
     "next": ("n", "the next step, or the next page"),
+    "type": ("t", "type the next form of this step for you"),
     "back": ("b", "the step before"),
     "again": ("a", "this step, shown again"),
     "hint": ("h", "the next hint for the task"),
@@ -33,6 +34,9 @@ COMMANDS = {
 _SHORT = {short: name for name, (short, _) in COMMANDS.items() if short}
 WITH_ARGUMENT = ("page",)
 _WITHOUT_PARENTHESES = re.compile(r"\s*[-+*/](?:\s+-?\d[\d.]*)+\s*")
+_OF_DEBUGGER = re.compile(r"\d+\] ")
+ERROR = "debugger invoked"
+"""In the answer of a form that a page shows to fail."""
 OVER = "; To see the next step, type :next"
 
 
@@ -84,6 +88,18 @@ def meant(line: str) -> str | None:
     return f"; There is no command {first}. Did you mean :{near[0]}?" if near and not arguments else None
 
 
+def told_of_open_form(lines: list[str]) -> str | None:
+    """What to say when a form is open, and the last of ``lines`` is empty, a command, or was meant for the debugger."""
+    line, text = lines[-1].strip(), "\n".join(lines)
+    found = command(line) if line.startswith(":") else None
+    if line and found is None and line.lower() not in ("q", "help", "?", "exit"):
+        return None
+    taken = f", and {f':{found[0]}' if found else line} is taken for a part of it" if line else ""
+    count = text.count("(") - text.count(")")
+    close = f"Close it by {')' * count}" if 0 < count < 10 else "Close its parentheses"
+    return f"; A form is open{taken}. {close}, or press Ctrl-C to begin anew."
+
+
 class Guide:
     """The way through the page ``name`` in ``language``, "lisp" or "hy".
 
@@ -96,8 +112,10 @@ class Guide:
         self.place = min(progress.steps.get(name, 0), len(self.steps) - 1)
         self.leaves_for: str | None = None
         self.over = False
-        self.hints = 0
-        self._waiting: list[str] = []  # what is still to be typed of this step
+        self._hints: dict[int, int] = {}  # how many hints of a step were shown, by its place
+        self._checked = False  # whether the task of this step was checked since the step is shown
+        self._waiting: list[Typed] = []  # what is still to be typed of this step
+        self._read: Typed | None = None  # which of them is being answered
         self._cue: str | None = None
         self.replay = Replay(self._typed_before())
         self._arrived()
@@ -115,10 +133,10 @@ class Guide:
         return self.steps[self.place]
 
     def _arrived(self):
-        self.hints = 0
         part = self.step.part
-        self._waiting = [_squeezed(typed.form) for typed in getattr(part, self.language)] if isinstance(part, Code) else []
-        self._cue = None
+        self._waiting = list(getattr(part, self.language)) if isinstance(part, Code) else []
+        self._read = self._cue = None
+        self._checked = False
         self.progress.page = self.page.name
         self.progress.steps[self.page.name] = self.place
         self.progress.keep()
@@ -167,7 +185,7 @@ class Guide:
         if isinstance(part, File):
             return "; :next writes this file and goes on. You can also write it yourself, with an editor."
         if self.place + 1 < len(self.steps):
-            return "; Type what stands behind the prompts. :next goes on, and :help shows all commands."
+            return "; Type what stands behind the prompts, or :type does. :next goes on, and :help tells the rest."
         after = self._after()
         if after is None:
             return self._with_unsolved("; This is the end of the course. :pages shows all pages.")
@@ -196,18 +214,27 @@ class Guide:
             self._cue = (
                 f"; Lisp took each of these words for a form of its own. A call has parentheses around it: ({' '.join(text.split())})"
             )
-        if not self._waiting:
-            return
-        squeezed = _squeezed(text)
-        if squeezed in self._waiting:
-            self._waiting.remove(squeezed)
-            if not self._waiting:
-                self._cue = OVER
+        self._read = next((typed for typed in self._waiting if _squeezed(typed.form) == _squeezed(text)), None)
+
+    def failed(self) -> None:
+        """What was typed last has failed, or was ended by Ctrl-C."""
+        self.replay.failed()
+        if self._read is not None and ERROR in self._read.answer:  # as it should
+            self._waiting.remove(self._read)
+        self._read = None
 
     def cue(self) -> str | None:
         """What to say before the next prompt, once."""
         if self.replay.was_answered():
             self.progress.keep()
+        some = bool(self._waiting)
+        if self._read is not None:
+            self._waiting.remove(self._read)
+            self._read = None
+        while self._waiting and _OF_DEBUGGER.match(self._waiting[0].prompt):  # it was left in another way than the page shows
+            self._waiting.pop(0)
+        if some and not self._waiting:
+            self._cue = OVER
         cue, self._cue = self._cue, None
         return cue
 
@@ -222,7 +249,8 @@ class Guide:
         if isinstance(self.step.part, File):
             said = [self._provide(over=False)]
         elif isinstance(self.step.part, Task) and self.step.part.name not in self.progress.solved:
-            said = [f"; The task is not solved yet: {self.step.part.title}. :back leads back to it."]
+            why = "The task is not solved yet" if self._checked else "You have not typed :check for this task"
+            said = [f"; {why}: {self.step.part.title}. :back leads back to it."]
         if self.place + 1 < len(self.steps):
             self.place += 1
             self._arrived()
@@ -251,12 +279,22 @@ class Guide:
         part = self.step.part
         if not isinstance(part, Task):
             return "; Only tasks have hints, and this step is not one. :next goes on."
-        if self.hints == len(part.hints):
-            self.hints = 0
+        count = self._hints.get(self.place, 0)
+        if count == len(part.hints):
+            self._hints[self.place] = 0
             return "; There are no more hints. :hint begins with the first one again."
-        self.hints += 1
-        head = self.style.bold(f"Hint {self.hints} of {len(part.hints)}")
-        return f"{head}\n\n{shown.text(text_in(part.hints[self.hints - 1], self.language), self.style)}"
+        self._hints[self.place] = count + 1
+        head = self.style.bold(f"Hint {count + 1} of {len(part.hints)}")
+        return f"{head}\n\n{shown.text(text_in(part.hints[count], self.language), self.style)}"
+
+    def _type(self):
+        part = self.step.part
+        if self._waiting:
+            self.replay.type(self._waiting[0].text)
+            return ""
+        if isinstance(part, Task):
+            return "; A task is for you to type. :hint gives a hint."
+        return "; This step has nothing more to type. :next goes on."
 
     def _write(self):
         if not isinstance(self.step.part, File):
@@ -329,12 +367,14 @@ class Guide:
         part = self.step.part
         if not isinstance(part, Task):
             return "; Only tasks are checked, and this step is not one. :next goes on."
+        self._checked = True
         found = checking.check(part.name, language=self.language, evaluate=evaluate)
         if found["passed"]:
             self.progress.solved.add(part.name)
             self.progress.keep()
             return "\n".join([*self._filled(found["told"]), OVER])
-        hint = "; :hint gives a hint." if self.hints < len(part.hints) else "; :hint shows the hints again."
+        more = self._hints.get(self.place, 0) < len(part.hints)
+        hint = "; :hint gives a hint." if more else "; :hint shows the hints again."
         return "\n".join(["Not yet.", *self._filled(found["told"]), hint])
 
     def _filled(self, texts):

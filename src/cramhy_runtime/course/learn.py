@@ -51,7 +51,7 @@ class Guided(Listener):
             self._greeted = True
             self.tell(self.guide.greeting())
         if self.failed():
-            self.guide.replay.failed()
+            self.guide.failed()
         while not self.guide.over:
             if self._begins() and not self.level and (cue := self.guide.cue()):
                 self.tell(cue)
@@ -63,8 +63,8 @@ class Guided(Listener):
             if line is None or line is BROKEN_OFF:
                 return line
             if not self._begins():
-                if (found := guide.command(line)) and line.lstrip().startswith(":"):
-                    self.tell(f"; A form is open, and :{found[0]} is taken for a part of it. Close its parentheses, or press Ctrl-C.")
+                if told := guide.told_of_open_form([*self.input.before, line]):
+                    self.tell(told)
                 return line
             line = _PROMPT.sub("", line, count=1)  # copied from the page with what stands before it
             found = guide.command(line)
@@ -91,7 +91,8 @@ class Guided(Listener):
             if self.ctrl_c_came():
                 kernel.interrupt()
             if name != "check":
-                self.tell(self.guide.do(name, argument))
+                if told := self.guide.do(name, argument):
+                    self.tell(told)
             elif self.level or not at_the_prompt():
                 self.tell("; The debugger is open. Leave it first: type q. Then check.")
             else:
@@ -108,12 +109,12 @@ class Guided(Listener):
         self.guide.typed(text)
 
     def announce(self, condition: Any, restarts: list[Any]) -> None:
-        self.guide.replay.failed()
+        self.guide.failed()
         super().announce(condition, restarts)
         self.tell("; q leads back to the prompt.")
 
     def forget_interrupt(self) -> None:
-        self.guide.replay.failed()
+        self.guide.failed()
         super().forget_interrupt()
 
     def failed(self) -> bool:

@@ -5,6 +5,8 @@ A text is kept once it has been answered. One that led into the debugger, or was
 
 from __future__ import annotations
 
+import re
+
 MOST = 300
 """Texts that are kept for a page."""
 LONGEST = 20_000
@@ -17,23 +19,28 @@ class Replay:
     def __init__(self, texts: list[str]):
         self.texts, self.earlier = texts, list(texts)
         self._coming: list[str] = []
-        self._typed_again = False  # whether the line that was read last came from here
+        self._again = False  # whether the line that was read last is of an earlier session
         self._read: str | None = None
+
+    def type(self, text: str) -> None:
+        """Let the lines of ``text`` come, as if the student typed them."""
+        self._coming = text.split("\n")
 
     def begin(self) -> int:
         """Let the lines of the earlier texts come; the number of these texts."""
-        count, self.earlier, texts = len(self.earlier), [], self.earlier
-        self._coming = [line for text in texts for line in text.split("\n")]
-        return count
+        texts, self.earlier = self.earlier, []
+        self.type("\n".join(texts))
+        self._again = True
+        return len(texts)
 
     def line(self) -> str | None:
         """The next line of an earlier text; ``None`` if the student is to type one."""
-        self._typed_again = bool(self._coming)
+        self._again = self._again and bool(self._coming)
         return self._coming.pop(0) if self._coming else None
 
     def was_read(self, text: str) -> None:
         """A whole text was read, and is answered now."""
-        self._read = None if self._typed_again or len(text) > LONGEST else text
+        self._read = None if self._again or len(text) > LONGEST else text
 
     def failed(self) -> None:
         """The text that was read last is not to be kept, and no other one is to come."""
@@ -41,9 +48,20 @@ class Replay:
         self._coming.clear()
 
     def was_answered(self) -> bool:
-        """The prompt is there again. Whether a text was added to ``texts``."""
+        """The prompt is there again. Whether ``texts`` has changed: a text was added, or a function has another definition."""
         text, self._read = self._read, None
-        if text is None or len(self.texts) >= MOST:
+        if text is None:
             return False
-        self.texts.append(text)
-        return True
+        defined = _defined(text)
+        places = [place for place, other in enumerate(self.texts) if defined and _defined(other) == defined]
+        if places:
+            self.texts[places[0]] = text
+        elif len(self.texts) < MOST:
+            self.texts.append(text)
+        return bool(places) or self.texts[-1] is text
+
+
+def _defined(text):
+    """The name of the function that ``text`` defines, or ``None``."""
+    match = re.match(r"\s*\((?:defun|defn)\s+([^\s()\[\]]+)", text, re.I)
+    return match and match[1].lower()

@@ -141,8 +141,9 @@ class Listener:
         return "... " if opened is None else opened.prompt()
 
     def remember(self, text):
-        """Keep ``text``, whole forms, in the history of what was typed. The number of a restart means nothing later."""
-        if isinstance(self.input, Lines) and not (self.level and text.strip().isdigit()):
+        """Keep ``text``, whole forms, in the history of what was typed. The number of a restart, and the way out, mean nothing later."""
+        of_debugger = self.level and (text.strip().isdigit() or prompt_words.word(text, (*prompt_words.OUT, *prompt_words.BACK)))
+        if isinstance(self.input, Lines) and not of_debugger:
             self.input.remember(text)
 
     def read_line(self, prompt):

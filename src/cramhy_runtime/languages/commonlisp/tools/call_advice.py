@@ -22,8 +22,8 @@ def of_head(form, position) -> str | None:
     if not operators:
         return f"In a call the name of the function comes first. A list that is no call has a quote: '{prin1_to_string(form)}"
     name = operators[0]
-    arguments = [each for each in elements if each is not name]
-    return f"The name of the function comes first: ({' '.join([name.name.lower(), *map(prin1_to_string, arguments)])})"
+    first = next(each for each in elements if each is not name)
+    return f"The name of the function comes first: ({name.name.lower()} {prin1_to_string(first)} ...)"
 
 
 def glued(token: str) -> str | None:
