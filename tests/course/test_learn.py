@@ -359,3 +359,10 @@ def test_another_node_that_drives_the_turtle_is_named(typed):
     shown = typed([*LOAD, ":page 1 9", "(turtlesim:draw-square)", "(defun drive-square () 1)", ":check", ":quit"])
     assert "The node /draw_square may drive the turtle, too. End it: rosnode kill /draw_square" in shown
     assert "may drive the turtle" not in typed([*LOAD, ":page 1 9", "(defun drive-square () 1)", ":check", ":quit"])
+
+
+@pytest.mark.parametrize(("page", "step", "language", "shown_whole"), [(1, 5, "lisp", False), (7, 7, "lisp", True)])
+def test_many_lines_of_the_log_are_cut_where_a_step_is_shown(typed, page, step, language, shown_whole):
+    shown = typed([f":page {page} {step}", ":quit"], language=language)
+    shown = shown[shown.index(f"Page {page}, step {step}") :]
+    assert ("[... some lines of the log]" in shown and "INFO]" not in shown) if not shown_whole else "some lines of the log" not in shown

@@ -35,6 +35,9 @@ _SHORT = {short: name for name, (short, _) in COMMANDS.items() if short}
 WITH_ARGUMENT = ("page",)
 _WITHOUT_PARENTHESES = re.compile(r"\s*[-+*/](?:\s+-?\d[\d.]*)+\s*")
 _OF_DEBUGGER = re.compile(r"\d+\] ")
+_LOG = re.compile(r"(?:^\[\([A-Z].*\) INFO\].*\n){3,}", re.M)
+_SHORT_LOG = "[... some lines of the log]\n"
+"""What a step shows in the place of many lines of the log; they come when the form is typed."""
 ERROR = "debugger invoked"
 """In the answer of a form that a page shows to fail."""
 OVER = "; To see the next step, type :next"
@@ -160,7 +163,9 @@ class Guide:
         part = self.step.part
         if isinstance(part, Code):
             typed = getattr(part, self.language)
-            found.append(shown.code("".join(f"{each.prompt}{each.form}\n{each.answer}" for each in typed), self.style))
+            found.append(
+                shown.code("".join(f"{each.prompt}{each.form}\n{_LOG.sub(_SHORT_LOG, each.answer)}" for each in typed), self.style)
+            )
         elif isinstance(part, File):
             found.append(self._file(*getattr(part, self.language)))
         elif isinstance(part, Task):
