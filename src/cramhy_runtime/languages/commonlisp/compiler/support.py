@@ -52,7 +52,7 @@ from cramhy_runtime.ground.data import (
     one,
     truth,
 )
-from cramhy_runtime.ground.hash_tables import value_and_presence, value_in_table
+from cramhy_runtime.ground.hash_tables import HashTable, value_and_presence, value_in_table
 from cramhy_runtime.ground.keyword_calls import keyword_calls
 from cramhy_runtime.ground.dynamic import Bindings, bind, unbind
 from cramhy_runtime.ground.functions import function_of
@@ -377,6 +377,7 @@ NAMESPACE = {
     "Lunwrapped": unwrapped,
     "Lratio": Fraction,
     "Lcomplex": complex_,
+    "Lhash_table": HashTable,
     "Lgethash": value_in_table,
     "Lgethash_values": value_and_presence,
     "Ldivmod": divmod,

@@ -159,7 +159,7 @@ class Writer:
             return {
                 "new": number,
                 "table": value.test,
-                "entries": [[self.write(key, depth), self.write(item, depth)] for key, item in value.entries.values()],
+                "entries": [[self.write(key, depth), self.write(item, depth)] for key, item in value.items()],
             }
         if isinstance(value, type) or not is_data(cls):
             name = function_name(value) if callable(value) and not isinstance(value, type) else None
