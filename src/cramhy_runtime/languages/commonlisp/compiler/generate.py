@@ -15,7 +15,7 @@ from cramhy_runtime.ground.packages import COMMON_LISP, CRAMHY, is_symbol, sym
 from . import core, nodes
 from .constants import Constants, float_model
 from .core import expression, word
-from .destinations import EFFECT, FIRST_OF_VALUES, NONE, RAW, TRUE, VALUE, VALUES, Destination
+from .destinations import EFFECT, FIRST_OF_VALUES, NONE, RAW, RETURN_TUPLE, TRUE, VALUE, VALUES, Destination
 from .facts import study, walk
 from .generate_calls import GETHASH, SLOT_VALUE, CallGenerator, slot_named_by
 from .generate_exits import ERROR, ExitGenerator
@@ -105,7 +105,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         if kind == "value":
             return model
         if kind == "return":
-            self.emit(word("return"), model)
+            self.emit(word("return"), self.tuple_of_values(model) if destination is RETURN_TUPLE else model)
         elif kind == "assign":
             self.assign(destination.name, model)
         elif not pure:

@@ -18,6 +18,7 @@ from ..objects.slots import named_slot
 from . import core, nodes
 from .core import NONE, TRUE, List, Tuple, expression, word
 from .destinations import FIRST_OF_VALUES
+from .several_values import gives_tuple, values_calls
 from .destinations import VALUES as ALL_VALUES
 from .arithmetic.operations import AND, DOT, IF, INT_CLASS, IS, IS_NOT, SETX, class_of
 
@@ -245,6 +246,13 @@ class CallGenerator:
         if made is not None:
             self.emit(word("setv"), target, made)
             return
+        if len(names) > 1 and node.__class__ is nodes.Call and gives_tuple(node.symbol):
+            function = expression(DOT, self.constant(values_calls(node.symbol)), word("call"))
+            call = self.positioned(expression(function, *self.arguments(node.arguments)), node)
+            values = word(self.temporary())
+            fits = expression(word("="), self.call("len", expression(SETX, values, call)), len(names))
+            self.emit(word("setv"), target, expression(IF, fits, values, self.call("first_of", values, len(names))))
+            return
         value = self.gen(node, ALL_VALUES)
         if len(names) == 1:
             self.emit(word("setv"), target, self.first_value(value))
@@ -253,6 +261,16 @@ class CallGenerator:
         several = expression(IS, class_of(expression(SETX, values, value)), word("LMultipleValues"))
         fits = expression(AND, several, expression(word("="), self.call("len", values), len(names)))
         self.emit(word("setv"), target, expression(IF, fits, values, self.call("spread", values, len(names))))
+
+    def tuple_of_values(self, model):
+        """A tuple of all values of ``model``."""
+        if model.__class__ is not core.Expression:
+            return self.call("all_values", model) if model.__class__ is core.Symbol and model not in (NONE, TRUE) else Tuple([model])
+        if model[0] == "LMultipleValues":
+            return model[1]
+        if model[0] == IF:
+            return expression(IF, model[1], *map(self.tuple_of_values, model[2:]))
+        return self.call("all_values", model)
 
     def values_in_place(self, names, node):
         """A Python tuple of as many values of ``node``, a call of a function that gives them, as there are ``names``; or ``None``."""

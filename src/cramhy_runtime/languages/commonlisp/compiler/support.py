@@ -65,6 +65,7 @@ from ..objects.slots import named_slot
 from cramhy_runtime.ground.packages import intern, keyword, printed
 from ..syntax.backquote import Comma
 from .declared_types import checked
+from .several_values import beside, first_of, values_calls
 
 
 class Cell:
@@ -354,6 +355,9 @@ NAMESPACE = {
     "Lbudget": budget,
     "Lnext_method_exists": next_method_exists,
     "Lmaker": maker,
+    "Lvalues_calls": values_calls,
+    "Lbeside": beside,
+    "Lfirst_of": first_of,
     "Lnamed_slot": named_slot,
     "Lkey_parser": key_parser,
     "Lkeyword_calls": keyword_calls,
