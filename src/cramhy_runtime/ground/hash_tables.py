@@ -1,9 +1,9 @@
 """Hash tables: Python dictionaries under the keys of ``ground/equality.py``.
 
-An entry is found by the hash key of its key under the table's test, and keeps the key itself, as the program sees it. Entries
-stay in the order in which they were first stored, so that two runs of a program see the same order (SBCL's is the same as long
-as nothing is removed). Functions that walk a table walk a snapshot and leave out what was removed meanwhile, so the current
-entry, or any other, may be removed on the way.
+A value is found by the hash key of its key under the table's test. Most keys are their own hash keys; of the others the table keeps
+the key itself, as the program sees it. Entries stay in the order in which they were first stored, so that two runs of a program see
+the same order (SBCL's is the same as long as nothing is removed). Functions that walk a table walk the keys of a snapshot and leave out
+what was removed meanwhile, so the current entry, or any other, may be removed on the way.
 
 A table made with ``:weakness`` does not keep its keys (or values) alive, where Python can refer to them weakly: symbols,
 instances and arrays, but not conses, numbers and strings. `sxhash` gives a number for tables that programs write themselves.
@@ -31,6 +31,7 @@ hash-table-rehash-size hash-table-rehash-threshold sxhash
 EXTENSION_NAMES = "hash-table-weakness hash-table-synchronized-p"
 """Names of package SB-EXT."""
 
+_NOTHING = object()
 _TESTS = {eq: "EQ", eql: "EQL", equal: "EQUAL", equalp: "EQUALP"}
 _BY_KEY = ("KEY", "KEY-AND-VALUE", "KEY-OR-VALUE")
 _BY_VALUE = ("VALUE", "KEY-AND-VALUE", "KEY-OR-VALUE")
@@ -40,7 +41,10 @@ class HashTable:
     """A hash table; for Python it is a mapping: ``table[key]``, ``key in table``, ``len(table)``, ``for key in table``.
 
     test: "EQ", "EQL", "EQUAL" or "EQUALP", or a `UserTest`. weakness: ``None`` or a keyword name such as "KEY". size: what the program
-    asked for; the table grows as it likes. ``plain``: the classes of keys that are their own `hash_key`, which then need not be called.
+    asked for; the table grows as it likes.
+
+    ``entries``: hash key → value. ``originals``: hash key → key, where these two differ. ``plain``: the classes of keys that are their own
+    `hash_key`. So compiled code finds and stores the values of such keys in ``entries`` itself.
     """
 
     lisp_name = "HASH-TABLE"
@@ -48,6 +52,7 @@ class HashTable:
         "test",
         "weakness",
         "entries",
+        "originals",
         "hash_key",
         "plain",
         "size",
@@ -63,27 +68,20 @@ class HashTable:
         hash_key = KEYS[test] if test.__class__ is str else test.key
         self.hash_key = hash_key if weakness is None else _weak_key(hash_key)
         self.plain = OWN_KEYS[test] if test.__class__ is str and weakness is None else OWN_KEYS["EQUALP"]
-        self.entries = {}
+        self.entries, self.originals = {}, {}
         self.size, self.rehash_size, self.rehash_threshold = size, rehash_size, rehash_threshold
         self.synchronized = synchronized
 
     def get(self, key, default=None):
         """The value of ``key``, or ``default``."""
-        entry = self.entries.get(self.hash_key(key))
-        if entry is None:
-            return default
-        return entry[1] if self.weakness is None else _strong(entry[1])
+        return _strong(self.entries.get(self.hash_key(key), default))
 
     def put(self, key, value):
         """Store ``value`` under ``key``. A key that is equal to an old one replaces its value, not the key."""
-        hash_key = self.hash_key(key)
-        entry = self.entries.get(hash_key)
-        if entry is not None:
-            entry[1] = value if self.weakness is None else self._held(value, _BY_VALUE, hash_key)
-        elif self.weakness is None:
-            self.entries[hash_key] = [key, value]
-        else:
-            self.entries[hash_key] = [self._held(key, _BY_KEY, hash_key), self._held(value, _BY_VALUE, hash_key)]
+        hash_key, entries, count = self.hash_key(key), self.entries, len(self.entries)
+        entries[hash_key] = value if self.weakness is None else self._held(value, _BY_VALUE, hash_key)
+        if hash_key is not key and len(entries) > count:
+            self.originals[hash_key] = key if self.weakness is None else self._held(key, _BY_KEY, hash_key)
 
     def _held(self, thing, when, hash_key):
         if self.weakness not in when or isinstance(thing, type):
@@ -92,10 +90,8 @@ class HashTable:
 
         def forget(reference):
             alive = table()
-            if alive is not None:
-                entry = alive.entries.get(hash_key)
-                if entry is not None and (entry[0] is reference or entry[1] is reference):
-                    del alive.entries[hash_key]
+            if alive is not None and any(held.get(hash_key) is reference for held in (alive.originals, alive.entries)):
+                alive._forget(hash_key)
 
         try:
             return _Weak(thing, forget)
@@ -104,18 +100,25 @@ class HashTable:
 
     def remove(self, key):
         """Remove the entry of ``key``; whether there was one."""
-        return self.entries.pop(self.hash_key(key), None) is not None
+        return self._forget(self.hash_key(key))
+
+    def _forget(self, hash_key):
+        self.originals.pop(hash_key, None)
+        return self.entries.pop(hash_key, _NOTHING) is not _NOTHING
 
     def clear(self):
         """Remove all entries."""
         self.entries.clear()
+        self.originals.clear()
 
     def items(self):
         """Iterate over (key, value) in order of first storing; entries that are removed meanwhile are left out."""
-        entries = self.entries
-        for hash_key, entry in list(entries.items()):
-            if entries.get(hash_key) is entry:
-                yield (entry[0], entry[1]) if self.weakness is None else (_strong(entry[0]), _strong(entry[1]))
+        entries, original = self.entries, self.originals.get
+        for hash_key in list(entries):
+            value = entries.get(hash_key, _NOTHING)
+            if value is not _NOTHING:
+                key = original(hash_key, hash_key)
+                yield (key, value) if self.weakness is None else (_strong(key), _strong(value))
 
     def keys(self):
         return (key for key, _ in self.items())
@@ -135,10 +138,10 @@ class HashTable:
         return self.hash_key(key) in self.entries
 
     def __getitem__(self, key):
-        entry = self.entries.get(self.hash_key(key))
-        if entry is None:
+        value = self.entries.get(self.hash_key(key), _NOTHING)
+        if value is _NOTHING:
             raise KeyError(key)
-        return entry[1] if self.weakness is None else _strong(entry[1])
+        return _strong(value)
 
     __setitem__ = put
 
@@ -263,45 +266,33 @@ def _test_name(test):
 
 def gethash(key, table, default=None):
     """``gethash``: two values, the value of ``key`` (or ``default``) and whether there is one."""
-    if table.__class__ is not HashTable:
-        need_table(table)
-    entry = table.entries.get(table.hash_key(key))
-    if entry is None:
-        return MultipleValues((default, None))
-    return MultipleValues((entry[1] if table.weakness is None else _strong(entry[1]), True))
+    return MultipleValues(value_and_presence(key, table, default))
 
 
 def value_in_table(key, table, default=None):
     """The first value of `gethash`, which is what compiled code mostly wants; it saves making two."""
     if table.__class__ is not HashTable:
         need_table(table)
-    entry = table.entries.get(key if key.__class__ in table.plain else table.hash_key(key))
-    if entry is None:
-        return default
-    return entry[1] if table.weakness is None else _strong(entry[1])
+    value = table.entries.get(key if key.__class__ in table.plain else table.hash_key(key), default)
+    return value if table.weakness is None else _strong(value)
 
 
 def value_and_presence(key, table, default=None):
     """The two values of `gethash` as a plain tuple, for compiled code that takes both apart at once."""
     if table.__class__ is not HashTable:
         need_table(table)
-    entry = table.entries.get(key if key.__class__ in table.plain else table.hash_key(key))
-    if entry is None:
+    value = table.entries.get(key if key.__class__ in table.plain else table.hash_key(key), _NOTHING)
+    if value is _NOTHING:
         return default, None
-    return entry[1] if table.weakness is None else _strong(entry[1]), True
+    return value if table.weakness is None else _strong(value), True
 
 
 def set_gethash(value, key, table, default=None):
     """``(setf gethash)``; ``default`` is accepted and not used, as in the standard."""
-    if table.__class__ is not HashTable or table.weakness is not None:
-        need_table(table).put(key, value)
-        return value
-    hash_key, entries = key if key.__class__ in table.plain else table.hash_key(key), table.entries
-    entry = entries.get(hash_key)
-    if entry is None:
-        entries[hash_key] = [key, value]
+    if table.__class__ is HashTable and key.__class__ in table.plain:
+        table.entries[key] = value
     else:
-        entry[1] = value
+        need_table(table).put(key, value)
     return value
 
 
@@ -319,14 +310,8 @@ def clrhash(table):
 def maphash(function, table):
     """``maphash``: call ``function`` with each key and value; it may change or remove entries. Returns nil."""
     function = function_of(function, "\nwhen binding SB-KERNEL:FUNCTION-DESIGNATOR")
-    if need_table(table).weakness is not None:
-        for key, value in table.items():
-            function(key, value)
-        return
-    entries = table.entries
-    for hash_key, entry in list(entries.items()):
-        if entries.get(hash_key) is entry:
-            function(entry[0], entry[1])
+    for key, value in need_table(table).items():
+        function(key, value)
 
 
 def hash_table_p(thing):

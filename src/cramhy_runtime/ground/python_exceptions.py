@@ -138,6 +138,8 @@ def condition_for(exception):
         wrong = _wrong_argument_count(exception)
         if wrong is not None:
             return wrong
+    if isinstance(exception, AttributeError) and hasattr(type(exception.obj), "lisp_condition"):
+        return exception.obj.lisp_condition(exception.name) or python_condition(exception)
     return python_condition(exception)
 
 

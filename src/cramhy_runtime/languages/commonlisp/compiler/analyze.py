@@ -323,6 +323,7 @@ class Analyzer(Scrutiny):
                 for check in checks:
                     check.value.variable.proven = kind_of_type(check.type)
         node = Lambda(name, parameters, body_node, scope, documentation)
+        node.everywhere = isinstance(name, Symbol) and not local
         return node
 
     def _blocked(self, block, forms, env):

@@ -20,6 +20,7 @@ from ..objects.makers import Maker
 from ..objects.slots import NamedSlot
 from ..syntax.backquote import Comma
 from .core import List, expression, word
+from .several_values import ValuesCalls
 
 
 class NotStorable(Exception):
@@ -144,6 +145,8 @@ class Constants:
             return expression(word("Lcase"), self.builder(obj.specifiers))
         if kind is NamedSlot:
             return expression(word("Lnamed_slot"), self.builder(obj.name))
+        if kind is ValuesCalls:
+            return expression(word("Lvalues_calls"), self.builder(obj.symbol))
         if kind is Maker:
             return expression(word("Lmaker"), self.builder(obj.name), *map(self.builder, obj.keys))
         raise NotStorable(obj)

@@ -23,3 +23,5 @@ VALUES = Destination("value", multiple=True)
 FIRST_OF_VALUES = Destination("value", multiple=True)
 """The first value is wanted, and who wants it takes it out of several: so it need not be done before."""
 RETURN = Destination("return", multiple=True)
+RETURN_TUPLE = Destination("return", multiple=True)
+"""The values are returned as a tuple (``several_values.py``)."""

@@ -15,9 +15,9 @@ from cramhy_runtime.ground.packages import COMMON_LISP, CRAMHY, is_symbol, sym
 from . import core, nodes
 from .constants import Constants, float_model
 from .core import expression, word
-from .destinations import EFFECT, FIRST_OF_VALUES, NONE, RAW, TRUE, VALUE, VALUES, Destination
+from .destinations import EFFECT, FIRST_OF_VALUES, NONE, RAW, RETURN_TUPLE, TRUE, VALUE, VALUES, Destination
 from .facts import study, walk
-from .generate_calls import SLOT_VALUE, CallGenerator, slot_named_by
+from .generate_calls import GETHASH, SLOT_VALUE, CallGenerator, slot_named_by
 from .generate_exits import ERROR, ExitGenerator
 from .generate_functions import FunctionGenerator
 from .arithmetic.functions import NUMBER_FUNCTIONS
@@ -27,7 +27,7 @@ from .loop_shapes import CHANGES
 from .kinds import BOOLEAN, MAX, MIN, MINUS, OPERATORS, PI, PLUS, STEPS, THING, WHOLE, kind_of
 
 
-COLLECT, CONS, FORMAT, GETHASH = map(sym, "CRAMHY::COLLECT CONS FORMAT GETHASH".split())
+COLLECT, CONS, FORMAT = map(sym, "CRAMHY::COLLECT CONS FORMAT".split())
 KNOWN_SETTERS = {sym(name) for name in "GETHASH AREF SVREF ELT NTH GET CHAR".split()}
 """Functions of Common Lisp whose ``setf`` is a function, which nobody may redefine or give methods."""
 
@@ -105,7 +105,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         if kind == "value":
             return model
         if kind == "return":
-            self.emit(word("return"), model)
+            self.emit(word("return"), self.tuple_of_values(model) if destination is RETURN_TUPLE else model)
         elif kind == "assign":
             self.assign(destination.name, model)
         elif not pure:
@@ -291,8 +291,6 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
             if model is not None:
                 return self.finish(model, node, destination)
         models = self.arguments(arguments)
-        if standard and symbol is GETHASH and 1 < len(arguments) < 4 and (not destination.multiple or destination is FIRST_OF_VALUES):
-            return self.finish(self.positioned(self.call("gethash", *models), node), nodes.Constant(None), destination)
         model = self.keyword_call(node, symbol, models, arguments)
         if model is not None:
             return self.finish(model, node, destination)
@@ -357,6 +355,8 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         stored = self.store(node)
         if stored is not None:
             return self.finish(stored, SINGLE_VALUE, destination, pure=True)
+        if node.symbol is GETHASH and len(node.arguments) == 3:
+            return self.by_statements(node, destination, lambda inner: self.entry_written(node, inner))
         arguments = self.arguments(node.arguments)
         if (attribute := written_attribute(node.symbol)) is not None and len(arguments) == 2:
             return self.by_statements(node, destination, lambda inner: self.slot_written(node, attribute, arguments, inner))
@@ -442,7 +442,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
             return self.call("truth", model if node.single else self.call("one", model))
         value = word("Lv")
         true = [expression(word("is-not"), expression(word("setx"), value, model), NONE), expression(word("is-not"), value, word("False"))]
-        if not node.single:
+        if not node.single and not (node.__class__ is nodes.Call and node.symbol is GETHASH):
             single = expression(word("is-not"), expression(word("."), value, word("__class__")), word("LMultipleValues"))
             true.append(expression(word("or"), single, self.call("truth", self.call("one", value))))
         return expression(word("and"), *true)

@@ -17,12 +17,14 @@ from ..objects.makers import maker
 from ..objects.slots import named_slot
 from . import core, nodes
 from .core import NONE, TRUE, List, Tuple, expression, word
+from .destinations import FIRST_OF_VALUES
+from .several_values import gives_tuple, values_calls
 from .destinations import VALUES as ALL_VALUES
 from .arithmetic.operations import AND, DOT, IF, INT_CLASS, IS, IS_NOT, SETX, class_of
 
 FIND, FLOOR, GETHASH, LIST, VALUES = map(sym, "FIND FLOOR GETHASH LIST VALUES".split())
 MAKE_INSTANCE, SAME_CHARACTER, SLOT_VALUE = map(sym, "MAKE-INSTANCE CHAR= SLOT-VALUE".split())
-CHARACTER, GET, PLUS, SETV = map(word, "Lcharacter get + setv".split())
+CHARACTER, GET, IN, PLUS, SETV = map(word, "Lcharacter get in + setv".split())
 
 
 class CallGenerator:
@@ -80,6 +82,8 @@ class CallGenerator:
             classes = self.constant(named)
             slow = self.positioned(expression(expression(DOT, classes, word("read")), target), node)
             return expression(IF, self.among(target, classes), expression(DOT, target, word(named.attribute)), self.first_value(slow))
+        if symbol is GETHASH and count in (2, 3) and (not destination.multiple or destination is FIRST_OF_VALUES):
+            return self.entry_read(node, arguments)
         if symbol is LIST and count > 4:
             return self.call("list", *self.arguments(arguments))
         if symbol is SAME_CHARACTER and count == 2:
@@ -102,7 +106,7 @@ class CallGenerator:
     def found_in_text(self, node, arguments):
         """``(find item "text")``: the first and later use of the item, a test whether the character is in the text, and the usual call."""
         item, name = self.named(arguments[0])
-        among = expression(word("in"), expression(DOT, name, word("char")), arguments[1].value)
+        among = expression(IN, expression(DOT, name, word("char")), arguments[1].value)
         return item, name, among, self.positioned(expression(self.known_function(FIND), name, arguments[1].value), node)
 
     def instance_made(self, node, arguments):
@@ -150,7 +154,7 @@ class CallGenerator:
     def among(target, classes):
         """A test whether the class of ``target`` is one of ``classes`` (`ground.data.Classes`)."""
         last = expression(IS, expression(SETX, word("Lo"), class_of(target)), expression(DOT, classes, word("last")))
-        return expression(word("or"), last, expression(word("in"), word("Lo"), classes))
+        return expression(word("or"), last, expression(IN, word("Lo"), classes))
 
     def slot_written(self, node, attribute, models, destination):
         """``(setf (accessor object) new)``, with the new value and the object as ``models``."""
@@ -193,6 +197,46 @@ class CallGenerator:
         self.branch(test, [*quick, *value], slow)
         self.effects += 1
 
+    # --------------------------------------------------------------------------------------------------------- hash tables
+
+    def entry(self, operands):
+        """(a test whether the dictionary behind a table has the value under the key itself, that dictionary). ``operands`` are the key, the
+        table, and perhaps a default."""
+        key, table, *_ = operands
+        known = expression(IS, self.class_of(table.later), word("Lhash_table"))
+        plain = expression(IN, self.class_of(key.later), expression(DOT, table.later, word("plain")))
+        return expression(AND, known, plain), expression(DOT, table.later, word("entries"))
+
+    def entry_read(self, node, arguments):
+        """``(gethash key table default)``, the first of its values."""
+        operands = self.operands(arguments)
+        self.settle(operands)
+        plain, entries = self.entry(operands)
+        usual = list(map(self.argument, operands))
+        quick = expression(expression(DOT, entries, GET), operands[0].later, *usual[2:])
+        return expression(IF, plain, quick, self.positioned(self.call("gethash", *usual), node))
+
+    def entry_and_presence(self, node, arguments):
+        """Both values of ``(gethash key table default)``, as a tuple."""
+        operands = self.operands(arguments)
+        self.settle(operands)
+        plain, entries = self.entry(operands)
+        key = operands[0].later
+        slow = self.positioned(self.call("gethash_values", *map(self.argument, operands)), node)
+        return expression(IF, expression(AND, plain, expression(IN, key, entries)), Tuple([expression(GET, entries, key), TRUE]), slow)
+
+    def entry_written(self, node, destination):
+        """``(setf (gethash key table) new)``"""
+        new, *others = operands = self.operands(node.arguments)
+        self.settle(operands)
+        (value,) = self.stable_names([self.argument(new)])
+        plain, entries = self.entry(others)
+        setter = word(self.constants.name("setf_function", GETHASH))
+        slow = self.positioned(expression(setter, value, *map(self.argument, others)), node)
+        self.branch(plain, [expression(SETV, expression(GET, entries, others[0].later), value)], [slow])
+        self.effects += 1
+        self.finish(value, nodes.Constant(None), destination, pure=True)
+
     # ----------------------------------------------------------------------------------------------------- several values
 
     def assign_values(self, names, node):
@@ -202,6 +246,13 @@ class CallGenerator:
         if made is not None:
             self.emit(word("setv"), target, made)
             return
+        if len(names) > 1 and node.__class__ is nodes.Call and gives_tuple(node.symbol):
+            function = expression(DOT, self.constant(values_calls(node.symbol)), word("call"))
+            call = self.positioned(expression(function, *self.arguments(node.arguments)), node)
+            values = word(self.temporary())
+            fits = expression(word("="), self.call("len", expression(SETX, values, call)), len(names))
+            self.emit(word("setv"), target, expression(IF, fits, values, self.call("first_of", values, len(names))))
+            return
         value = self.gen(node, ALL_VALUES)
         if len(names) == 1:
             self.emit(word("setv"), target, self.first_value(value))
@@ -210,6 +261,16 @@ class CallGenerator:
         several = expression(IS, class_of(expression(SETX, values, value)), word("LMultipleValues"))
         fits = expression(AND, several, expression(word("="), self.call("len", values), len(names)))
         self.emit(word("setv"), target, expression(IF, fits, values, self.call("spread", values, len(names))))
+
+    def tuple_of_values(self, model):
+        """A tuple of all values of ``model``."""
+        if model.__class__ is not core.Expression:
+            return self.call("all_values", model) if model.__class__ is core.Symbol and model not in (NONE, TRUE) else Tuple([model])
+        if model[0] == "LMultipleValues":
+            return model[1]
+        if model[0] == IF:
+            return expression(IF, model[1], *map(self.tuple_of_values, model[2:]))
+        return self.call("all_values", model)
 
     def values_in_place(self, names, node):
         """A Python tuple of as many values of ``node``, a call of a function that gives them, as there are ``names``; or ``None``."""
@@ -225,7 +286,7 @@ class CallGenerator:
         if wanted != 2:
             return None
         if symbol is GETHASH and len(arguments) in (2, 3):
-            return self.positioned(self.call("gethash_values", *self.arguments(arguments)), node)
+            return self.entry_and_presence(node, arguments)
         if symbol is FLOOR and len(arguments) == 2:
             if _is_number(arguments[1]):
                 divisor = arguments[1].value

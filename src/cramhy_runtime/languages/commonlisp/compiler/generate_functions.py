@@ -16,7 +16,8 @@ from .core import List, Tuple, expression, word
 from .arithmetic.operations import AND, DOUBLE_CLASS, FLOAT_CLASS, INT_CLASS, IS, class_of, fixnum_test
 from .kinds import DOUBLE, INT, SINGLE
 from .arithmetic.versions import assumed, bounded, guesses
-from .destinations import NONE, RETURN, TRUE, Destination
+from .destinations import NONE, RETURN, RETURN_TUPLE, TRUE, Destination
+from .several_values import gives_several
 
 DEBUGGED = special(Symbol("*DEBUGGED*"), False)
 """Whether functions are compiled so that a debugger can leave their calls. It costs a block around the body."""
@@ -34,19 +35,30 @@ class FunctionGenerator:
         if name is None:
             base = node.name.cdr.car if isinstance(node.name, Cons) else node.name
             name = self.scope.unique(python_name(symbol_name(base)) if base is not None else "Lfunction")
+        if not (node.everywhere and gives_several(node)) or DEBUGGED.value:
+            return self.definition(node, name, given, RETURN)
+        other = self.scope.unique("Lother")
+        self.assign(other, self.definition(node, name, given, RETURN_TUPLE))
+        self.definition(node, name, given, RETURN)
+        self.out.append(self.call("beside", word(name), word(other)))
+        return word(name)
+
+    def definition(self, node, name, given, returning):
+        """Emit a function under the Python ``name`` and return the expression for it. given: the name that was asked for."""
         saved = self.out, self.frames, self.scope
         self.out, self.frames, self.scope = [], [], node.scope
         outer_before, self.before = self.before, []
         parameters = self.parameters(node)
         outer_classes, self.class_names = self.class_names, {}
-        self.version(node)
+        if returning is RETURN:
+            self.version(node)
         for variable in node.parameters.required:
             if variable.operand_uses > 1 and not (variable.writes or variable.captured or variable.proven):
                 noted = self.temporary("Lk")
                 self.assign(noted, class_of(word(variable.name)))
                 self.class_names[variable.name] = word(noted)
         before, self.before = self.before, outer_before
-        self.gen(node.body, RETURN)
+        self.gen(node.body, returning)
         self.class_names = outer_classes
         statements = self.out
         scope = node.scope

@@ -129,7 +129,7 @@ class FunctionReference(Node):
 
 @dataclass
 class Lambda(Node):
-    """A function. ``body`` is a node; parameters as in `Parameters`."""
+    """A function. ``body`` is a node; parameters as in `Parameters`; ``everywhere``: it is the global function of its name."""
 
     name: object
     parameters: object
@@ -137,6 +137,7 @@ class Lambda(Node):
     scope: object
     documentation: object = None
     python_name: str = None
+    everywhere = False
     single = True
 
 

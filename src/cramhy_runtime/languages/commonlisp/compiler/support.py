@@ -52,7 +52,7 @@ from cramhy_runtime.ground.data import (
     one,
     truth,
 )
-from cramhy_runtime.ground.hash_tables import value_and_presence, value_in_table
+from cramhy_runtime.ground.hash_tables import HashTable, value_and_presence, value_in_table
 from cramhy_runtime.ground.keyword_calls import keyword_calls
 from cramhy_runtime.ground.dynamic import Bindings, bind, unbind
 from cramhy_runtime.ground.functions import function_of
@@ -65,6 +65,7 @@ from ..objects.slots import named_slot
 from cramhy_runtime.ground.packages import intern, keyword, printed
 from ..syntax.backquote import Comma
 from .declared_types import checked
+from .several_values import beside, first_of, values_calls
 
 
 class Cell:
@@ -354,6 +355,9 @@ NAMESPACE = {
     "Lbudget": budget,
     "Lnext_method_exists": next_method_exists,
     "Lmaker": maker,
+    "Lvalues_calls": values_calls,
+    "Lbeside": beside,
+    "Lfirst_of": first_of,
     "Lnamed_slot": named_slot,
     "Lkey_parser": key_parser,
     "Lkeyword_calls": keyword_calls,
@@ -377,6 +381,7 @@ NAMESPACE = {
     "Lunwrapped": unwrapped,
     "Lratio": Fraction,
     "Lcomplex": complex_,
+    "Lhash_table": HashTable,
     "Lgethash": value_in_table,
     "Lgethash_values": value_and_presence,
     "Ldivmod": divmod,

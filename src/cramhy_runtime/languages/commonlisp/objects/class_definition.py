@@ -21,6 +21,7 @@ from .class_objects import (
     StandardClass,
     StandardObject,
     effective_slots,
+    may_be_unbound,
     missing_attribute,
     touch_classes,
 )
@@ -173,6 +174,8 @@ def _change(name, cls, bases, slots):
     """Give the existing class new superclasses and slots; its instances are updated when they are next looked at."""
     changed = [sub for sub in _with_subclasses(cls) if "lisp_direct_slots" in vars(sub)]
     before = {sub: {slot.name: slot.attribute for slot in effective_slots(sub).values()} for sub in changed}
+    held = {sub: _in_instances(sub) for sub in changed}
+    lacking = {sub for sub in changed if any(isinstance(value, InstanceSlot) for base in sub.__mro__ for value in vars(base).values())}
     if tuple(bases) != cls.__bases__:
         try:
             cls.__bases__ = tuple(bases)
@@ -197,8 +200,15 @@ def _change(name, cls, bases, slots):
         if {slot.name: slot.attribute for slot in effective_slots(sub).values()} != before[sub]:
             sub.lisp_version = vars(sub).get("lisp_version", 0) + 1
             sub.lisp_history = [*vars(sub).get("lisp_history", ()), before[sub]]
+        if sub in lacking or not _in_instances(sub) <= held[sub]:
+            may_be_unbound(sub)
     _install_class_slots(cls, slots)
     return cls
+
+
+def _in_instances(cls):
+    """The attributes that instances of ``cls`` have for slots."""
+    return {slot.attribute for slot in effective_slots(cls).values() if slot.cell is None}
 
 
 def _with_subclasses(cls):

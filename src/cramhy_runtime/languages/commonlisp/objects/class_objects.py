@@ -16,7 +16,7 @@ from . import protocol_functions
 from cramhy_runtime.ground.printing import prin1_to_string
 
 from cramhy_runtime.ground import classes
-from cramhy_runtime.ground.conditions import SimpleError, error
+from cramhy_runtime.ground.conditions import SimpleError, UnboundSlot, error
 from cramhy_runtime.ground.data import UNBOUND, Symbol
 from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.packages import keyword, printed, sym
@@ -140,9 +140,11 @@ class ClassSlot:
 
 
 class InstanceSlot:
-    """What a class has for a slot of its instances: Python looks here when an instance has no value of its own.
+    """What a class has for a slot that instances may lack: Python looks here when an instance has no value of its own.
 
-    (With a method ``__getattr__`` it would look there, too, but then every access to any attribute would take three times as long.)
+    Python reads an attribute in a fifth of the time if its class has nothing of that name. So a class gets this when an instance can be
+    seen without a value (`may_be_unbound`), and most classes never do. (With a method ``__getattr__`` Python would look there, too, but
+    then every access to any attribute would take three times as long.)
     """
 
     def __init__(self, attribute):
@@ -175,6 +177,19 @@ class StandardObject(metaclass=StandardClass):
 
         initialize_from_python(self, initargs, keywords)
 
+    def __init_subclass__(cls, **keywords):
+        super().__init_subclass__(**keywords)
+        if "lisp_direct_slots" not in vars(cls):  # a class that Python code wrote makes instances in its own way
+            may_be_unbound(cls)
+
+    def lisp_condition(self, attribute):
+        """The condition for Python's complaint that this has no ``attribute``: Python code deleted that of a slot."""
+        slot = slot_of_attribute(type(self), attribute)
+        if slot is None:
+            return None
+        may_be_unbound(type(self), [slot])
+        return UnboundSlot(slot.name, self)
+
     def __repr__(self):
         return prin1_to_string(self)
 
@@ -200,15 +215,23 @@ def effective_slots(cls):
     if found is None:
         found = _slots[cls] = _compute_slots(cls)
         if issubclass(cls, StandardObject):
-            _install_slots(cls, found.values())
+            may_be_unbound(cls, [slot for slot in found.values() if isinstance(_member(cls, slot), ClassSlot)])
     return found
 
 
-def _install_slots(cls, slots):
-    """Give ``cls`` an `InstanceSlot` for each of the ``slots`` of its instances for which it inherits none, or a class slot."""
-    for slot in slots:
+def _member(cls, slot):
+    return next((vars(base)[slot.attribute] for base in cls.__mro__ if slot.attribute in vars(base)), None)
+
+
+def may_be_unbound(cls, slots=None):
+    """From now on instances of ``cls`` may lack a value of one of ``slots`` (all, if not given), and reading it is an error of Lisp.
+
+    To be called before anybody can see such an instance. It gives ``cls`` an `InstanceSlot` for each slot for which it has none, and
+    inherits none.
+    """
+    for slot in effective_slots(cls).values() if slots is None else slots:
         if slot.cell is None:
-            member = next((vars(base)[slot.attribute] for base in cls.__mro__ if slot.attribute in vars(base)), None)
+            member = _member(cls, slot)
             if member is None or isinstance(member, ClassSlot):
                 setattr(cls, slot.attribute, InstanceSlot(slot.attribute))
 

@@ -83,6 +83,7 @@ def instance_constructor(plan, keys):
             constant = slot.initform.__class__ in _CONSTANTS
             scope[f"initform{number}"] = (None if slot.initform is False else slot.initform) if constant else initfunction
             lines.append(f"made.{slot.attribute} = " + (f"initform{number}" if constant else f"one(initform{number}())"))
+    plan.may_lack([slot for name, slot in plan.without_initform.items() if name not in given])
     given = "".join(f", key{number}, {value}" for number, (_, value) in enumerate(initargs))
     scope |= {f"key{number}": key for number, (key, _) in enumerate(initargs)}
     for number, method in enumerate(plan.afters):

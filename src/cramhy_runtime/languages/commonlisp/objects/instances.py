@@ -19,7 +19,7 @@ from cramhy_runtime.ground.data import UNBOUND, Character, Cons, DoubleFloat, Ke
 from cramhy_runtime.ground.packages import is_symbol, keyword, symbol_name
 from .builtin_classes import BuiltInClass, lisp_mro
 from .class_definition import default_initargs
-from .class_objects import StandardObject, effective_slots, find_slot
+from .class_objects import StandardObject, effective_slots, find_slot, may_be_unbound
 from .constructors import instance_constructor
 from cramhy_runtime.ground.classes import when_classes_change
 from .classes import StructureClass, class_name, class_of, find_class_or_error, qualified
@@ -119,7 +119,9 @@ class Plan:
         for slot in slots:
             for key in slot.initargs:
                 self.targets.setdefault(key, []).append(slot)
-        self.initforms = [(slot, slot.initfunction) for slot in slots if slot.initfunction is not None and slot.cell is None]
+        own = [slot for slot in slots if slot.cell is None]
+        self.initforms = [(slot, slot.initfunction) for slot in own if slot.initfunction is not None]
+        self.without_initform = {slot.name: slot for slot in own if slot.initfunction is None}
         self.defaults = default_initargs(cls)
         self.python_init, self.parameters = _python_init(cls, slots)
         methods = [
@@ -129,10 +131,17 @@ class Plan:
         ]
         self.custom = bool(methods) and not issubclass(cls, Condition)
         self.afters = _afters(cls, methods) if self.custom else []
+        if self.python_init is not None or self.afters is None:  # code of others sees the instance before its slots are filled
+            self.may_lack()
         self.valid = None
         if not issubclass(cls, Condition) and not any(method.shape.allow_other_keys for method in methods):
             self.valid = {*self.targets, *self.parameters, ALLOW_OTHER_KEYS, *(key for method in methods for key in method.shape.keys)}
         self.version = vars(cls).get("lisp_version", 0)
+
+    def may_lack(self, slots=None):
+        """To be called before anybody sees an instance without values of ``slots``, by default all."""
+        if issubclass(self.cls, StandardObject):
+            may_be_unbound(self.cls, slots)
 
     def check(self, initargs):
         if len(initargs) % 2:
@@ -185,6 +194,8 @@ class Plan:
         for slot, initfunction in self.initforms:
             if slot.name not in given and (wanted is True or slot.name in wanted) and slot.attribute not in obj.__dict__:
                 setattr(obj, slot.attribute, one(initfunction()))
+        if wanted is True and not given.issuperset(self.without_initform):
+            self.may_lack([slot for name, slot in self.without_initform.items() if name not in given])
 
 
 def _afters(cls, methods):
@@ -394,7 +405,9 @@ def _check_initargs(cls, methods, initargs):
 def default_allocate_instance(cls, *initargs):
     if not isinstance(cls, type):
         return no_method_for("ALLOCATE-INSTANCE", cls, *initargs)
-    return _plan_or_error(cls).allocate(initargs)
+    plan = _plan_or_error(cls)
+    plan.may_lack()
+    return plan.allocate(initargs)
 
 
 # --------------------------------------------------------------------------------------------------------------- change-class
@@ -429,6 +442,8 @@ def default_change_class(instance, new_class, *initargs):
         slot = find_slot(cls, name)
         if slot is not None and slot.cell is None and value is not UNBOUND:
             setattr(instance, slot.attribute, value)
+    if issubclass(cls, StandardObject):
+        may_be_unbound(cls, [slot for slot in effective_slots(cls).values() if slot.attribute not in vars(instance)])
     protocol_functions.update_instance_for_different_class(previous, instance, *initargs)
     return instance
 

@@ -17,7 +17,7 @@ from cramhy_runtime.ground.conditions import Condition, SimpleError, UnboundSlot
 from cramhy_runtime.ground.data import UNBOUND, Classes, Symbol, boolean, list_from, one, truth
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.python_names import python_name
-from .class_objects import ClassSlot, InstanceSlot, StandardObject, effective_slots, find_slot
+from .class_objects import ClassSlot, InstanceSlot, StandardObject, effective_slots, find_slot, may_be_unbound
 from cramhy_runtime.ground.classes import when_classes_change
 from .classes import class_of
 
@@ -170,6 +170,8 @@ def slot_makunbound(object, slot_name):
     if attribute is None:
         missing_slot(object, slot_name, "SLOT-MAKUNBOUND", "make the slot unbound (SLOT-MAKUNBOUND)")
     else:
+        if isinstance(object, StandardObject):
+            may_be_unbound(type(object), [slot_of(object, slot_name)])
         try:
             delattr(object, attribute)
         except AttributeError:

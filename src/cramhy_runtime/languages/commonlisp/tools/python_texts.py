@@ -7,6 +7,7 @@ import ast
 from cramhy_runtime.ground.data import Symbol, truth
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.keyword_calls import KeywordCalls
+from ..compiler.several_values import ValuesCalls
 from ..evaluation.evaluator import PACKAGE, Unit, compiler
 from ..evaluation.function_facts import defining_forms
 from ..objects.makers import Maker
@@ -20,9 +21,10 @@ def python_text(function):
         unit = Unit(code.co_filename, positions)
         with binding(PACKAGE, package):
             for part in unit.toplevel_parts(form):
-                for node in ast.walk(compiler().python_tree(unit.statements(part))):
-                    if isinstance(node, (ast.FunctionDef, ast.Lambda)) and _is_it(node, code):
-                        return ast.unparse(_Named(unit.namespace).visit(node))
+                nodes = ast.walk(compiler().python_tree(unit.statements(part)))
+                found = [node for node in nodes if isinstance(node, (ast.FunctionDef, ast.Lambda)) and _is_it(node, code)]
+                if found:  # of two of one name, the first is that which returns a tuple of values
+                    return ast.unparse(_Named(unit.namespace).visit(found[-1] if isinstance(found[0], ast.FunctionDef) else found[0]))
     return None
 
 
@@ -51,7 +53,7 @@ class _Named(ast.NodeTransformer):
                 return ast.Name("{" + ", ".join(sorted(each.__name__ for each in value)) + "}", node.ctx)
             if value.__class__ is set:  # of classes whose slot the code takes itself
                 return ast.Name("{" + ", ".join(sorted(each.__name__ for each in value)) + "}", node.ctx)
-            if isinstance(value, KeywordCalls):
+            if isinstance(value, (KeywordCalls, ValuesCalls)):
                 return ast.Name(f"«{prin1_to_string(value.symbol)}»", node.ctx)
             if isinstance(value, Maker):
                 return ast.Name(f"«{prin1_to_string(value.name)}»", node.ctx)

@@ -31,7 +31,7 @@ from cramhy_runtime.ground.data import (
     list_from,
 )
 from ...numbers.irrational import complex_, imagpart, realpart
-from ...objects.class_objects import StandardObject, effective_slots
+from ...objects.class_objects import StandardObject, effective_slots, may_be_unbound
 from ...objects.classes import find_class
 from cramhy_runtime.ground.classes import make_instance
 from cramhy_runtime.ground.classes import class_name
@@ -159,7 +159,7 @@ class Writer:
             return {
                 "new": number,
                 "table": value.test,
-                "entries": [[self.write(key, depth), self.write(item, depth)] for key, item in value.entries.values()],
+                "entries": [[self.write(key, depth), self.write(item, depth)] for key, item in value.items()],
             }
         if isinstance(value, type) or not is_data(cls):
             name = function_name(value) if callable(value) and not isinstance(value, type) else None
@@ -291,6 +291,8 @@ class Reader:
                     cls, *(part for key, item in _sequence(form["slots"]) for part in (keyword(self.read(key).name), self.read(item)))
                 ),
             )
+        if issubclass(cls, StandardObject):
+            may_be_unbound(cls)
         thing = self._new(form, cls.__new__(cls) if issubclass(cls, BaseException) else object.__new__(cls))
         for key, item in _sequence(form["slots"]):
             slot = slots.get(self.read(key))

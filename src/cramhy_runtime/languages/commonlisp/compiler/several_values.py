@@ -1,0 +1,97 @@
+"""Several values between a function and the form that binds them, without an object for them.
+
+A function that gives several values makes a `MultipleValues`, which takes 120 ns, and ``multiple-value-bind`` takes it apart again. So a
+small function whose body ends in ``values`` is made twice: as every function is, and so that it returns its values as a plain tuple. A
+``multiple-value-bind`` of a call calls the second one, if there was one when it was compiled. `ValuesCalls` finds it, and hears when the
+function of the symbol changes.
+"""
+
+from __future__ import annotations
+
+from types import FunctionType
+
+from cramhy_runtime.ground.data import Symbol, all_values
+from cramhy_runtime.ground.packages import sym
+from . import nodes
+from .facts import walk
+
+VALUES = sym("VALUES")
+LARGEST = 60
+"""The most nodes of a body that is made twice. In a larger one, or one that loops, 120 ns do not count."""
+
+
+def gives_several(node):
+    """Whether the `Lambda` ``node`` is made twice."""
+    if not _ends_in_values(node.body) or node.scope.loops:
+        return False
+    return sum(1 for _ in walk([node.body])) <= LARGEST
+
+
+def _ends_in_values(node):
+    kind = node.__class__
+    if kind is nodes.Call:
+        return node.symbol is VALUES and len(node.arguments) > 1
+    if kind is nodes.If:
+        return _ends_in_values(node.then) or _ends_in_values(node.otherwise)
+    if kind is nodes.Progn:
+        return _ends_in_values(node.forms[-1])
+    if kind is nodes.BlockNode:
+        return any(map(_ends_in_values, (node.body, *node.block.values)))
+    return kind in (nodes.Let, nodes.Functions, nodes.MultipleValueBind) and _ends_in_values(node.body)
+
+
+def beside(function, other):
+    """Note that ``other`` returns as a tuple what ``function`` gives."""
+    function.beside = function.__code__, other
+
+
+def other_body(function):
+    """The function beside ``function``, or ``None``. One that stands around ``function``, as ``trace`` makes it, has none."""
+    if function.__class__ is not FunctionType or "beside" not in function.__dict__:
+        return None
+    code, other = function.beside
+    return other if code is function.__code__ else None
+
+
+class ValuesCalls:
+    """Calls of the function of ``symbol`` whose values are bound: ``call`` returns them as a tuple."""
+
+    __slots__ = ("symbol", "call")
+
+    def __init__(self, symbol):
+        self.symbol = symbol
+        self.refresh()
+
+    def refresh(self):
+        """Find out anew what the function is."""
+        other = other_body(self.symbol.function)
+        if other is None:
+            self.call = self._values
+        else:
+            self.call, other.__qualname__ = other, self.symbol.function.__qualname__
+
+    def _values(self, *arguments):
+        return all_values(self.symbol.function(*arguments))
+
+
+def values_calls(symbol):
+    """The `ValuesCalls` of ``symbol``, one for all calls."""
+    if symbol.keyed is None:
+        symbol.keyed = {}
+    found = symbol.keyed.get(VALUES)
+    if found is None:
+        found = symbol.keyed[VALUES] = ValuesCalls(symbol)
+    return found
+
+
+def gives_tuple(symbol):
+    """Whether the function of ``symbol`` has another one beside it now."""
+    return isinstance(symbol, Symbol) and other_body(symbol.function) is not None
+
+
+def first_of(values, count):
+    """The first ``count`` of the tuple ``values``, with nil for missing ones."""
+    return (*values, *(None,) * count)[:count]
+
+
+__all__ = ["ValuesCalls", "beside", "first_of", "gives_several", "gives_tuple", "values_calls"]
