@@ -29,7 +29,7 @@ from .endings import CLEANUP_LIMIT, PATIENCE, Endings
 from .errors import Cancelled, Deadlock, Interrupted, KernelError, NoStack, Terminated, TimeLimit
 from .inbox import Outside
 from .tasks import BLOCKED, DEAD, PARKED, RUNNABLE, RUNNING, SETTLING, SchedulerTask, Task, shield
-from .timers import CALLBACK, Timer, TimerHeap
+from .timers import TimerHeap, Timing
 from .typing_names import TYPE_CHECKING, NoReturn, TypeVar, TypeVarTuple
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def lots(seed: int | float | str) -> Callable[[deque[Task[object]]], int]:
     return lambda queue: int(draw() * len(queue))
 
 
-class Kernel(Endings, Outside):
+class Kernel(Endings, Outside, Timing):
     """A set of tasks with their clock. `kernel.start` makes it; the functions of `active` act on the active one."""
 
     # Slots, since Python finds attributes of an object that has thirty or more of them in a slower way.
@@ -546,45 +546,6 @@ class Kernel(Endings, Outside):
     def _reach_limit(self) -> None:
         self._alarm(TimeLimit(reports.time_limit_text(self, self.time_limit)), True)
         self._limit = self.clock.now() + self.time_limit  # what is left to do in cleanup gets as long again
-
-    # ------------------------------------------------------------------ timers
-
-    def call_at(self, time: float, fn: Callback) -> Timer:
-        """Call FN in the scheduler when the clock reaches TIME, finite seconds, and return the Timer. FN must not park."""
-        if not time < INFINITY:
-            raise ValueError(f"A timer needs a finite time, not {time}.")
-        return self._timers.add(time, fn)
-
-    def call_every(self, period: float, fn: Callback, first: float | None = None) -> Timer:
-        """Call FN every PERIOD seconds, without drift, from the time FIRST on (by default one period from now). Returns the Timer.
-
-        FN must not park. A PERIOD that is not positive and finite is a ValueError.
-        """
-        if not 0 < period < INFINITY:
-            raise ValueError(f"The period of a timer must be more than 0 s and finite, not {period}.")
-        if first is None:
-            first = self.clock.now() + period
-        return self._timers.add(first, fn, period)
-
-    def _fire(self, now: float) -> None:
-        """Fire the timers that are due. Timers that the callbacks add fire in the next turn, so no callback keeps the baton for ever."""
-        timers = self._timers
-        entries, newest = timers.entries, timers.order
-        while entries and entries[0][0] <= now and entries[0][1] < newest:
-            _, _, what, ticket = timers.pop()
-            if ticket != CALLBACK:
-                if what.ticket == ticket:
-                    self._wake(what, False)
-                continue
-            fn = what.fn
-            if fn is None:
-                continue
-            if what.period is None:
-                what.fn = None
-            else:
-                what.advance(now)
-                timers.push(what)
-            self._call(fn)
 
     def _call(self, fn: Callback) -> None:
         try:
