@@ -15,7 +15,16 @@ from cramhy_runtime.kernel.active import ACTIVE
 
 from cramhy_runtime.ground import condition_types as types
 from cramhy_runtime.ground.catching import Cluster, HandlerExit
-from cramhy_runtime.ground.conditions import error, make_condition, matches, offer_late, raised_by_handler, signal_condition, type_error
+from cramhy_runtime.ground.conditions import (
+    error,
+    handled,
+    make_condition,
+    matches,
+    offer_late,
+    raised_by_handler,
+    signal_condition,
+    type_error,
+)
 from cramhy_runtime.ground.data import lisp_list, list_from
 from cramhy_runtime.ground.source_places import locate
 from cramhy_runtime.ground.classes import class_name
@@ -53,10 +62,12 @@ def fail(*arguments: Any) -> NoReturn:
         condition.format_control, condition.format_arguments = arguments[0], arguments[1:]
     else:
         condition = _designated(*arguments)
-    if active_tags or on_fail.methods or BREAK_ON_PLAN_FAILURES.value or current_task() is None or not isinstance(condition, PlanFailure):
+    running = ACTIVE.value
+    owner = None if running is None else running.current.owner
+    if active_tags or on_fail.methods or BREAK_ON_PLAN_FAILURES.value or owner is None or not isinstance(condition, PlanFailure):
         _begin_to_fail(condition, arguments)
-    signal_condition(condition)
-    raise condition
+    exit_ = handled(condition)
+    raise condition if exit_ is None else exit_
 
 
 def fail_with_advice(advice: str | Callable[[], str] | None, *arguments: Any) -> NoReturn:
@@ -109,17 +120,17 @@ class Handling(Cluster, BaseException):
     Lisp is written ``(return value)`` and compiled to an exit of its own. It is the exception that unwinds to its form.
     """
 
-    __slots__ = ("clauses", "task", "ending", "observed", "id", "left", "values")
+    __slots__ = ("clauses", "task", "ending")
+    observed = False  # the hook of its beginning has run, and returned
+    id: object = None
+    left = False
+    values: object = None
 
     def __init__(self, clauses: Sequence[Clause]):
         running = ACTIVE.value
         self.clauses = clauses
         self.task = task = kernel.current() if running is None else running.current
         self.ending = task.cancelled_delivered
-        self.observed = False  # the hook of its beginning has run, and returned
-        self.id: object = None
-        self.left = False
-        self.values: object = None
 
     def __call__(self) -> NoReturn:
         """Unwind to the form, and try its body again."""
