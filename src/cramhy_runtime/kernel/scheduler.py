@@ -396,6 +396,8 @@ class Kernel(Endings, Outside, Timing):
             task._name = "a task that has ended" if task._exception is None else str(task.name)
         if task.delivered.__class__ is Cancelled:
             task.delivered.__traceback__ = None  # which holds the whole stack
+        if task.cancel_request is not None:
+            task.cancel_request = (None,)  # without the function that made the reason, which may know whose task this is
         del self._tasks[task.id]
         if task.dynamic is not None:
             task.dynamic.leave()
