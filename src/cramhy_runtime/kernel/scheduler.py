@@ -175,8 +175,8 @@ class Kernel(Endings, Outside, Timing):
         me = self.current
         if me.attention and me.deliver():
             return True
-        entries, clock = self._timers.entries, self.clock
-        next_waits = len(self._queue) > self._streak and type(clock) is VirtualClock and not (entries and entries[0][0] <= clock.time)
+        entries, clock, queue = self._timers.entries, self.clock, self._queue
+        next_waits = len(queue) > self._streak and type(clock) is VirtualClock and not (entries and entries[0][0] <= clock.time)
         if self._inbox or self._unclaimed or entries and not next_waits:
             need_headroom()
         else:  # no timer fires before the next task runs
@@ -190,10 +190,25 @@ class Kernel(Endings, Outside, Timing):
             me.timed = True
             self._timers.add_deadline(until, me)
         me.state = PARKED
-        if me.dynamic is None:
-            self.hand_over(me)
+        dynamic = me.dynamic
+        if dynamic is not None:
+            dynamic.leave()
+        if (
+            next_waits
+            and (carrier := queue[0].carrier) is not None
+            and not (self._inbox or self._urgent or self._choose)
+            and self._steps < STEPS_PER_INSTANT
+            and (until is None or until > clock.time)
+        ):  # as `hand_over` and `_next` would find out: nothing comes before the first task in the queue, which has a stack
+            self._steps += 1
+            self.current = queue.popleft()
+            self.backend.transfer(me.carrier, carrier)
+            me.state = RUNNING
+            budget.left = SLICE
         else:
-            self.rest(me)
+            self.hand_over(me)
+        if dynamic is not None:
+            dynamic.enter()
         if me.attention:
             me.deliver()
         return me.woken
@@ -205,7 +220,15 @@ class Kernel(Endings, Outside, Timing):
             self._refuse("wake a task")
         if task.state is not PARKED:
             return False
-        self._wake(task, True)
+        task.ticket += 1  # as `_wake` does
+        task.woken = True
+        if task.timed:
+            task.timed = False
+            self._timers.went_stale()
+        task.state = RUNNABLE
+        task.preempted = False
+        self._queue.append(task)
+        self._streak = 0
         return True
 
     def _wake(self, task: Task[object], woken: bool) -> None:
