@@ -23,7 +23,7 @@ from collections import deque
 
 from . import images, reports
 from .backends import make_backend
-from .budget import SLICE, budget, need_headroom, need_steps
+from .budget import SLICE, budget, need_few_steps, need_headroom, need_steps
 from .clocks import VirtualClock, make_clock
 from .endings import CLEANUP_LIMIT, PATIENCE, Endings
 from .errors import Cancelled, Deadlock, Interrupted, KernelError, NoStack, Terminated, TimeLimit
@@ -177,11 +177,22 @@ class Kernel(Endings, Outside, Timing):
             return True
         entries, clock, queue = self._timers.entries, self.clock, self._queue
         next_waits = len(queue) > self._streak and type(clock) is VirtualClock and not (entries and entries[0][0] <= clock.time)
-        if self._inbox or self._unclaimed or entries and not next_waits:
+        next_carrier = None  # as `hand_over` and `_next` would find out, if nothing comes before the first task and it has a stack
+        if (
+            next_waits
+            and not (self._inbox or self._urgent or self._choose)
+            and self._steps < STEPS_PER_INSTANT
+            and (until is None or until > clock.now())
+        ):
+            next_carrier = queue[0].carrier
+        if next_carrier is not None:
+            need_few_steps()
+        elif self._inbox or self._unclaimed or entries and not next_waits:
             need_headroom()
         else:  # no timer fires before the next task runs
             need_steps()
-        if me.carrier.ident != get_ident():
+        carrier = me.carrier
+        if carrier is None or carrier.ident != get_ident():
             self._refuse("wait")
         me.why = why
         if until is not None and until != INFINITY:
@@ -193,20 +204,17 @@ class Kernel(Endings, Outside, Timing):
         dynamic = me.dynamic
         if dynamic is not None:
             dynamic.leave()
-        if (
-            next_waits
-            and (carrier := queue[0].carrier) is not None
-            and not (self._inbox or self._urgent or self._choose)
-            and self._steps < STEPS_PER_INSTANT
-            and (until is None or until > clock.time)
-        ):  # as `hand_over` and `_next` would find out: nothing comes before the first task in the queue, which has a stack
+        if next_carrier is None:
+            self.hand_over(me)
+        else:
             self._steps += 1
             self.current = queue.popleft()
-            self.backend.transfer(me.carrier, carrier)
+            if carrier.direct:
+                next_carrier.switch()
+            else:
+                self.backend.transfer(carrier, next_carrier)
             me.state = RUNNING
             budget.left = SLICE
-        else:
-            self.hand_over(me)
         if dynamic is not None:
             dynamic.enter()
         if me.attention:

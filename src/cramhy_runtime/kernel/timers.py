@@ -13,7 +13,7 @@ from heapq import heapify, heappop, heappush
 from .typing_names import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .signatures import Callback
+    from .signatures import Callback, Clock
     from .tasks import Task
 
     Entry = tuple[float, int, Any, int]  # when, its order, a Timer or a Task, a ticket
@@ -121,6 +121,13 @@ class Timing:
     """The part of the kernel that has timers."""
 
     __slots__ = ()
+
+    if TYPE_CHECKING:  # what the other parts have
+        clock: Clock
+        _timers: TimerHeap
+
+        def _wake(self, task: Task[object], woken: bool) -> None: ...
+        def _call(self, fn: Callback) -> None: ...
 
     def call_at(self, time: float, fn: Callback) -> Timer:
         """Call FN in the scheduler when the clock reaches TIME, finite seconds, and return the Timer. FN must not park."""
