@@ -6,12 +6,14 @@ A step is some text, and then code to type, a file or a task. Nothing here reads
 from __future__ import annotations
 
 import difflib
+import re
 from typing import NamedTuple
 
 from . import checking, contents, files, shown
-from .parts import Code, File, Page, Task, Text
+from .parts import Code, File, Page, Task, Text, text_in
 from .progress import Progress
 from .reading import PageError, page, pages
+from .replay import Replay
 from .shown import Style
 
 COMMANDS = {
@@ -22,13 +24,15 @@ COMMANDS = {
     "check": ("c", "look whether the task is solved"),
     "write": ("w", "write the file of this step, over one of your own, too"),
     "pages": ("p", "all pages, and what you have solved"),
-    "page": ("", "go to a page, by its number: :page 3"),
+    "page": ("", "go to a page, by its number: :page 3; :page 3 2 goes to its step 2"),
+    "replay": ("r", "type again what you typed on this page in an earlier session"),
     "help": ("?", "this list"),
     "quit": ("q", "leave; cramhy learn goes on here"),
 }
 """The commands: the short name of each, and what it does."""
 _SHORT = {short: name for name, (short, _) in COMMANDS.items() if short}
 WITH_ARGUMENT = ("page",)
+_WITHOUT_PARENTHESES = re.compile(r"\s*[-+*/](?:\s+-?\d[\d.]*)+\s*")
 OVER = "; To see the next step, type :next"
 
 
@@ -44,11 +48,11 @@ def steps(wanted: Page, language: str) -> list[Step]:
     found, texts = [], []
     for part in wanted.parts:
         if isinstance(part, Text):
-            texts.append(part.markdown)
+            texts += filter(None, [text_in(part.markdown, language)])
         elif isinstance(part, Task) or getattr(part, language):
             found.append(Step(tuple(texts), part))
             texts = []
-        elif isinstance(part, Code):
+        elif isinstance(part, Code) and not part.apart:
             block = "".join(f"{typed.prompt}{typed.form}\n{typed.answer}" for typed in part.lisp or part.hy)
             texts.append(f"```\n{block}```")
     if texts or not found:
@@ -58,23 +62,26 @@ def steps(wanted: Page, language: str) -> list[Step]:
 
 def command(line: str) -> tuple[str, str] | None:
     """(name, argument) of the command that a line is, with or without the colon in front; ``None`` if it is none."""
-    words = line.strip().lower().split()
-    if not 1 <= len(words) <= 2:
-        return None
-    word = words[0].removeprefix(":")
-    name = word if word in COMMANDS else _SHORT.get(word) if words[0].startswith(":") else None
-    if name is None or (len(words) == 2) != (name in WITH_ARGUMENT):
-        return (name, "") if name in WITH_ARGUMENT and words[0].startswith(":") else None
-    return name, words[1] if len(words) == 2 else ""
+    first, *arguments = line.strip().lower().split() or [""]
+    word = first.removeprefix(":")
+    name = word if word in COMMANDS else _SHORT.get(word) if first.startswith(":") else None
+    if name not in WITH_ARGUMENT:
+        return (name, "") if name is not None and not arguments else None
+    if 1 <= len(arguments) <= 2:
+        return name, " ".join(arguments)
+    return (name, "") if first.startswith(":") else None
 
 
 def meant(line: str) -> str | None:
-    """What to say of a line with one word and a colon in front that is almost a command; ``None`` for any other line."""
-    word = line.strip().lower()
-    if not word.startswith(":") or len(word.split()) != 1:
+    """What to say of a line with a colon in front that is almost a command; ``None`` for any other line."""
+    first, *arguments = line.strip().lower().split() or [""]
+    if not first.startswith(":"):
         return None
-    near = difflib.get_close_matches(word[1:], COMMANDS, 1, 0.65)
-    return f"; There is no command {word}. Did you mean :{near[0]}?" if near else None
+    found = command(first)
+    if found is not None and arguments:
+        return f"; :{found[0]} stands alone in its line." if found[0] not in WITH_ARGUMENT else None
+    near = difflib.get_close_matches(first[1:], COMMANDS, 1, 0.65)
+    return f"; There is no command {first}. Did you mean :{near[0]}?" if near and not arguments else None
 
 
 class Guide:
@@ -92,7 +99,15 @@ class Guide:
         self.hints = 0
         self._waiting: list[str] = []  # what is still to be typed of this step
         self._cue: str | None = None
+        self.replay = Replay(self._typed_before())
         self._arrived()
+
+    def _typed_before(self):
+        """The texts that were typed on this page. Who begins the page anew begins them anew."""
+        texts = self.progress.typed.setdefault(f"{self.page.name} {self.language}", [])
+        if not self.place:
+            texts.clear()
+        return texts
 
     @property
     def step(self) -> Step:
@@ -109,6 +124,14 @@ class Guide:
         self.progress.keep()
 
     # -------------------------------------------------------------------------------------------------------------- what is shown
+
+    def greeting(self) -> str:
+        """What to show first on the page."""
+        if not self.replay.earlier:
+            return self.show()
+        return "\n".join(
+            [self.show(), "; The session is a new one: what you defined on this page before is not there. :replay types it again."]
+        )
 
     def show(self) -> str:
         """The step as text, with what can be typed now."""
@@ -132,7 +155,7 @@ class Guide:
 
     def _task(self, task):
         solved = " (solved)" if task.name in self.progress.solved else ""
-        found = [self.style.bold(f"Task: {task.title}{solved}"), shown.text(task.markdown, self.style)]
+        found = [self.style.bold(f"Task: {task.title}{solved}"), shown.text(text_in(task.markdown, self.language), self.style)]
         if self.language in task.start:
             found += ["Begin with this, and change it:", shown.code(task.start[self.language], self.style)]
         return "\n\n".join(found)
@@ -147,8 +170,18 @@ class Guide:
             return "; Type what stands behind the prompts. :next goes on, and :help shows all commands."
         after = self._after()
         if after is None:
-            return "; This is the end of the course. :pages shows all pages."
-        return f"; This is the end of the page. :next begins the next one: {page(after).title}."
+            return self._with_unsolved("; This is the end of the course. :pages shows all pages.")
+        return self._with_unsolved(f"; This is the end of the page. :next begins the next one: {page(after).title}.")
+
+    def _with_unsolved(self, told):
+        """``told``, and before it how to come to the tasks of this page that are not solved yet."""
+        number = contents.NAMES.index(self.page.name) + 1
+        unsolved = [
+            f"; Not solved yet: {step.part.title} (:page {number} {place})"
+            for place, step in enumerate(self.steps, 1)
+            if isinstance(step.part, Task) and step.part.name not in self.progress.solved
+        ]
+        return "\n".join([*unsolved, told])
 
     def _after(self):
         number = contents.NAMES.index(self.page.name) + 1
@@ -158,6 +191,11 @@ class Guide:
 
     def typed(self, text: str) -> None:
         """The student has typed ``text``, whole forms."""
+        call = _WITHOUT_PARENTHESES.fullmatch(text) if self.language == "lisp" else None
+        if call:
+            self._cue = (
+                f"; Lisp took each of these words for a form of its own. A call has parentheses around it: ({' '.join(text.split())})"
+            )
         if not self._waiting:
             return
         squeezed = _squeezed(text)
@@ -168,6 +206,8 @@ class Guide:
 
     def cue(self) -> str | None:
         """What to say before the next prompt, once."""
+        if self.replay.was_answered():
+            self.progress.keep()
         cue, self._cue = self._cue, None
         return cue
 
@@ -181,6 +221,8 @@ class Guide:
         said = []
         if isinstance(self.step.part, File):
             said = [self._provide(over=False)]
+        elif isinstance(self.step.part, Task) and self.step.part.name not in self.progress.solved:
+            said = [f"; The task is not solved yet: {self.step.part.title}. :back leads back to it."]
         if self.place + 1 < len(self.steps):
             self.place += 1
             self._arrived()
@@ -214,7 +256,7 @@ class Guide:
             return "; There are no more hints. :hint begins with the first one again."
         self.hints += 1
         head = self.style.bold(f"Hint {self.hints} of {len(part.hints)}")
-        return f"{head}\n\n{shown.text(part.hints[self.hints - 1], self.style)}"
+        return f"{head}\n\n{shown.text(text_in(part.hints[self.hints - 1], self.language), self.style)}"
 
     def _write(self):
         if not isinstance(self.step.part, File):
@@ -240,18 +282,32 @@ class Guide:
             tasks = each.tasks
             solved = sum(task.name in self.progress.solved for task in tasks)
             lines.append(f" {mark} {number:2}  {each.title:48} {f'{solved} of {len(tasks)} tasks solved' if tasks else ''}".rstrip())
-        return "\n".join([*lines, "; :page 3 goes to page 3."])
+        return "\n".join([*lines, "; :page 3 goes to page 3, and :page 3 2 to its step 2."])
 
     def _page(self, argument):
+        wanted, _, number = argument.partition(" ")
         found = None
-        if argument.isdigit() and 1 <= int(argument) <= len(contents.NAMES):
-            found = contents.NAMES[int(argument) - 1]
-        elif argument in contents.NAMES:
-            found = argument
+        if wanted.isdecimal() and 1 <= int(wanted) <= len(contents.NAMES):
+            found = contents.NAMES[int(wanted) - 1]
+        elif wanted in contents.NAMES:
+            found = wanted
         if found is None:
             return f"; Which page? Type :page and a number from 1 to {len(contents.NAMES)}. :pages shows them."
+        if number:
+            count = len(self.steps if found == self.page.name else steps(page(found), self.language))
+            if not number.isdecimal() or not 1 <= int(number) <= count:
+                return f"; Which step? Page {wanted} has the steps 1 to {count}."
+            if found == self.page.name:
+                self.place = int(number) - 1
+                self._arrived()
+                return self.show()
+            self.progress.steps[found] = int(number) - 1
         self._leave(found)
         return ""
+
+    def _replay(self):
+        count = self.replay.begin()
+        return f"; Typed again: {count} text{'s' * (count != 1)}." if count else "; There is nothing to type again."
 
     def _help(self):
         lines = [f"  :{name:7} {f':{short}' if short else '':4} {told}" for name, (short, told) in COMMANDS.items()]
@@ -277,9 +333,12 @@ class Guide:
         if found["passed"]:
             self.progress.solved.add(part.name)
             self.progress.keep()
-            return "\n".join([*found["told"], OVER])
+            return "\n".join([*self._filled(found["told"]), OVER])
         hint = "; :hint gives a hint." if self.hints < len(part.hints) else "; :hint shows the hints again."
-        return "\n".join(["Not yet.", *found["told"], hint])
+        return "\n".join(["Not yet.", *self._filled(found["told"]), hint])
+
+    def _filled(self, texts):
+        return [shown.filled(line, self.style) for text in texts for line in text.split("\n")]
 
 
 def _squeezed(form):

@@ -231,6 +231,8 @@ class Listener:
                     leave()
                 if prompt_words.word(text, prompt_words.BACKTRACE):
                     return self.say("There is no error here. In the debugger, backtrace shows the calls that led to it.")
+                if prompt_words.word(text, prompt_words.KEYS):
+                    return self.say("; This is the prompt: no debugger is open. (exit) ends the session.")
             reader = self.session.reader(text)
             for form in self.session.forms(reader):
                 begun = None
@@ -349,7 +351,7 @@ class Listener:
         aborts = [restart for restart in restarts if symbol_name(restart.name) == "ABORT"]
         if aborts and prompt_words.word(text, prompt_words.BACK):
             return conditions.invoke_restart_interactively(aborts[0])
-        if aborts and prompt_words.word(text, prompt_words.LEAVING):
+        if aborts and prompt_words.word(text, prompt_words.OUT):
             return conditions.invoke_restart_interactively(aborts[-1])
         if prompt_words.word(text, prompt_words.BACKTRACE):
             return self.say("\n".join(backtrace.calls(condition, sys._getframe(1))))
