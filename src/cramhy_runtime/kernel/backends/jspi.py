@@ -84,6 +84,7 @@ class Carrier:
     """A stack with its turn."""
 
     __slots__ = ("backend", "job", "started", "suspended", "ident", "_turn", "_asker", "_seen", "_counts")
+    direct = False
 
     def __init__(self, backend: JspiBackend, job: Job | None):
         self.backend = backend
