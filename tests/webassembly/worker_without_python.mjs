@@ -61,16 +61,16 @@ const done = {
   keep: () => true,
 };
 
+function begin() {
+  for (const kind of ["python", "imported", "files", "ready"]) tell(kind);
+  wait();
+}
+
 onmessage = ({ data: { kind, value } }) => {
-  if (kind === "lines") value.forEach(evaluate);
+  if (kind === "begin") begin();
+  else if (kind === "lines") value.forEach(evaluate);
   else if (kind === "ask") {
     if (value.what === "import" && atob(value.data) === "broken") refuse(value.id, "This file is broken.");
     else answer(value.id, asked[value.what](value));
   } else if (kind === "file") answer(value.id, done[value.what](value));
 };
-
-tell("python");
-tell("imported");
-tell("files");
-tell("ready");
-wait();

@@ -15,6 +15,7 @@ class Tab {
     this.questions = new Map(); // number -> {resolve, reject}
     this.number = 0;
     this.listeners = new Map();
+    this.spare = globalThis.firstPython ?? null; // a Python that is being made ready
     this.state = "begins"; // "waits", "reads" (a program wants a line), "busy", "ended", "failed", "unfit"
     this.prompt = { text: "", language: "lisp", package: ["COMMON-LISP-USER", "CL-USER"], virtual: true };
     this.lispPackage = "CL-USER"; // to which Lisp returns after Hy

@@ -77,7 +77,7 @@ const requests = {
   },
 };
 const wanted = new Promise((resolve) => {
-  requests.begin = resolve; // until then this is a spare, made ready for a restart
+  requests.begin = resolve; // until then this is made ready: before the page is there, or for a restart
 });
 onmessage = ({ data: { kind, value }, ports }) => requests[kind]?.(value, ports);
 
@@ -116,4 +116,8 @@ main`);
   tell("ended", status);
 }
 
-begin().catch((problem) => tell("failed", String(problem?.message ?? problem).slice(-4000)));
+begin().catch((problem) => {
+  const complain = () => tell("failed", String(problem?.message ?? problem).slice(-4000));
+  complain();
+  wanted.then(complain); // nobody may have heard it
+});
