@@ -1,4 +1,4 @@
-"""The site of ``cramhy browser``, in Chromium: both lectures, typed at its prompt without a network, give the answers of the terminal.
+"""The site of ``cramhy browser``, in Chromium and Firefox: both lectures, typed at its prompt without a network, give the answers of the terminal.
 
 Making the site takes half a minute of the processor, so `make soak` runs these; what the command says of mistakes is always tested.
 """
@@ -20,7 +20,7 @@ import urllib.request
 from pathlib import Path
 
 import pytest
-from browsers import chromium
+from browsers import KINDS, browser, chromium
 from node import node, pyodide
 from systems import takes_long
 
@@ -88,10 +88,16 @@ def made(tmp_path_factory):
 
 
 @pytest.fixture
-def visit(made):
+def kind():
+    """Which browser visits the site. A test that is parametrized with ``kind`` has others."""
+    return "chromium"
+
+
+@pytest.fixture
+def visit(made, kind):
     """A page of the site at its first prompt, and a function that cuts the network."""
-    with served(made) as (address, cut), chromium() as browser:
-        context = browser.new_context(viewport={"width": 1500, "height": 900})
+    with served(made) as (address, cut), browser(kind) as started:
+        context = started.new_context(viewport={"width": 1500, "height": 900})
         context.set_default_timeout(LIMIT)
         page = context.new_page()
         complaints = []
@@ -135,6 +141,7 @@ def enter(page, text):
 
 
 @takes_long
+@pytest.mark.parametrize("kind", KINDS)
 def test_both_lectures_give_the_answers_of_the_terminal_without_a_network(visit):
     sys.path.append(str(ROOT / "tutorials"))
     from lectures import LECTURE_34, LECTURE_38
@@ -152,6 +159,7 @@ def test_both_lectures_give_the_answers_of_the_terminal_without_a_network(visit)
 
 
 @takes_long
+@pytest.mark.parametrize("kind", KINDS)
 def test_the_prompt_has_a_history_ctrl_c_and_a_restart_that_keeps_files(visit):
     page, _ = visit
     assert enter(page, "(+ 1 2)").splitlines() == ["CL-USER> (+ 1 2)", "3"]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from systems import takes_long
-from test_site import enter, made, transcript, visit, wait_for_prompt, wait_for_state  # noqa: F401  fixtures
+from test_site import enter, kind, made, transcript, visit, wait_for_prompt, wait_for_state  # noqa: F401  fixtures
 
 SOLUTIONS = Path(__file__).parents[1] / "course" / "solutions"
 pytestmark = [takes_long, pytest.mark.timeout(3000)]
