@@ -120,8 +120,8 @@ class Tab {
   }
 
   // Evaluate TEXT at the prompt, as one, in a language ("lisp" or "hy") and in a package of Lisp. What leads there is typed first. At the
-  // prompt a long text is not shown whole.
-  run(text, { language = "lisp", name = null } = {}) {
+  // prompt a long text is not shown whole. place: {path, line, column} of a file, where the text stands.
+  run(text, { language = "lisp", name = null, place = null } = {}) {
     const lines = [];
     if (language === "hy") {
       if (this.prompt.language !== "hy") lines.push("(in-hy)");
@@ -134,7 +134,7 @@ class Tab {
       }
     }
     this.prompt = { ...this.prompt, language }; // as it will be, for what is typed before the next prompt comes
-    this.worker.postMessage({ kind: "lines", value: [...lines, text] });
+    this.worker.postMessage({ kind: "lines", value: [...lines, text], place });
   }
 
   interrupt() {
