@@ -25,7 +25,7 @@ from node import node, pyodide
 from systems import takes_long
 
 from cramhy_runtime import cli
-from cramhy_runtime.browser import local_host, pyodide_files, site
+from cramhy_runtime.browser import left_out, local_host, pyodide_files, site
 
 ROOT = Path(__file__).parents[2]
 LIMIT = 120_000  # ms; for a machine that is busy with other things
@@ -215,6 +215,10 @@ def test_the_first_visit_fetches_less_than_nine_megabytes_from_a_host_that_packs
 def test_what_is_not_in_a_tab_is_told_and_what_programs_use_of_pythons_library_is_there(visit):
     page, _ = visit
     assert enter(page, '(py:call "statistics.mean" (list 1 2 3))').splitlines()[-1] == "2"
+    for module in ("numpy", "http"):
+        told = enter(page, f'(py:call "{module}.a" 1)')
+        assert f"No module named '{module}': it is not part of this page." in told and left_out.ADVICE in told and "pip" not in told
+        enter(page, "0")
     told = enter(page, '(ros-load:load-system "cram-location-costmap")')
     assert "cramhy_runtime.robot_world.costmaps is not there in a browser's tab: it needs MuJoCo or numpy" in told
     page.locator("#repl-in").fill("0")
