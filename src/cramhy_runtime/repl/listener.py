@@ -234,7 +234,7 @@ class Listener:
                     return self.say("There is no error here. In the debugger, backtrace shows the calls that led to it.")
                 if prompt_words.word(text, prompt_words.KEYS):
                     return self.say("; This is the prompt: no debugger is open. (exit) ends the session.")
-            reader = self.session.reader(text)
+            reader = self.reader_of(text)
             for form in self.session.forms(reader):
                 begun = None
                 if self.level == 0 and self.leads_away(form, reader):
@@ -262,6 +262,13 @@ class Listener:
         finally:
             if reader is not None:
                 self.tell_not_evaluated(rest_of(reader, begun))
+
+    def reader_of(self, text):
+        """A reader of ``text``, which knows where it stands: in a file, if an editor has sent it."""
+        sent = self.input.sent if isinstance(self.input, Lines) else None
+        if sent is None or sent[0].strip() != text.strip():
+            return self.session.reader(text)
+        return self.session.reader_in_file(*sent)
 
     def tell_not_evaluated(self, text):
         """Tell that ``text``, which stands behind a form that failed, was not evaluated. Closing parentheses alone are no forms."""
