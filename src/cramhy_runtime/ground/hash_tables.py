@@ -15,6 +15,7 @@ from __future__ import annotations
 import weakref
 from binascii import crc32
 
+from cramhy_runtime.kernel.active import checkpoint
 from cramhy_runtime.kernel.images import per_image
 
 from .arrays import is_bit_vector
@@ -32,6 +33,8 @@ EXTENSION_NAMES = "hash-table-weakness hash-table-synchronized-p"
 """Names of package SB-EXT."""
 
 _NOTHING = object()
+TURN = 2000
+"""So many entries are walked between two checkpoints."""
 _TESTS = {eq: "EQ", eql: "EQL", equal: "EQUAL", equalp: "EQUALP"}
 _BY_KEY = ("KEY", "KEY-AND-VALUE", "KEY-OR-VALUE")
 _BY_VALUE = ("VALUE", "KEY-AND-VALUE", "KEY-OR-VALUE")
@@ -113,12 +116,15 @@ class HashTable:
 
     def items(self):
         """Iterate over (key, value) in order of first storing; entries that are removed meanwhile are left out."""
-        entries, original = self.entries, self.originals.get
-        for hash_key in list(entries):
-            value = entries.get(hash_key, _NOTHING)
-            if value is not _NOTHING:
-                key = original(hash_key, hash_key)
-                yield (key, value) if self.weakness is None else (_strong(key), _strong(value))
+        entries, original, hash_keys = self.entries, self.originals.get, list(self.entries)
+        for start in range(0, len(hash_keys), TURN):
+            if start:
+                checkpoint()
+            for hash_key in hash_keys[start : start + TURN]:
+                value = entries.get(hash_key, _NOTHING)
+                if value is not _NOTHING:
+                    key = original(hash_key, hash_key)
+                    yield (key, value) if self.weakness is None else (_strong(key), _strong(value))
 
     def keys(self):
         return (key for key, _ in self.items())
