@@ -199,6 +199,8 @@ class ExitGenerator:
         self.frames.append(frame)
         body, _ = self.captured(lambda: self.gen(node.body, EFFECT))
         self.frames.pop()
+        if node.source == "each_entry":
+            body.insert(0, expression(word("when"), expression(word("is"), names[1], word("Lremoved")), expression(word("continue"))))
         self.emit(word("for"), List([List(names) if len(names) > 1 else names[0], items]), *(body or [NONE]))
         self.continue_exits(frame)
         return self.finish(NONE, node, destination, pure=True)

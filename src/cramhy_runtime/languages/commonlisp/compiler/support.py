@@ -52,7 +52,7 @@ from cramhy_runtime.ground.data import (
     one,
     truth,
 )
-from cramhy_runtime.ground.hash_tables import HashTable, need_table, value_and_presence, value_in_table
+from cramhy_runtime.ground.hash_tables import REMOVED, HashTable, need_table, value_and_presence, value_in_table
 from cramhy_runtime.ground.keyword_calls import keyword_calls
 from cramhy_runtime.ground.dynamic import Bindings, bind, unbind
 from cramhy_runtime.ground.functions import function_of
@@ -153,8 +153,8 @@ def each_of_all(sequence):
 
 
 def each_entry(table):
-    """The pairs of key and value of a hash table."""
-    return need_table(table).items()
+    """The pairs of key and value of a hash table, with ``REMOVED`` for what was removed meanwhile."""
+    return need_table(table).walk()
 
 
 def block_value(exit_, token):
@@ -379,6 +379,7 @@ NAMESPACE = {
     "Leach": each,
     "Leach_of_all": each_of_all,
     "Leach_entry": each_entry,
+    "Lremoved": REMOVED,
     "Lkeep": list.append,
     "Lsame_kind": same_kind,
     "Lany_vector": Vector,
