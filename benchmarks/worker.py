@@ -16,7 +16,7 @@ def main():
     from cramhy_runtime.languages.commonlisp.streams import streams
     from cramhy_runtime.repl.session import Session
 
-    session = Session(time="virtual", backend=sys.argv[1], seed=1)
+    session = Session(time="virtual", backend=sys.argv[1])
     streams.STANDARD_OUTPUT.value = streams.ERROR_OUTPUT.value = streams.BroadcastStream()
     known, prepared = {row.name: row for row in rows()}, {}
     print("ready", flush=True)

@@ -17,6 +17,10 @@ from cramhy_runtime.repl.session import Session
 from .walking import Script
 
 
+TASK = {"lisp": ":page 1 4", "hy": ":page 1 3"}
+"""Leads to the first task of the first page."""
+
+
 @pytest.fixture
 def typed(tmp_path):
     """typed(lines, page, language, progress): what the screen shows."""
@@ -49,6 +53,8 @@ def typed(tmp_path):
         ("page lecture-34", ("page", "lecture-34")),
         (":page", ("page", "")),
         ("page", None),
+        (":page 3 2", ("page", "3 2")),
+        (":page 3 2 1", ("page", "")),
         (":?", ("help", "")),
         ("next page", None),
         (":next 2", None),
@@ -62,11 +68,19 @@ def test_lines_that_are_commands(line, found):
 
 
 @pytest.mark.parametrize(
-    ("line", "near"), [(":nxt", ":next"), (":chek", ":check"), (":hnit", ":hint"), (":left", None), ("nxt", None), ("(x)", None)]
+    ("line", "near"),
+    [(":nxt", ":next"), (":chek", ":check"), (":hnit", ":hint"), (":left", None), (":left right", None), ("nxt", None), ("(x)", None)],
 )
 def test_a_mistyped_command_is_guessed(line, near):
     told = meant(line)
     assert told is None if near is None else told.endswith(f"Did you mean {near}?")
+
+
+@pytest.mark.parametrize(
+    ("line", "told"), [(":next 2", True), (":c seconds", True), (":page 3", False), (":red 2", False), ("next 2", False)]
+)
+def test_a_command_with_words_behind_it_is_told_to_stand_alone(line, told):
+    assert (meant(line) is not None and "stands alone in its line" in meant(line)) is told
 
 
 @pytest.mark.parametrize("language", ["lisp", "hy"])
@@ -82,10 +96,11 @@ def test_commands_stand_beside_forms(typed, language):
         "Only tasks are checked",
         "This step has no file",
         ":next    :n   the next step",
+        ":page         go to a page, by its number: :page 3",
         "-->" not in shown and "-> ",
     ):
         assert told in shown
-    assert "11  Tests" in shown and not shown.rstrip().endswith("2")
+    assert "12  Tests" in shown and not shown.rstrip().endswith("2")
 
 
 def test_what_was_copied_with_the_prompt_is_understood(typed):
@@ -117,13 +132,14 @@ def test_all_forms_typed_is_told_once(typed):
 
 @pytest.mark.parametrize("language", ["lisp", "hy"])
 def test_hints_come_one_after_the_other_and_begin_again(typed, language):
-    shown = typed([":n", ":n", ":hint", ":h", "hint", ":hint", ":quit"], language=language)
+    shown = typed([TASK[language], ":hint", ":h", "hint", ":hint", ":quit"], language=language)
     assert shown.count("Hint 1 of 2") == 2 and shown.count("Hint 2 of 2") == 1 and shown.count("There are no more hints.") == 1
 
 
 def test_in_the_debugger_nothing_is_checked_and_hints_are_given(typed):
-    shown = typed([":n", ":n", "(car 7)", ":check", ":hint", "q", "(* 24 60 60)", ":check", ":quit"])
+    shown = typed([TASK["lisp"], "(car 7)", ":check", ":hint", "(car 8)", "q", "(* 24 60 60)", ":check", ":quit"])
     assert "The debugger is open. Leave it first" in shown and "Hint 1 of 2" in shown and "Well done" in shown
+    assert shown.count("; q leads back to the prompt.") == 2
 
 
 @pytest.mark.parametrize(
@@ -137,7 +153,7 @@ def test_files_are_written_and_those_of_the_student_stay(typed, tmp_path, page, 
     written = file.read_text()
     file.write_text("; mine\n")
     shown = typed([*[":next"] * number, ":quit"], page, language)
-    assert "with a text of your own. It stays." in shown and file.read_text() == "; mine\n"
+    assert "with a text of your own. It stays." in shown.replace("\n; ", " ") and file.read_text() == "; mine\n"
     shown = typed([*[":next"] * (number - 1), ":write", ":write", ":quit"], page, language)
     assert file.read_text() == written and file.with_name(file.name + ".old").read_text() == "; mine\n"
     assert "is there already, as it is shown" in shown
@@ -168,16 +184,16 @@ def test_a_folder_that_cannot_be_made_is_told(tmp_path):
 
 def test_progress_is_kept_and_the_next_run_goes_on_there(typed, tmp_path):
     path = tmp_path / "state" / "learn.json"
-    typed([":n", ":n", "(* 24 60 60)", ":check", ":n", ":quit"], progress=Progress(str(path)))
+    typed([TASK["lisp"], "(* 24 60 60)", ":check", ":n", ":quit"], progress=Progress(str(path)))
     again = Progress(str(path))
-    assert (again.page, again.steps, again.solved) == ("first-forms", {"first-forms": 3}, {"seconds-of-a-day"})
+    assert (again.page, again.steps, again.solved) == ("first-forms", {"first-forms": 4}, {"seconds-of-a-day"})
     shown = typed([":pages", ":quit"], None, progress=again)
-    assert "Page 1, step 4 of " in shown and "1 of 5 tasks solved" in shown
+    assert "Page 1, step 5 of " in shown and "1 of 3 tasks solved" in shown
 
 
 @pytest.mark.parametrize(
     "content",
-    ["", "{", "[]", "null", '{"page": 3}', json.dumps({"page": "x", "steps": {"x": -1}, "solved": []}), '{"page": "a", "steps": [], "solved": 0}', "\0" * 100],
+    ["", "{", "[]", "null", '{"page": 3}', json.dumps({"page": "x", "steps": {"x": -1}, "solved": []}), '{"page": "a", "steps": {}, "solved": [], "typed": {"a": 7}}', '{"page": "a", "steps": [], "solved": 0}', "\0" * 100],
 )  # fmt: skip
 def test_a_file_of_progress_that_is_broken_is_no_progress(tmp_path, content, typed):
     path = tmp_path / "learn.json"
@@ -211,3 +227,142 @@ def test_no_paragraph_is_wider_than_the_terminal(width):
             if isinstance(part, Text):
                 shown = [line for line in text(part.markdown, Style(width)).split("\n") if not line.startswith("    ") and "  " not in line]
                 assert not [line for line in shown if len(line) > width and len(max(line.split(), key=len)) < width]
+
+
+# ------------------------------------------------------------------------------------------------------------------ from day to day
+
+DEFINED = {
+    "lisp": ["(defun twice (x)", "  (* 2 x))", "(defvar *n* (twice 4))", "(car 7)", "(print *n*)", "q", "(in-package :cl)", "'car"],
+    "hy": ["(defn twice [x]", "  (* 2 x))", "(setv n (twice 4))", "(/ 1 0)", "(in-package :cl)", "'car"],
+}
+"""Texts of which one ends in an error: that one is not typed again."""
+
+
+@pytest.mark.parametrize("language", ["lisp", "hy"])
+def test_what_was_typed_in_an_earlier_session_is_typed_again(typed, tmp_path, language):
+    path = str(tmp_path / "learn.json")
+    lines = [":n", *DEFINED[language], ":quit"]
+    shown = typed(lines, language=language, progress=Progress(path))
+    assert "The session is a new one" not in shown
+    value = "(list cl-user::*n* (cl-user::twice 21))" if language == "lisp" else "(in-hy)\n[n (twice 21)]"
+    shown = typed([":replay", *value.split("\n"), ":replay", ":quit"], None, language, Progress(path))
+    assert "; The session is a new one: what you defined on this page before is not there. :replay types it" in shown
+    assert ("\n(8 42)\n" if language == "lisp" else "\n[8 42]\n") in shown, shown
+    assert "(car 7)" not in shown and "(print" not in shown and "(/ 1 0)" not in shown
+    assert ":: There is nothing to type again." in shown.replace("; There is", ":: There is")
+    shown = typed([":replay", ":quit"], None, language, Progress(path))
+    assert shown.count("(* 2 x)") == 1, "what was typed again was kept twice"
+
+
+def test_who_begins_a_page_anew_has_nothing_typed_again(typed, tmp_path):
+    path = str(tmp_path / "learn.json")
+    typed([":n", "(defvar *n* 1)", ":b", ":quit"], progress=Progress(path))
+    assert "The session is a new one" not in typed([":quit"], None, progress=Progress(path))
+    assert "nothing to type again" in typed([":n", ":replay", ":quit"], None, progress=Progress(path))
+
+
+def test_an_error_ends_what_is_typed_again(typed, tmp_path):
+    progress = Progress()
+    progress.steps, progress.typed = {"first-forms": 1}, {"first-forms lisp": ["(defvar *a* 1)", "(car 7)", "(defvar *b* 2)"]}
+    shown = typed([":replay", "q", "(boundp '*a*)", "(boundp '*b*)", ":quit"], progress=progress)
+    assert "\nT\n" in shown and "\nNIL\n" in shown
+
+
+def test_tasks_that_are_left_unsolved_are_told(typed):
+    shown = typed([TASK["lisp"], ":next", ":page 1 10", ":quit"])
+    assert "You have not typed :check for this task: The seconds of a day. :back leads back to it." in shown
+    end = shown[shown.index("step 10 of 10") :]
+    assert "; Not solved yet: The seconds of a day (:page 1 4)\n; Not solved yet: Turn to the left (:page 1 8)\n" in end
+    shown = typed([TASK["lisp"], "(* 24 60 60)", ":check", ":next", ":page 1 10", ":quit"])
+    assert "The seconds of a day (:page" not in shown and ":back leads back" not in shown
+    assert "The task is not solved yet: The seconds of a day." in typed([TASK["lisp"], "(* 24 60)", ":check", ":next", ":quit"])
+
+
+@pytest.mark.parametrize(
+    ("argument", "told"),
+    [("1 2", "Page 1, step 2 of"), ("2 3", "Page 2, step 3 of"), ("1 99", "Page 1 has the steps 1 to 10"), ("1 0", "steps 1 to 10"),
+     ("2 x", "Page 2 has the steps 1 to 8"), ("99 1", "Which page?"), ("lecture-34 2", "Page 4, step 2 of")],
+)  # fmt: skip
+def test_a_step_of_a_page_is_reached_by_its_number(typed, argument, told):
+    assert told in typed([f":page {argument}", ":quit"])
+
+
+@pytest.mark.parametrize("line", ["* 24 60 60", "+ 1 2.5", "- 3 -4"])
+def test_a_call_without_parentheses_is_told(typed, line):
+    shown = typed([line, "*", ":quit"])
+    assert (
+        f"A call has parentheses around it: ({line})" in " ".join(shown.split()).replace("; ", "") and shown.count("form of its own") == 1
+    )
+
+
+def test_remarks_are_filled_to_the_width_of_the_terminal():
+    from cramhy_runtime.course.shown import filled
+
+    assert filled("; one two three four five six seven eight", Style(30)) == "; one two three four five six\n; seven eight"
+    assert filled("short", Style(30)) == "short" and filled("    code " * 9, Style(30)) == "    code " * 9
+
+
+# ------------------------------------------------------------------------------------------------------------- what beginners run into
+
+
+@pytest.mark.parametrize("language", ["lisp", "hy"])
+def test_the_forms_of_a_step_are_typed_for_you(typed, language):
+    shown = typed([":type", ":t", ":type", ":type", TASK[language], ":type", ":quit"], language=language)
+    assert "(max 3 7 5)\n7\n" in shown and shown.count("To see the next step, type :next") == 1
+    assert "This step has nothing more to type." in shown and "A task is for you to type." in shown
+
+
+def test_the_mistake_on_purpose_is_typed_too_and_left(typed):
+    for out in ("q", "3", ":type"):
+        shown = typed([":page 1 3", ":type", out, ":type", ":quit"])
+        assert shown.count("To see the next step, type :next") == 1 and shown.count("debugger invoked on") == 2, out
+
+
+def test_a_form_that_fails_is_still_to_be_typed(typed):
+    lines = [":page 1 5", "(in-package :nowhere)", "q", '(ros-load:load-system "cram_my_beginner_tutorial" :cram-my-beginner-tutorial)']
+    before = typed([*lines, "(init)", "q", "(in-package :tut)", ":quit"])
+    assert "To see the next step" not in before
+    assert "To see the next step" in typed([*lines, "(in-package :tut)", "(init)", ":quit"])
+
+
+@pytest.mark.parametrize("language", ["lisp", "hy"])
+@pytest.mark.parametrize(
+    ("line", "told"), [("", "A form is open. Close it by )), or"), ("q", "and q is taken for a part of it"), ("7", None)]
+)
+def test_who_does_not_see_that_a_form_is_open_is_told(typed, language, line, told):
+    shown = typed(["(+ 1 (* 2 3", line, "))" if line != "q" else "(abs 1)))", ":quit"], language=language)
+    assert (told in shown) if told else ("A form is open" not in shown)
+
+
+@pytest.mark.parametrize("language", ["lisp", "hy"])
+def test_a_function_that_was_defined_again_is_typed_again_as_it_was_last(typed, tmp_path, language):
+    path = str(tmp_path / "learn.json")
+    define = "(defun f (x) (* {} x))" if language == "lisp" else "(defn f [x] (* {} x))"
+    typed(
+        [":n", define.format(2), "(setf *a* 1)" if language == "lisp" else "(setv a 1)", define.format(3), ":quit"],
+        language=language,
+        progress=Progress(path),
+    )
+    shown = typed([":replay", "(f 7)", ":quit"], None, language, Progress(path))
+    assert "; Typed again: 2 texts." in shown and "(* 2 x)" not in shown and "\n21\n" in shown
+
+
+def test_hints_go_on_where_they_were(typed):
+    shown = typed([TASK["lisp"], ":hint", ":next", ":back", ":hint", ":quit"])
+    assert shown.count("Hint 1 of 2") == 1 and shown.count("Hint 2 of 2") == 1
+
+
+LOAD = ['(ros-load:load-system "cram_my_beginner_tutorial" :cram-my-beginner-tutorial)', "(in-package :tut)", "(init)"]
+
+
+def test_another_node_that_drives_the_turtle_is_named(typed):
+    shown = typed([*LOAD, ":page 1 9", "(turtlesim:draw-square)", "(defun drive-square () 1)", ":check", ":quit"])
+    assert "The node /draw_square may drive the turtle, too. End it: rosnode kill /draw_square" in shown
+    assert "may drive the turtle" not in typed([*LOAD, ":page 1 9", "(defun drive-square () 1)", ":check", ":quit"])
+
+
+@pytest.mark.parametrize(("page", "step", "language", "shown_whole"), [(1, 5, "lisp", False), (7, 7, "lisp", True)])
+def test_many_lines_of_the_log_are_cut_where_a_step_is_shown(typed, page, step, language, shown_whole):
+    shown = typed([f":page {page} {step}", ":quit"], language=language)
+    shown = shown[shown.index(f"Page {page}, step {step}") :]
+    assert ("[... some lines of the log]" in shown and "INFO]" not in shown) if not shown_whole else "some lines of the log" not in shown

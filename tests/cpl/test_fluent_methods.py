@@ -89,6 +89,18 @@ def test_methods_of_pulse_and_setf_value_are_called_by_assignments(lisp):
     )
 
 
+def test_methods_of_pulse_are_called_for_the_fluents_of_pulsed_too(lisp):
+    assert (
+        lisp("""(let* ((seen nil) (f (make-fluent)) (once (pulsed f)))
+                     (defmethod pulse :before ((fluent cpl-impl::pulse-fluent)) (push (if (eq fluent once) :once :other) seen))
+                     (top-level
+                       (pursue (whenever (once) (push :woken seen))
+                               (progn (sleep 1) (pulse f) (sleep 1) (pulse f) (sleep 1))))
+                     (list (reverse seen) (value once)))""")
+        == "((:ONCE :WOKEN :ONCE :WOKEN) NIL)"
+    )
+
+
 def test_a_method_of_wait_for_is_called_by_whenever_too(lisp):
     assert (
         lisp("""(defclass patient (value-fluent) ())

@@ -466,3 +466,25 @@ def test_a_dead_task_goes_without_the_garbage_collector():
         assert [reference() for reference in seen] == [None, None]
     finally:
         gc.enable()
+
+
+@pytest.mark.parametrize(
+    "wait",
+    [lambda: cpl.sleep(10), lambda: cpl.wait_for(cpl.make_fluent()), lambda: cpl.par(lambda: cpl.sleep(10), lambda: cpl.sleep(20))],
+    ids=["asleep", "waiting for a fluent", "waiting for branches"],
+)
+def test_a_task_that_was_ended_goes_without_the_garbage_collector(wait):
+    gc.collect()
+    gc.disable()
+    try:
+        seen = []
+
+        def loser():
+            seen.append(weakref.ref(cpl.current_task()))
+            wait()
+
+        cpl.top_level(lambda: cpl.pursue(loser, lambda: cpl.sleep(1)))
+        kernel.settle()
+        assert [reference() for reference in seen] == [None]
+    finally:
+        gc.enable()

@@ -351,3 +351,10 @@ def test_a_failure_that_its_handler_ignores_is_not_warned_of(lisp):
       (cpl:with-failure-handling ((error (failure) (declare (ignore failure)) (return 1))) 2))""")
         == ""
     )
+
+
+def test_a_local_function_that_nobody_calls_is_looked_at_though_it_is_not_made(lisp):
+    assert "undefined function: COMMON-LISP-USER::PRNT" in lisp.said("(defun unmade () (flet ((show () (prnt 1))) 2))")
+    (function,) = lisp("#'unmade")
+    assert function() == 2
+    assert not [const for const in function.__code__.co_consts if hasattr(const, "co_code")]

@@ -35,7 +35,7 @@ EXPANSION = [
   at plan.lisp:2:3
       (dolist x '(1 2)
       ^
-  It is written (dolist (variable list [result]) form...).""",
+  It is written (dolist (variable list [result]) form...), for example (dolist (x '(1 2 3)) (print x))""",
     ),
     (
         "(defun f (x)\n  (cond (= x 1) 2))",
@@ -83,7 +83,8 @@ EXPANSION = [
                     ^
   in the expansion of the macro call at plan.lisp:3:1
     (misspelt 1)
-    ^""",
+    ^
+  Did you mean FORM?""",
     ),
     (
         "(macrolet ((m (x)\n             (car x)))\n  (m 7))",
@@ -105,7 +106,7 @@ COMPILATION = [
     (
         "(defun f x\n  x)",
         """\
-  The lambda list X is malformed: the parameters stand in a list.
+  The lambda list X is malformed: the parameters stand in a list, as in (x).
   at plan.lisp:1:1
     (defun f x
     ^""",
@@ -124,7 +125,35 @@ COMPILATION = [
   (G X) cannot be called: the head of a form must be a symbol or a lambda expression.
   at plan.lisp:3:5
         ((g x) 2)))
-        ^""",
+        ^
+  Is a parenthesis too many in front of it? A function that a form gives is called so: (funcall (G X) 2)""",
+    ),
+    (
+        "(list 1\n  (24 * 60 * 60))",
+        """\
+  24 cannot be called: the head of a form must be a symbol or a lambda expression.
+  at plan.lisp:2:3
+      (24 * 60 * 60))
+      ^
+  The name of the function comes first: (* 24 ...)""",
+    ),
+    (
+        '(defvar *it*\n  (1 "a" x))',
+        """\
+  1 cannot be called: the head of a form must be a symbol or a lambda expression.
+  at plan.lisp:2:3
+      (1 "a" x))
+      ^
+  In a call the name of the function comes first. A list that is no call has a quote: '(1 "a" X)""",
+    ),
+    (
+        "(list\n  (+1 2))",
+        """\
+  1 cannot be called: the head of a form must be a symbol or a lambda expression.
+  at plan.lisp:2:3
+      (+1 2))
+      ^
+  Is a space missing behind the +? (+ 1 ...)""",
     ),
 ]
 RUNNING = [
@@ -159,6 +188,50 @@ RUNNING = [
              identity)
              ^
   IDENTITY is a function, no variable: a call of it is (identity ...), in parentheses of its own.""",
+    ),
+    (
+        "(list\n  dotimes (i 4) (print i))",
+        """\
+  The variable DOTIMES is unbound.
+  at plan.lisp:2:3
+      dotimes (i 4) (print i))
+      ^
+  DOTIMES is a macro, no variable: a call of it is (dotimes ...), in parentheses of its own.""",
+    ),
+    (
+        "(list\n  progn)",
+        """\
+  The variable PROGN is unbound.
+  at plan.lisp:2:3
+      progn)
+      ^
+  PROGN is a special operator, no variable: a call of it is (progn ...), in parentheses of its own.""",
+    ),
+    (
+        '(defun other (heights)\n  heights)\n(defun area (width height) "(heigt"\n  (* width heigth))\n(area 2 3)',
+        """\
+  The variable HEIGTH is unbound.
+  at plan.lisp:4:12
+      (* width heigth))
+               ^
+  Did you mean HEIGHT?""",
+    ),
+    (
+        "(defun area (width height)\n  (* width height))\n(list heigth)",
+        """\
+  The variable HEIGTH is unbound.
+  at plan.lisp:3:7
+    (list heigth)
+          ^""",
+    ),
+    (
+        "(list\n  (*24 60))",
+        """\
+  The function COMMON-LISP-USER::*24 is undefined.
+  at plan.lisp:2:3
+      (*24 60))
+      ^
+  Is a space missing behind the *? (* 24 ...)""",
     ),
     (
         "(let ((x 1)\n      (y no-such-variable))\n  (list x y))",

@@ -48,13 +48,18 @@ class TestLeaving:
         assert type_in.status == 0
 
     def test_in_the_debugger_the_word_leads_to_the_prompt_and_the_call_out(self, type_in):
-        for out in "exit", "quit", ":quit":
+        for out in "exit", "quit", ":quit", "q", ":q":
             shown = type_in(f"(car 1)\n(car 2)\n(car 3)\n{out}\n:here")
             assert shown.endswith(f"2] {out}\nCPL-USER> :here\n:HERE\n")
-        for one in "q", ":q", "abort", ":abort":
+        for one in "a", ":a", "abort", ":abort":
             assert type_in(f"(car 1)\n(car 2)\n{one}\n:here").endswith(f"1] {one}\n0] :here\n:HERE\n")
         shown = type_in("(car 1)\n(exit :code 5)\n:here")
         assert type_in.status == 5 and ":HERE" not in shown
+
+    def test_a_key_of_the_debugger_typed_at_the_prompt_is_no_error(self, type_in):
+        shown = type_in("(car 1)\nq\nq\n:here")
+        assert "; This is the prompt: no debugger is open." in shown and shown.count("debugger invoked") == 1 and shown.endswith(":HERE\n")
+        assert answers(type_in("(defvar q 42)\nq"))[-1] == "42\n"
 
     def test_in_the_debugger_of_a_task_it_ends_the_plan_through_its_cleanup(self, type_in, backend):
         plan = "(top-level (par (unwind-protect (progn (break) 1) (print :cleaned)) (sleep 5)))"
@@ -108,7 +113,7 @@ class TestBacktrace:
         )
 
     def test_the_calls_of_a_level_are_those_of_its_form(self, type_in):
-        shown = answers(type_in(f"{CALLS}\n(wheel-speed 7)\nbt\nq\nbt"))
+        shown = answers(type_in(f"{CALLS}\n(wheel-speed 7)\nbt\na\nbt"))
         assert shown[-3] == (
             "calls, the innermost last:\n  the form at <repl 4>:1:1  (wheel-speed 7)\n  WHEEL-SPEED at <repl 1>:1:24  (car x)\n"
         )

@@ -34,8 +34,8 @@ def test_a_task_that_is_torn_down_fails_as_aborted(type_in, backend, answer):
 
 
 def test_an_error_of_a_form_typed_in_a_tasks_debugger_is_another_level_of_it(type_in, backend):
-    shown = type_in(f"(setf *debug-on-lisp-errors* t){PLAN}\n(car 1)\nq\n0", backend=backend)
-    assert "1] q\n0] 0\ncleanup\n" in shown and shown.endswith(":HANDLED\n")
+    shown = type_in(f"(setf *debug-on-lisp-errors* t){PLAN}\n(car 1)\na\n0", backend=backend)
+    assert "1] a\n0] 0\ncleanup\n" in shown and shown.endswith(":HANDLED\n")
 
 
 def test_the_default_goes_on_to_the_parent(type_in, backend):

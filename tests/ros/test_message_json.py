@@ -2,6 +2,7 @@
 
 import json
 import math
+from fractions import Fraction
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -14,6 +15,8 @@ from cramhy_runtime.ros.message_json import (
     MessageJsonError,
     from_json,
     request_from_json,
+    MOST_TEXTS,
+    float_texts,
     service_named,
     text_of,
     to_json,
@@ -116,6 +119,19 @@ class TestText:
     def test_of_values_of_all_kinds(self, type_name, fields):
         message = message_class(type_name)(**fields)
         assert to_json_text(message) == text_of(to_json(message))
+
+    @pytest.mark.parametrize(
+        "values", [(0.0, -0.0, 0), (-0.0, 0.0), (2, 2.0, DoubleFloat(2.0)), (2.5, Fraction(5, 2)), (2**53 + 1, 2.0**53)]
+    )
+    def test_numbers_that_are_equal_have_the_texts_of_their_own_whichever_comes_first(self, values):
+        float_texts.clear()
+        texts = [to_json_text(message_class("std_msgs/Float64")(data=value)) for value in values]
+        assert texts == [f'{{"data":{float(value)!r}}}' for value in values]
+
+    def test_texts_are_not_kept_without_end(self):
+        for number in range(3 * MOST_TEXTS):
+            float_texts[number + 0.5]
+        assert len(float_texts) <= MOST_TEXTS
 
     def test_what_no_message_may_hold_is_the_same_error(self):
         twist = message_class("geometry_msgs/Twist")()

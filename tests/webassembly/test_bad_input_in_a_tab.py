@@ -1,4 +1,5 @@
-"""What goes wrong in a tab costs a message and at most the session: files are there afterwards. In Chromium, with Python behind the page.
+"""What goes wrong in a tab costs a message and at most the session: files are there afterwards. In Chromium and Firefox, with Python
+behind the page.
 
 Making the site takes half a minute of the processor, so `make soak` runs these.
 """
@@ -6,9 +7,9 @@ Making the site takes half a minute of the processor, so `make soak` runs these.
 from __future__ import annotations
 
 import pytest
-from browsers import chromium
+from browsers import KINDS, browser
 from systems import takes_long
-from test_site import enter, made, served, transcript, visit, wait_for_prompt, wait_for_state  # noqa: F401  fixtures among them
+from test_site import enter, kind, made, served, transcript, visit, wait_for_prompt, wait_for_state  # noqa: F401  fixtures among them
 
 pytestmark = [takes_long, pytest.mark.timeout(3000)]
 KEEP = '(with-open-file (out "kept.lisp" :direction :output) (print :kept out))'
@@ -48,6 +49,7 @@ RECURSIONS = {
 }
 
 
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("way", RECURSIONS)
 def test_endless_recursion_opens_the_debugger(page, way):
     definition, call = RECURSIONS[way]
@@ -64,14 +66,16 @@ def test_memory_that_is_exhausted_opens_the_debugger(page):
     restart(page)
 
 
-def test_ten_thousand_tasks_are_refused_and_the_session_goes_on(page):
+@pytest.mark.parametrize(("kind", "most"), [("chromium", "8,000"), ("firefox", "2,000")])
+def test_ten_thousand_tasks_are_refused_and_the_session_goes_on(page, most):
     told = enter(page, "(cpl:top-level (cpl:par-loop (i (loop for i below 10000 collect i)) i (cpl:sleep 1)))")
-    assert "There is room for 8,000 tasks at a time in a browser, and all of it is taken. End some tasks before you start more." in told
+    assert f"There is room for {most} tasks at a time in a browser, and all of it is taken. End some tasks before you start more." in told
     assert "debugger invoked on a STORAGE-CONDITION:" in told
     enter(page, "0")
     assert enter(page, "(cpl:top-level (cpl:par (cpl:sleep 1) (cpl:sleep 2)) 3)").splitlines()[-1] == "3"
 
 
+@pytest.mark.parametrize("kind", KINDS)
 def test_a_loop_of_python_that_hears_nothing_is_ended_by_a_restart(page):
     begin(page, '(py:call "builtins.exec" "while True: pass" (py:call "builtins.dict"))')
     page.locator("#repl-in").press("Control+c")
@@ -80,9 +84,10 @@ def test_a_loop_of_python_that_hears_nothing_is_ended_by_a_restart(page):
     assert "Started anew. What was defined is gone; files are kept." in transcript(page)
 
 
-def test_a_tab_that_is_closed_while_a_form_runs_has_kept_what_was_written(made):  # noqa: F811
-    with served(made) as (address, _), chromium() as browser:
-        context = browser.new_context()
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_tab_that_is_closed_while_a_form_runs_has_kept_what_was_written(made, kind):  # noqa: F811
+    with served(made) as (address, _), browser(kind) as started:
+        context = started.new_context()
         page = context.new_page()
         page.goto(address)
         wait_for_prompt(page)

@@ -1,4 +1,4 @@
-"""The site of ``cramhy browser``, in Chromium: both lectures, typed at its prompt without a network, give the answers of the terminal.
+"""The site of ``cramhy browser``, in Chromium and Firefox: both lectures, typed at its prompt without a network, give the answers of the terminal.
 
 Making the site takes half a minute of the processor, so `make soak` runs these; what the command says of mistakes is always tested.
 """
@@ -20,12 +20,12 @@ import urllib.request
 from pathlib import Path
 
 import pytest
-from browsers import chromium
+from browsers import KINDS, browser, chromium
 from node import node, pyodide
 from systems import takes_long
 
 from cramhy_runtime import cli
-from cramhy_runtime.browser import local_host, pyodide_files, site
+from cramhy_runtime.browser import left_out, local_host, pyodide_files, site
 
 ROOT = Path(__file__).parents[2]
 LIMIT = 120_000  # ms; for a machine that is busy with other things
@@ -88,10 +88,16 @@ def made(tmp_path_factory):
 
 
 @pytest.fixture
-def visit(made):
+def kind():
+    """Which browser visits the site. A test that is parametrized with ``kind`` has others."""
+    return "chromium"
+
+
+@pytest.fixture
+def visit(made, kind):
     """A page of the site at its first prompt, and a function that cuts the network."""
-    with served(made) as (address, cut), chromium() as browser:
-        context = browser.new_context(viewport={"width": 1500, "height": 900})
+    with served(made) as (address, cut), browser(kind) as started:
+        context = started.new_context(viewport={"width": 1500, "height": 900})
         context.set_default_timeout(LIMIT)
         page = context.new_page()
         complaints = []
@@ -135,6 +141,7 @@ def enter(page, text):
 
 
 @takes_long
+@pytest.mark.parametrize("kind", KINDS)
 def test_both_lectures_give_the_answers_of_the_terminal_without_a_network(visit):
     sys.path.append(str(ROOT / "tutorials"))
     from lectures import LECTURE_34, LECTURE_38
@@ -152,6 +159,7 @@ def test_both_lectures_give_the_answers_of_the_terminal_without_a_network(visit)
 
 
 @takes_long
+@pytest.mark.parametrize("kind", KINDS)
 def test_the_prompt_has_a_history_ctrl_c_and_a_restart_that_keeps_files(visit):
     page, _ = visit
     assert enter(page, "(+ 1 2)").splitlines() == ["CL-USER> (+ 1 2)", "3"]
@@ -207,6 +215,10 @@ def test_the_first_visit_fetches_less_than_nine_megabytes_from_a_host_that_packs
 def test_what_is_not_in_a_tab_is_told_and_what_programs_use_of_pythons_library_is_there(visit):
     page, _ = visit
     assert enter(page, '(py:call "statistics.mean" (list 1 2 3))').splitlines()[-1] == "2"
+    for module in ("numpy", "http"):
+        told = enter(page, f'(py:call "{module}.a" 1)')
+        assert f"No module named '{module}': it is not part of this page." in told and left_out.ADVICE in told and "pip" not in told
+        enter(page, "0")
     told = enter(page, '(ros-load:load-system "cram-location-costmap")')
     assert "cramhy_runtime.robot_world.costmaps is not there in a browser's tab: it needs MuJoCo or numpy" in told
     page.locator("#repl-in").fill("0")

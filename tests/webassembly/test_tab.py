@@ -16,15 +16,19 @@ from cramhy_runtime.session.session import Session
 
 
 class Host:
-    """Types lines, and notes what the page is told: ``prompts`` and ``errors``."""
+    """Types lines, and notes what the page is told: ``prompts`` and ``errors``. A line may be a pair of a text and its place, as JSON."""
 
     def __init__(self, lines):
         self.lines, self.prompts, self.errors = list(lines), [], []
-        self.prompt = ""
+        self.prompt, self.place = "", "null"
 
     @property
     def line(self):
         self.prompts.append(json.loads(self.prompt))
+        self.place = "null"
+        if self.lines and isinstance(self.lines[0], tuple):
+            line, self.place = self.lines.pop(0)
+            return line
         return (
             self.lines.pop(0)
             if self.lines
@@ -137,3 +141,35 @@ def test_values_that_cannot_be_printed_do_not_hide_the_error(type_in):
     )
     (error,) = [each for each in host.errors if each]
     assert error["type"] == "TYPE-ERROR" and error["frames"][0]["variables"][0][0] == "IT"
+
+
+def test_an_error_in_a_form_of_the_editor_names_the_file_its_line_and_its_column(type_in, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "plans.lisp").write_text("\n\n  (defun walk (steps)\n    (car steps))\n(list 1\n  (walk 5))\n")
+
+    def sent(text, line, column):
+        return text, json.dumps({"path": "plans.lisp", "line": line, "column": column})
+
+    host = type_in(
+        sent("(defun walk (steps)\n    (car steps))", 3, 3),
+        sent("(list 1\n  (walk 5))", 5, 1),
+        sent("(car 1)", 6, 20),  # in the debugger
+        "1",
+        "0",
+        "(car 2)",  # by hand
+        "0",
+        "(in-hy)",
+        "(in-package :cl-user)",
+        sent("(car 3)", 8, 1),  # Lisp within Hy
+        "0",
+    )
+    places = [[frame["place"] for frame in error["frames"]] for error in host.errors if error]
+    assert places[0] == ["plans.lisp:4:5"] and type_in.shown.count("  at plans.lisp:4:5\n        (car steps))\n") == 1
+    shown = [line.strip() for line in type_in.shown.splitlines() if line.startswith("  at ")]
+    assert shown == ["at plans.lisp:4:5", "at plans.lisp:6:20", "at <repl 2>:1:1", "at plans.lisp:8:1"]
+
+
+def test_what_is_typed_into_a_form_that_is_open_has_no_place_in_a_file(type_in, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    type_in("(list", ("(car 1))", json.dumps({"path": "plans.lisp", "line": 9, "column": 1})), "0")
+    assert "at <repl 1>:2:1" in type_in.shown

@@ -8,8 +8,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from browsers import KINDS
 from systems import takes_long
-from test_site import enter, made, transcript, visit, wait_for_prompt, wait_for_state  # noqa: F401  fixtures
+from test_site import enter, kind, made, transcript, visit, wait_for_prompt, wait_for_state  # noqa: F401  fixtures
 
 SOLUTIONS = Path(__file__).parents[1] / "course" / "solutions"
 pytestmark = [takes_long, pytest.mark.timeout(3000)]
@@ -78,6 +79,21 @@ def test_an_error_is_left_by_a_button_and_its_calls_show_their_variables(visit):
     page.keyboard.type("(list")  # while a plan's task has the baton, questions are answered
     page.keyboard.press("Tab")
     wait_for(page, ".cm-tooltip-autocomplete li", "list-length")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_an_error_in_a_form_of_the_editor_names_its_line_in_the_file(visit):  # noqa: F811
+    page, _ = visit
+    write(page, "(defun one () 1)\n\n(defun walk (steps)\n  (car steps))")
+    after(page, lambda: page.keyboard.press("Alt+Enter"))
+    assert "  at plans.lisp:4:3\n      (car steps))\n      ^\n" in enter(page, "(walk 5)")
+    enter(page, "0")
+    page.locator("#code-in").press("Control+Home")
+    page.keyboard.type(";; a line more\n")
+    page.keyboard.press("Control+End")
+    after(page, lambda: page.keyboard.press("Alt+Enter"))
+    assert "  at plans.lisp:5:3\n      (car steps))\n      ^\n" in enter(page, "(walk 5)")
+    enter(page, "0")
 
 
 def test_hy_is_spoken_and_programs_read_lines(visit):  # noqa: F811
@@ -169,9 +185,12 @@ def test_time_is_the_walls_when_the_page_says_so(visit):  # noqa: F811
 def test_tasks_of_the_course_are_solved_in_the_page(visit, language):  # noqa: F811
     page, _ = visit
     page.locator(f'#lesson-languages button[data-language="{language}"]').click()
-    for button in page.get_by_role("button", name="Type it for me").all():
-        after(page, button.click)
-    for name, title in (("rectangle", "rectangle"), ("turn-left", "Turn to the left")):
+    other = {"lisp": "hy", "hy": "lisp"}[language]
+    for name, title in (("turn-left", "Turn to the left"), ("rectangle", "rectangle")):
+        for button in page.get_by_role("button", name="Type it for me").all():
+            after(page, button.click)
+        assert page.locator(f'#lesson-page [data-only="{language}"]:visible').count() >= 3
+        assert page.locator(f'#lesson-page [data-only="{other}"]:visible').count() == 0
         task = page.locator(".task-box", has_text=title)
         task.get_by_role("button", name="Check").click()
         task.locator(".told.missed").wait_for()
@@ -180,4 +199,5 @@ def test_tasks_of_the_course_are_solved_in_the_page(visit, language):  # noqa: F
         write(page, (SOLUTIONS / f"{name}.{language}").read_text())
         task.get_by_role("button", name="Check").click()
         task.locator(".told.passed").wait_for()
-    assert page.locator("#lesson-done").get_attribute("title") == "2 of 33 tasks are solved"
+        page.locator("#lesson-after").click()
+    assert page.locator("#lesson-done").get_attribute("title") == "2 of 34 tasks are solved"

@@ -1,5 +1,5 @@
 // Stands for the worker of a tab, without Python: a prompt that answers with the length of what was typed, files in memory, and an error
-// for (error). So the page is tested without the seconds that Python takes.
+// for (error); (where) is answered with where it stands. So the page is tested without the seconds that Python takes.
 
 const files = new Map([["plans.lisp", "(defun one () 1)\n"], ["turtle.hy", "(defn two [] 2)\n"], ["picture.png", null]]);
 let prompt = { text: "CL-USER> ", language: "lisp", package: ["COMMON-LISP-USER", "CL-USER"], virtual: true };
@@ -14,7 +14,7 @@ function wait() {
   tell("prompt", error ? { ...prompt, text: `${error.level}] ` } : prompt);
 }
 
-function evaluate(line) {
+function evaluate(line, place) {
   tell("busy");
   tell("text", `${error ? "0] " : prompt.text}${line}\n`);
   if (line === "(in-hy)") prompt = { ...prompt, text: "=> ", language: "hy" };
@@ -26,7 +26,8 @@ function evaluate(line) {
       restarts: [{ name: "CONTINUE", report: "Go on." }, { name: "ABORT", report: "Return to top level." }],
       frames: [{ call: "(DRIVE 5)", place: "plans.lisp:3:1", variables: [["SPEED", "5"]] }],
     };
-  } else if (error && line === "1") error = null;
+  } else if (line === "(where)") tell("text", `${JSON.stringify(place)}\n`);
+  else if (error && line === "1") error = null;
   else tell("text", `${line.length}\n`);
   wait();
 }
@@ -61,16 +62,16 @@ const done = {
   keep: () => true,
 };
 
-onmessage = ({ data: { kind, value } }) => {
-  if (kind === "lines") value.forEach(evaluate);
+function begin() {
+  for (const kind of ["python", "imported", "files", "ready"]) tell(kind);
+  wait();
+}
+
+onmessage = ({ data: { kind, value, place = null } }) => {
+  if (kind === "begin") begin();
+  else if (kind === "lines") value.forEach((line, number) => evaluate(line, number === value.length - 1 ? place : null));
   else if (kind === "ask") {
     if (value.what === "import" && atob(value.data) === "broken") refuse(value.id, "This file is broken.");
     else answer(value.id, asked[value.what](value));
   } else if (kind === "file") answer(value.id, done[value.what](value));
 };
-
-tell("python");
-tell("imported");
-tell("files");
-tell("ready");
-wait();

@@ -1,7 +1,8 @@
-"""What of cramhy is not in a tab, and what somebody is told who asks for it there.
+"""What is not in a tab, and what somebody is told who asks for it there.
 
-These rooms and modules need what WebAssembly does not have: processes, sockets, or packages that exist compiled for other machines only.
-`install` makes an import of one of them an error that says so, in place of "No module named ...".
+Some rooms and modules of cramhy need what WebAssembly does not have: processes, sockets, or packages that exist compiled for other machines
+only. Other packages, such as numpy, are not in the site. `install` makes an import of one of them an error that says so, in place of "No
+module named ...".
 """
 
 from __future__ import annotations
@@ -47,6 +48,7 @@ WHY = {
     "swank": _PROGRAMS,
 }
 """For each room or module below `cramhy_runtime` why it is left out."""
+ADVICE = 'Install cramhy on a computer for that; the page "Install" of its documentation says how.'
 FILES = ("browser/static", "browser/editor", "view/static", "py.typed")
 """What stands beside the archive, or is of no use in it."""
 
@@ -64,10 +66,24 @@ class _Absent:
     def find_spec(name: str, path: object = None, target: object = None) -> ModuleSpec | None:
         room = name.removeprefix("cramhy_runtime.")
         if room != name and room in WHY:
-            raise ImportError(f"{name} is not there in a browser's tab: {WHY[room]}. Install cramhy on a computer for that.", name=name)
+            raise ImportError(f"{name} is not there in a browser's tab: {WHY[room]}. {ADVICE}", name=name)
+        return None
+
+
+class _Unknown:
+    """Is asked last, for what nobody has found. Who only asks whether there is such a module (`importlib.util.find_spec`) is told none."""
+
+    @staticmethod
+    def find_spec(name: str, path: object = None, target: object = None) -> ModuleSpec | None:
+        if path is None and sys._getframe(2).f_code.co_name == "_find_and_load_unlocked":
+            problem = ModuleNotFoundError(f"No module named '{name}': it is not part of this page.", name=name)
+            problem.hint = ADVICE  # type: ignore[attr-defined]  # for Lisp
+            problem.add_note(ADVICE)  # for Hy and Python
+            raise problem
         return None
 
 
 def install() -> None:
     """Tell of what is not there, from now on."""
     sys.meta_path.insert(0, _Absent)  # type: ignore[arg-type]
+    sys.meta_path.append(_Unknown)  # type: ignore[arg-type]

@@ -41,6 +41,8 @@ POLICY = (
     "img-src 'self' data: blob:; font-src 'self'; base-uri 'none'; form-action 'none'"
 )
 HAS_JSPI = "process.exit(typeof WebAssembly.Suspending === 'function' ? 0 : 1)"
+FIRST_SCRIPT = '<script src="begin.js"></script>'
+"""It stands before all style sheets, for which a script waits."""
 SCRIPTS = """<link rel="stylesheet" href="tab.css">
 <script defer src="old.js"></script>
 <script type="module" src="desk.js"></script>
@@ -166,7 +168,7 @@ def _write_page(made):
     desk = DESK.read_text(encoding="utf-8")
     policy = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
     for before, after in (
-        ('<meta charset="utf-8">', f'<meta charset="utf-8">\n{policy}'),
+        ('<meta charset="utf-8">', f'<meta charset="utf-8">\n{policy}\n{FIRST_SCRIPT}'),
         (script, f"{SCRIPTS}{script}"),
         ("</header>\n", f"</header>\n{desk}"),
         ("<main ", '<div class="live">\n<main '),

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import sys
 from contextlib import contextmanager
 
@@ -63,6 +64,8 @@ class PageLines(Lines):
         if not isinstance(line, str):
             sys.stdout.write(prompt)
             return BROKEN_OFF
+        place = json.loads(host.place)
+        self.sent = place and (line, os.path.abspath(place["path"]), place["line"], place["column"])
         sys.stdout.write(f"{prompt}{line}\n")
         sys.stdout.flush()
         return line

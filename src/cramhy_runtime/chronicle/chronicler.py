@@ -92,8 +92,16 @@ class Chronicler:
         if "tasks" in self.sources:
             self.sources["tasks"].every = bool(self.listeners)
         try:
+            news = []
             with looking_on():
-                news = [(kind, message) for kind in list(self.sources) if (message := self._taken(kind)) is not None]
+                for kind, source in list(self.sources.items()):
+                    try:
+                        message = source.take()
+                    except (Condition, Exception) as problem:
+                        self._give_up(kind, problem)
+                        continue
+                    if message is not None:
+                        news.append((kind, message))
             for kind, message in news:
                 self.state.add(kind, message)
                 for listener in self.listeners:
@@ -105,14 +113,11 @@ class Chronicler:
         if self.board is not None:
             self.board.publish()
 
-    def _taken(self, kind):
-        """What is new of one kind. Whatever goes wrong there, the plan and what is told of others do not suffer from it."""
-        try:
-            return self.sources[kind].take()
-        except (Condition, Exception) as problem:
-            source = self.sources.pop(kind)
-            warn(SimpleWarning("~a", f"Changes of {NAMES[kind]} can be told no more: {type(problem).__name__}: {problem}"))
-            source.end()
+    def _give_up(self, kind, problem):
+        """Tell of one kind no more. Whatever goes wrong there, the plan and what is told of others do not suffer from it."""
+        source = self.sources.pop(kind)
+        warn(SimpleWarning("~a", f"Changes of {NAMES[kind]} can be told no more: {type(problem).__name__}: {problem}"))
+        source.end()
 
     # ------------------------------------------------------------------------------------------------------- plan time
 

@@ -22,7 +22,7 @@ from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import one
 from cramhy_runtime.ground.numbers import is_real
 from cramhy_runtime.ground.printing import princ_to_string
-from ..ros.messages import message_class_exact
+from ..ros.messages import RosMessage, message_class_exact
 from ..ros.wire import ros_text
 from .texts import value_text
 
@@ -33,10 +33,10 @@ _of_a_task = re.compile(r"-STATUS\d+$")
 
 
 class Watched:
-    __slots__ = ("fluent", "id", "pulses", "value")
+    __slots__ = ("fluent", "id", "pulses")
 
     def __init__(self, fluent, id_):
-        self.fluent, self.id, self.pulses, self.value = ref(fluent), id_, None, None
+        self.fluent, self.id, self.pulses = ref(fluent), id_, None
 
 
 class Fluents:
@@ -102,7 +102,7 @@ def _value(fluent):
         value = one(peek_value(fluent))
     except (Condition, Exception) as problem:  # of a class of the user's, whose value is computed by the user's code
         return f"(no value: {type(problem).__name__})", math.nan
-    if is_real(value):
+    if not isinstance(value, RosMessage) and is_real(value):
         try:
             return value_text(value), float(value)
         except OverflowError:

@@ -16,6 +16,7 @@ from __future__ import annotations
 import errno
 import os
 from decimal import Decimal
+from functools import partial
 
 from cramhy_runtime import __version__, kernel, storage
 from cramhy_runtime.ground.condition_types import SimpleWarning
@@ -125,7 +126,7 @@ class Recorder:
         topic = self.graph.topics[name]
         if name in self._subscriptions or name in TOPICS.values() or name == "/cramhy/pace":
             return
-        subscription = self._node.subscribe(name, topic.type, lambda message: self._write(name, message))
+        subscription = self._node.subscribe(name, topic.type, partial(self._write, name))
         self._subscriptions[name] = subscription
         for publication in topic.publications:  # also of nodes that accept connections in their next tick only
             publication.connect(subscription)
@@ -160,7 +161,7 @@ class Recorder:
     # -------------------------------------------------------------------------------------------------------------- the file
 
     def _now(self):
-        time = self.kernel.now()
+        time = self.kernel.clock.now()
         if time != self._time:  # several messages belong to each instant
             self._time, self._nanoseconds = time, self._epoch + round(time * 1e9)
         return self._nanoseconds
@@ -171,15 +172,15 @@ class Recorder:
         except MessageJsonError as problem:
             warn(SimpleWarning("A message on ~a is not in the recording ~a: ~a", topic, self.path, str(problem)))
             return
-        self._put(topic, message.ros_type, text, lambda: schema_text(message.__class__))
+        self._put(topic, message.ros_type, text, schema_text, message.__class__)
 
-    def _put(self, topic, kind, text, schema):
-        """Write the JSON of a message; ``schema()`` is asked for when it is the first one of its type on ``topic``."""
+    def _put(self, topic, kind, text, schema, *of):
+        """Write the JSON of a message; ``schema(*of)`` is asked for when it is the first one of its type on ``topic``."""
         if self.closed:
             return
         data, chunk = text.encode(), self._chunk
         try:
-            channel = self._channels.get((topic, kind)) or self._channel(topic, kind, schema())
+            channel = self._channels.get((topic, kind)) or self._channel(topic, kind, schema(*of))
             now = self._now()
             chunk.add(channel[0], channel[1], now, data)
             channel[1] += 1

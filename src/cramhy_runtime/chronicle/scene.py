@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import math
 
-from cramhy_runtime.ros.message_json import text_of
+from cramhy_runtime.ros.message_json import float_texts, text_of
 from cramhy_runtime.turtlesim.dimensions import EXTENT, METRE
 
 TOPIC, TYPE = "/cramhy/scene", "foxglove.SceneUpdate"
@@ -32,21 +32,22 @@ class Scene:
         self.ink_time = self.turtle_time = -math.inf
 
     def update(self, world, nanoseconds):
-        stamp, entities, deletions = time_of(nanoseconds), [], []
+        entities, deletions = [], []
         if world.complete or world.clears != self.clears:
             self.clears, self.waiting, self.turtles = world.clears, [], {}
             self.turtle_time = -math.inf
-            deletions.append({"timestamp": stamp, "type": 1, "id": ""})
-            entities.append(text_of(entity(stamp, "paper", cubes=[_paper(world)])))
+            deletions.append({"timestamp": time_of(nanoseconds), "type": 1, "id": ""})
+            entities.append(text_of(entity(time_of(nanoseconds), "paper", cubes=[_paper(world)])))
         self.waiting += world.strokes
         if self.waiting and world.stamp - self.ink_time >= INK_PERIOD:
-            entities.append(self._ink(stamp, world.stamp))
+            entities.append(self._ink(time_of(nanoseconds), world.stamp))
         if world.stamp - self.turtle_time >= TURTLE_PERIOD or not world.strokes:  # a turtle that came to rest is told where
             self.turtle_time = world.stamp
             here = {turtle.name: _turtle(turtle) for turtle in world.turtles if math.isfinite(turtle.x + turtle.y + turtle.theta)}
+            stamp = time_of(nanoseconds)
             deletions += [{"timestamp": stamp, "type": 0, "id": f"turtle {name}"} for name in self.turtles if name not in here]
             moved = {name: arrow for name, arrow in here.items() if arrow != self.turtles.get(name)}
-            entities += [text_of(entity(stamp, f"turtle {name}", arrows=[arrow])) for name, arrow in moved.items()]
+            entities += [_TURTLE % (text_of(stamp), text_of(f"turtle {name}"), *arrow) for name, arrow in moved.items()]
             self.turtles = here
         return _update_text(entities, deletions) if deletions or entities else None
 
@@ -56,11 +57,11 @@ class Scene:
 
     def _ink(self, stamp, now):
         """The text of an entity with the lines that wait. They are many, so their points are written without plain data in between."""
-        pens, number = {}, float.__repr__
+        pens, number = {}, float_texts
         for stroke in self.waiting:
             x1, y1, x2, y2 = stroke.x1, stroke.y1, stroke.x2, stroke.y2
             pens.setdefault((stroke.r, stroke.g, stroke.b, stroke.width), []).append(
-                _TWO_POINTS % (number(x1), number(y1), number(x2), number(y2))
+                _TWO_POINTS % (number[x1], number[y1], number[x2], number[y2])
             )
         self.waiting, self.ink_time = [], now
         self.pieces += 1
@@ -85,7 +86,7 @@ _TWO_POINTS = '{"x":%s,"y":%s,"z":0.0},{"x":%s,"y":%s,"z":0.0}'
 
 
 def _update_text(entities, deletions=()):
-    return f'{{"deletions":{text_of(deletions)},"entities":[{",".join(entities)}]}}'
+    return f'{{"deletions":{text_of(deletions) if deletions else "[]"},"entities":[{",".join(entities)}]}}'
 
 
 def time_of(nanoseconds):
@@ -123,15 +124,34 @@ def _paper(world):
 
 
 def _turtle(turtle):
-    half = turtle.theta / 2
-    return {
-        "pose": _pose(turtle.x, turtle.y, 0.1, {"x": 0.0, "y": 0.0, "z": math.sin(half), "w": math.cos(half)}),
+    """The texts of what differs between the arrows of turtles, in the order of `_TURTLE`."""
+    half, number = turtle.theta / 2, float_texts
+    return (
+        number[turtle.x],
+        number[turtle.y],
+        number[math.sin(half)],
+        number[math.cos(half)],
+        number[turtle.r / 255],
+        number[turtle.g / 255],
+        number[turtle.b / 255],
+    )
+
+
+def _turtle_text():
+    """The text of the entity of a turtle, with ``%s`` for the texts of its time and name, and of its `_turtle`."""
+    given = "?"
+    arrow = {
+        "pose": _pose(given, given, 0.1, {"x": 0.0, "y": 0.0, "z": given, "w": given}),
         "shaft_length": 0.35,
         "shaft_diameter": 0.35,
         "head_length": 0.25,
         "head_diameter": 0.5,
-        "color": _colour(turtle.r, turtle.g, turtle.b),
+        "color": {"r": given, "g": given, "b": given, "a": 1.0},
     }
+    return text_of(entity(given, given, arrows=[arrow])).replace(f'"{given}"', "%s")
+
+
+_TURTLE = _turtle_text()
 
 
 # ------------------------------------------------------------------------------------------------------------------- schema

@@ -9,6 +9,7 @@ from pathlib import Path
 
 NAMES = (
     "first-forms",
+    "names-and-functions",
     "first-plan",
     "lecture-34",
     "simple-plans",

@@ -6,29 +6,40 @@ A step is some text, and then code to type, a file or a task. Nothing here reads
 from __future__ import annotations
 
 import difflib
+import re
 from typing import NamedTuple
 
 from . import checking, contents, files, shown
-from .parts import Code, File, Page, Task, Text
+from .parts import Code, File, Page, Task, Text, Typed, text_in
 from .progress import Progress
 from .reading import PageError, page, pages
+from .replay import Replay
 from .shown import Style
 
 COMMANDS = {
     "next": ("n", "the next step, or the next page"),
+    "type": ("t", "type the next form of this step for you"),
     "back": ("b", "the step before"),
     "again": ("a", "this step, shown again"),
     "hint": ("h", "the next hint for the task"),
     "check": ("c", "look whether the task is solved"),
     "write": ("w", "write the file of this step, over one of your own, too"),
     "pages": ("p", "all pages, and what you have solved"),
-    "page": ("", "go to a page, by its number: :page 3"),
+    "page": ("", "go to a page, by its number: :page 3; :page 3 2 goes to its step 2"),
+    "replay": ("r", "type again what you typed on this page in an earlier session"),
     "help": ("?", "this list"),
     "quit": ("q", "leave; cramhy learn goes on here"),
 }
 """The commands: the short name of each, and what it does."""
 _SHORT = {short: name for name, (short, _) in COMMANDS.items() if short}
 WITH_ARGUMENT = ("page",)
+_WITHOUT_PARENTHESES = re.compile(r"\s*[-+*/](?:\s+-?\d[\d.]*)+\s*")
+_OF_DEBUGGER = re.compile(r"\d+\] ")
+_LOG = re.compile(r"(?:^\[\([A-Z].*\) INFO\].*\n){3,}", re.M)
+_SHORT_LOG = "[... some lines of the log]\n"
+"""What a step shows in the place of many lines of the log; they come when the form is typed."""
+ERROR = "debugger invoked"
+"""In the answer of a form that a page shows to fail."""
 OVER = "; To see the next step, type :next"
 
 
@@ -44,11 +55,11 @@ def steps(wanted: Page, language: str) -> list[Step]:
     found, texts = [], []
     for part in wanted.parts:
         if isinstance(part, Text):
-            texts.append(part.markdown)
+            texts += filter(None, [text_in(part.markdown, language)])
         elif isinstance(part, Task) or getattr(part, language):
             found.append(Step(tuple(texts), part))
             texts = []
-        elif isinstance(part, Code):
+        elif isinstance(part, Code) and not part.apart:
             block = "".join(f"{typed.prompt}{typed.form}\n{typed.answer}" for typed in part.lisp or part.hy)
             texts.append(f"```\n{block}```")
     if texts or not found:
@@ -58,23 +69,38 @@ def steps(wanted: Page, language: str) -> list[Step]:
 
 def command(line: str) -> tuple[str, str] | None:
     """(name, argument) of the command that a line is, with or without the colon in front; ``None`` if it is none."""
-    words = line.strip().lower().split()
-    if not 1 <= len(words) <= 2:
-        return None
-    word = words[0].removeprefix(":")
-    name = word if word in COMMANDS else _SHORT.get(word) if words[0].startswith(":") else None
-    if name is None or (len(words) == 2) != (name in WITH_ARGUMENT):
-        return (name, "") if name in WITH_ARGUMENT and words[0].startswith(":") else None
-    return name, words[1] if len(words) == 2 else ""
+    first, *arguments = line.strip().lower().split() or [""]
+    word = first.removeprefix(":")
+    name = word if word in COMMANDS else _SHORT.get(word) if first.startswith(":") else None
+    if name not in WITH_ARGUMENT:
+        return (name, "") if name is not None and not arguments else None
+    if 1 <= len(arguments) <= 2:
+        return name, " ".join(arguments)
+    return (name, "") if first.startswith(":") else None
 
 
 def meant(line: str) -> str | None:
-    """What to say of a line with one word and a colon in front that is almost a command; ``None`` for any other line."""
-    word = line.strip().lower()
-    if not word.startswith(":") or len(word.split()) != 1:
+    """What to say of a line with a colon in front that is almost a command; ``None`` for any other line."""
+    first, *arguments = line.strip().lower().split() or [""]
+    if not first.startswith(":"):
         return None
-    near = difflib.get_close_matches(word[1:], COMMANDS, 1, 0.65)
-    return f"; There is no command {word}. Did you mean :{near[0]}?" if near else None
+    found = command(first)
+    if found is not None and arguments:
+        return f"; :{found[0]} stands alone in its line." if found[0] not in WITH_ARGUMENT else None
+    near = difflib.get_close_matches(first[1:], COMMANDS, 1, 0.65)
+    return f"; There is no command {first}. Did you mean :{near[0]}?" if near and not arguments else None
+
+
+def told_of_open_form(lines: list[str]) -> str | None:
+    """What to say when a form is open, and the last of ``lines`` is empty, a command, or was meant for the debugger."""
+    line, text = lines[-1].strip(), "\n".join(lines)
+    found = command(line) if line.startswith(":") else None
+    if line and found is None and line.lower() not in ("q", "help", "?", "exit"):
+        return None
+    taken = f", and {f':{found[0]}' if found else line} is taken for a part of it" if line else ""
+    count = text.count("(") - text.count(")")
+    close = f"Close it by {')' * count}" if 0 < count < 10 else "Close its parentheses"
+    return f"; A form is open{taken}. {close}, or press Ctrl-C to begin anew."
 
 
 class Guide:
@@ -89,10 +115,20 @@ class Guide:
         self.place = min(progress.steps.get(name, 0), len(self.steps) - 1)
         self.leaves_for: str | None = None
         self.over = False
-        self.hints = 0
-        self._waiting: list[str] = []  # what is still to be typed of this step
+        self._hints: dict[int, int] = {}  # how many hints of a step were shown, by its place
+        self._checked = False  # whether the task of this step was checked since the step is shown
+        self._waiting: list[Typed] = []  # what is still to be typed of this step
+        self._read: Typed | None = None  # which of them is being answered
         self._cue: str | None = None
+        self.replay = Replay(self._typed_before())
         self._arrived()
+
+    def _typed_before(self):
+        """The texts that were typed on this page. Who begins the page anew begins them anew."""
+        texts = self.progress.typed.setdefault(f"{self.page.name} {self.language}", [])
+        if not self.place:
+            texts.clear()
+        return texts
 
     @property
     def step(self) -> Step:
@@ -100,15 +136,23 @@ class Guide:
         return self.steps[self.place]
 
     def _arrived(self):
-        self.hints = 0
         part = self.step.part
-        self._waiting = [_squeezed(typed.form) for typed in getattr(part, self.language)] if isinstance(part, Code) else []
-        self._cue = None
+        self._waiting = list(getattr(part, self.language)) if isinstance(part, Code) else []
+        self._read = self._cue = None
+        self._checked = False
         self.progress.page = self.page.name
         self.progress.steps[self.page.name] = self.place
         self.progress.keep()
 
     # -------------------------------------------------------------------------------------------------------------- what is shown
+
+    def greeting(self) -> str:
+        """What to show first on the page."""
+        if not self.replay.earlier:
+            return self.show()
+        return "\n".join(
+            [self.show(), "; The session is a new one: what you defined on this page before is not there. :replay types it again."]
+        )
 
     def show(self) -> str:
         """The step as text, with what can be typed now."""
@@ -119,7 +163,9 @@ class Guide:
         part = self.step.part
         if isinstance(part, Code):
             typed = getattr(part, self.language)
-            found.append(shown.code("".join(f"{each.prompt}{each.form}\n{each.answer}" for each in typed), self.style))
+            found.append(
+                shown.code("".join(f"{each.prompt}{each.form}\n{_LOG.sub(_SHORT_LOG, each.answer)}" for each in typed), self.style)
+            )
         elif isinstance(part, File):
             found.append(self._file(*getattr(part, self.language)))
         elif isinstance(part, Task):
@@ -132,7 +178,7 @@ class Guide:
 
     def _task(self, task):
         solved = " (solved)" if task.name in self.progress.solved else ""
-        found = [self.style.bold(f"Task: {task.title}{solved}"), shown.text(task.markdown, self.style)]
+        found = [self.style.bold(f"Task: {task.title}{solved}"), shown.text(text_in(task.markdown, self.language), self.style)]
         if self.language in task.start:
             found += ["Begin with this, and change it:", shown.code(task.start[self.language], self.style)]
         return "\n\n".join(found)
@@ -144,11 +190,21 @@ class Guide:
         if isinstance(part, File):
             return "; :next writes this file and goes on. You can also write it yourself, with an editor."
         if self.place + 1 < len(self.steps):
-            return "; Type what stands behind the prompts. :next goes on, and :help shows all commands."
+            return "; Type what stands behind the prompts, or :type does. :next goes on, and :help tells the rest."
         after = self._after()
         if after is None:
-            return "; This is the end of the course. :pages shows all pages."
-        return f"; This is the end of the page. :next begins the next one: {page(after).title}."
+            return self._with_unsolved("; This is the end of the course. :pages shows all pages.")
+        return self._with_unsolved(f"; This is the end of the page. :next begins the next one: {page(after).title}.")
+
+    def _with_unsolved(self, told):
+        """``told``, and before it how to come to the tasks of this page that are not solved yet."""
+        number = contents.NAMES.index(self.page.name) + 1
+        unsolved = [
+            f"; Not solved yet: {step.part.title} (:page {number} {place})"
+            for place, step in enumerate(self.steps, 1)
+            if isinstance(step.part, Task) and step.part.name not in self.progress.solved
+        ]
+        return "\n".join([*unsolved, told])
 
     def _after(self):
         number = contents.NAMES.index(self.page.name) + 1
@@ -158,16 +214,32 @@ class Guide:
 
     def typed(self, text: str) -> None:
         """The student has typed ``text``, whole forms."""
-        if not self._waiting:
-            return
-        squeezed = _squeezed(text)
-        if squeezed in self._waiting:
-            self._waiting.remove(squeezed)
-            if not self._waiting:
-                self._cue = OVER
+        call = _WITHOUT_PARENTHESES.fullmatch(text) if self.language == "lisp" else None
+        if call:
+            self._cue = (
+                f"; Lisp took each of these words for a form of its own. A call has parentheses around it: ({' '.join(text.split())})"
+            )
+        self._read = next((typed for typed in self._waiting if _squeezed(typed.form) == _squeezed(text)), None)
+
+    def failed(self) -> None:
+        """What was typed last has failed, or was ended by Ctrl-C."""
+        self.replay.failed()
+        if self._read is not None and ERROR in self._read.answer:  # as it should
+            self._waiting.remove(self._read)
+        self._read = None
 
     def cue(self) -> str | None:
         """What to say before the next prompt, once."""
+        if self.replay.was_answered():
+            self.progress.keep()
+        some = bool(self._waiting)
+        if self._read is not None:
+            self._waiting.remove(self._read)
+            self._read = None
+        while self._waiting and _OF_DEBUGGER.match(self._waiting[0].prompt):  # it was left in another way than the page shows
+            self._waiting.pop(0)
+        if some and not self._waiting:
+            self._cue = OVER
         cue, self._cue = self._cue, None
         return cue
 
@@ -181,6 +253,9 @@ class Guide:
         said = []
         if isinstance(self.step.part, File):
             said = [self._provide(over=False)]
+        elif isinstance(self.step.part, Task) and self.step.part.name not in self.progress.solved:
+            why = "The task is not solved yet" if self._checked else "You have not typed :check for this task"
+            said = [f"; {why}: {self.step.part.title}. :back leads back to it."]
         if self.place + 1 < len(self.steps):
             self.place += 1
             self._arrived()
@@ -209,12 +284,22 @@ class Guide:
         part = self.step.part
         if not isinstance(part, Task):
             return "; Only tasks have hints, and this step is not one. :next goes on."
-        if self.hints == len(part.hints):
-            self.hints = 0
+        count = self._hints.get(self.place, 0)
+        if count == len(part.hints):
+            self._hints[self.place] = 0
             return "; There are no more hints. :hint begins with the first one again."
-        self.hints += 1
-        head = self.style.bold(f"Hint {self.hints} of {len(part.hints)}")
-        return f"{head}\n\n{shown.text(part.hints[self.hints - 1], self.style)}"
+        self._hints[self.place] = count + 1
+        head = self.style.bold(f"Hint {count + 1} of {len(part.hints)}")
+        return f"{head}\n\n{shown.text(text_in(part.hints[count], self.language), self.style)}"
+
+    def _type(self):
+        part = self.step.part
+        if self._waiting:
+            self.replay.type(self._waiting[0].text)
+            return ""
+        if isinstance(part, Task):
+            return "; A task is for you to type. :hint gives a hint."
+        return "; This step has nothing more to type. :next goes on."
 
     def _write(self):
         if not isinstance(self.step.part, File):
@@ -240,18 +325,32 @@ class Guide:
             tasks = each.tasks
             solved = sum(task.name in self.progress.solved for task in tasks)
             lines.append(f" {mark} {number:2}  {each.title:48} {f'{solved} of {len(tasks)} tasks solved' if tasks else ''}".rstrip())
-        return "\n".join([*lines, "; :page 3 goes to page 3."])
+        return "\n".join([*lines, "; :page 3 goes to page 3, and :page 3 2 to its step 2."])
 
     def _page(self, argument):
+        wanted, _, number = argument.partition(" ")
         found = None
-        if argument.isdigit() and 1 <= int(argument) <= len(contents.NAMES):
-            found = contents.NAMES[int(argument) - 1]
-        elif argument in contents.NAMES:
-            found = argument
+        if wanted.isdecimal() and 1 <= int(wanted) <= len(contents.NAMES):
+            found = contents.NAMES[int(wanted) - 1]
+        elif wanted in contents.NAMES:
+            found = wanted
         if found is None:
             return f"; Which page? Type :page and a number from 1 to {len(contents.NAMES)}. :pages shows them."
+        if number:
+            count = len(self.steps if found == self.page.name else steps(page(found), self.language))
+            if not number.isdecimal() or not 1 <= int(number) <= count:
+                return f"; Which step? Page {wanted} has the steps 1 to {count}."
+            if found == self.page.name:
+                self.place = int(number) - 1
+                self._arrived()
+                return self.show()
+            self.progress.steps[found] = int(number) - 1
         self._leave(found)
         return ""
+
+    def _replay(self):
+        count = self.replay.begin()
+        return f"; Typed again: {count} text{'s' * (count != 1)}." if count else "; There is nothing to type again."
 
     def _help(self):
         lines = [f"  :{name:7} {f':{short}' if short else '':4} {told}" for name, (short, told) in COMMANDS.items()]
@@ -273,13 +372,18 @@ class Guide:
         part = self.step.part
         if not isinstance(part, Task):
             return "; Only tasks are checked, and this step is not one. :next goes on."
+        self._checked = True
         found = checking.check(part.name, language=self.language, evaluate=evaluate)
         if found["passed"]:
             self.progress.solved.add(part.name)
             self.progress.keep()
-            return "\n".join([*found["told"], OVER])
-        hint = "; :hint gives a hint." if self.hints < len(part.hints) else "; :hint shows the hints again."
-        return "\n".join(["Not yet.", *found["told"], hint])
+            return "\n".join([*self._filled(found["told"]), OVER])
+        more = self._hints.get(self.place, 0) < len(part.hints)
+        hint = "; :hint gives a hint." if more else "; :hint shows the hints again."
+        return "\n".join(["Not yet.", *self._filled(found["told"]), hint])
+
+    def _filled(self, texts):
+        return [shown.filled(line, self.style) for text in texts for line in text.split("\n")]
 
 
 def _squeezed(form):

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.repl import hy_prompt, prompt_words
 from cramhy_runtime.repl.console import Console
 from cramhy_runtime.repl.line_input import BROKEN_OFF, Lines
@@ -26,7 +27,7 @@ from .checking import hy_evaluator
 from .guide import Guide
 from .progress import Progress
 from .reading import PageError
-from .shown import Style
+from .shown import Style, filled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -48,26 +49,36 @@ class Guided(Listener):
         """The next line that is not a command; ``None`` when the page is left."""
         if not self._greeted:
             self._greeted = True
-            self.say(self.guide.show())
+            self.tell(self.guide.greeting())
+        if self.failed():
+            self.guide.failed()
         while not self.guide.over:
             if self._begins() and not self.level and (cue := self.guide.cue()):
-                self.say(cue)
+                self.tell(cue)
+            line = self.guide.replay.line()
+            if line is not None:
+                streams.CONSOLE_OUTPUT.write(f"{prompt}{line}\n")
+                return line
             line = super().read_line(prompt)
             if line is None or line is BROKEN_OFF:
                 return line
             if not self._begins():
-                if (found := guide.command(line)) and line.lstrip().startswith(":"):
-                    self.say(f"; A form is open, and :{found[0]} is taken for a part of it. Close its parentheses, or press Ctrl-C.")
+                if told := guide.told_of_open_form([*self.input.before, line]):
+                    self.tell(told)
                 return line
             line = _PROMPT.sub("", line, count=1)  # copied from the page with what stands before it
             found = guide.command(line)
             if found is not None and (line.lstrip().startswith(":") or not self.is_variable(line.split()[0])):
                 self._carry_out(line, *found)
             elif not self.level and (told := guide.meant(line)):
-                self.say(told)
+                self.tell(told)
             else:
                 return line
         return None
+
+    def tell(self, text: str) -> None:
+        """Say ``text`` of the guide's, with its remarks filled to the width of the terminal."""
+        self.say("\n".join(filled(line, self.guide.style) if line.startswith("; ") else line for line in text.split("\n")))
 
     def _begins(self):
         """Whether the line that is read begins a form."""
@@ -80,11 +91,12 @@ class Guided(Listener):
             if self.ctrl_c_came():
                 kernel.interrupt()
             if name != "check":
-                self.say(self.guide.do(name, argument))
+                if told := self.guide.do(name, argument):
+                    self.tell(told)
             elif self.level or not at_the_prompt():
-                self.say("; The debugger is open. Leave it first: type q until the prompt from before is there. Then check.")
+                self.tell("; The debugger is open. Leave it first: type q. Then check.")
             else:
-                self.say(self.guide.check(self.evaluator()))
+                self.tell(self.guide.check(self.evaluator()))
         except kernel.Terminated:
             raise
         except (KeyboardInterrupt, kernel.Abandoned, Interruption):
@@ -92,7 +104,22 @@ class Guided(Listener):
 
     def remember(self, text: str) -> None:
         super().remember(text)
+        if not self.level:
+            self.guide.replay.was_read(text)
         self.guide.typed(text)
+
+    def announce(self, condition: Any, restarts: list[Any]) -> None:
+        self.guide.failed()
+        super().announce(condition, restarts)
+        self.tell("; q leads back to the prompt.")
+
+    def forget_interrupt(self) -> None:
+        self.guide.failed()
+        super().forget_interrupt()
+
+    def failed(self) -> bool:
+        """Whether the text that was read last has failed without a debugger."""
+        return False
 
     def evaluator(self) -> Callable[[str], list[Any]]:
         """The function by which a check evaluates texts."""
@@ -119,11 +146,17 @@ class LispPrompt(Guided, Console):
 class HyPrompt(Guided, hy_prompt.HyPrompt):
     """The prompt of Hy. After ``(in-package ...)`` it is one of Lisp, where tasks are checked in Lisp's words."""
 
+    _error: Exception | None = None
+
     def evaluator(self):
         return self.session.evaluate_text if self.in_lisp else hy_evaluator(self.repl.module)
 
     def is_variable(self, word):
         return word in self.repl.locals
+
+    def failed(self):
+        before, self._error = self._error, self.repl.locals.get(hy_prompt.LAST_ERROR)
+        return self._error is not before
 
 
 def run(

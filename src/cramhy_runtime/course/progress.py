@@ -1,4 +1,4 @@
-"""How far a student is: the step that was shown last, and the tasks that are solved. It is kept in a file between two runs.
+"""How far a student is: the step that was shown last, the tasks that are solved, what was typed. It is kept in a file between two runs.
 
 The file is ``learn.json`` beside the history of the prompts (`repl.history.place`). Where it cannot be read or written, the course begins
 with its first page, or goes on without keeping anything.
@@ -18,7 +18,8 @@ LARGEST = 1_000_000  # bytes of a file of ours
 class Progress:
     """path: of the file, or ``None`` for none. ``page``: the name of the page that was shown last, or ``None``. ``solved``: names of tasks.
 
-    ``steps``: for each page the number of the step that was shown last, from 0.
+    ``steps``: for each page the number of the step that was shown last, from 0. ``typed``: what was typed on a page in a language, by the
+    name of the page and the language with a space between them; see `replay`.
     """
 
     def __init__(self, path: str | None = None):
@@ -26,6 +27,7 @@ class Progress:
         self.page: str | None = None
         self.steps: dict[str, int] = {}
         self.solved: set[str] = set()
+        self.typed: dict[str, list[str]] = {}
         self._read()
 
     @classmethod
@@ -44,6 +46,10 @@ class Progress:
                 return
             if not all(isinstance(step, int) and step >= 0 for step in steps.values()):
                 return
+            typed = table.get("typed", {})  # an older cramhy has not kept it
+            if not all(isinstance(text, str) for texts in typed.values() for text in texts):
+                return
+            self.typed = {name: list(texts) for name, texts in typed.items()}
         except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
             return  # it was never there, or is no file of ours
         self.page, self.steps, self.solved = page, dict(steps), set(solved)
@@ -52,7 +58,7 @@ class Progress:
         """Write the file, if that is possible."""
         if self.path is None:
             return
-        text = json.dumps({"page": self.page, "steps": self.steps, "solved": sorted(self.solved)})
+        text = json.dumps({"page": self.page, "steps": self.steps, "solved": sorted(self.solved), "typed": self.typed})
         try:
             os.makedirs(os.path.dirname(self.path), exist_ok=True)
             storage.write_whole(self.path, text, durable=False)

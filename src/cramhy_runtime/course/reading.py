@@ -10,6 +10,7 @@ a block with ``title="Begin with"``              in a task: the code to begin wi
 ``<!-- installed -->`` ... ``<!-- anywhere -->``  what only concerns those who read the page beside a terminal of their own; the course
                                                  leaves it out
 ``<!-- in the course`` ... ``-->``               text that the course has in its place
+``<!-- lisp -->`` or ``<!-- hy -->``             the paragraph or the piece of a session below is for those who learn in this language
 ===============================================  ==========================================================================
 
 All else is text.
@@ -20,6 +21,7 @@ from __future__ import annotations
 import functools
 import re
 import tomllib
+from dataclasses import replace
 
 from . import contents
 from .parts import Code, File, Page, Part, Task, Text, Typed
@@ -31,6 +33,7 @@ PROMPT = re.compile(r"^(?:[A-Z][A-Z-]*> |\d+\] |=> )", re.M)
 _APART = re.compile(r"^<!-- installed -->$.*?^<!-- anywhere -->$\n?", re.M | re.S)
 _INSTEAD = re.compile(r"^<!-- in the course\n(.*?)^-->$\n?", re.M | re.S)
 _TABS = re.compile(r"^<!-- tabs -->\s*\Z", re.M)
+_APART_CODE = re.compile(r"^<!-- (?:lisp|hy) -->\s*\Z", re.M)
 TASK = re.compile(
     r"^#+ (?:Task: )?(?P<title>[^\n]*)\n+(?P<comment><!-- task: (?P<name>[\w-]+)\n(?P<toml>.*?)^-->$\n)(?P<body>.*?)(?=^#+ |\Z)",
     re.M | re.S,
@@ -101,7 +104,9 @@ def _parts(text):
             pending = None
             continue
         tabs = _TABS.search(between) is not None
-        _add_text(found, _TABS.sub("", between))
+        if isinstance(part, Code) and _APART_CODE.search(between):
+            part = replace(part, apart=True)
+        _add_text(found, _APART_CODE.sub("", _TABS.sub("", between)))
         found.append(part)
         end, pending = match.end(), True if tabs else None
     _add_text(found, text[end:])

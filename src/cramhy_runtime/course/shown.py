@@ -54,6 +54,14 @@ def text(markdown: str, style: Style) -> str:
     return "\n\n".join([*found, *_paragraphs(markdown[end:], style)])
 
 
+def filled(line: str, style: Style) -> str:
+    """A line of ours, filled to the width. A remark stays one: its further lines begin with a semicolon, too. Code stays as it is."""
+    if len(line) <= style.width or line.startswith(" "):
+        return line
+    lead = "; " if line.startswith("; ") else ""
+    return textwrap.fill(line, style.width, subsequent_indent=lead, break_long_words=False, break_on_hyphens=False)
+
+
 def code(block: str, style: Style) -> str:
     """A block of code, indented."""
     return "\n".join(f"    {style.code(line)}" if line else "" for line in block.rstrip("\n").split("\n"))

@@ -11,7 +11,7 @@ from cramhy_runtime.extras import install_command
 from cramhy_runtime.kernel.typing_names import Any
 
 from . import contents
-from .parts import LANGUAGES, Code, File, Task, Typed
+from .parts import LANGUAGES, Code, File, Task, Typed, by_language
 from .reading import pages
 
 _LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|!\[[^\]]*\]\([^)]*\))*)\]\((?![a-z]+:)[^)]*\)")
@@ -28,7 +28,8 @@ def as_json() -> dict[str, Any]:
             {"kind": "task", "name", "title", "html", "start": {"lisp", "hy"}, "hints": [html, ...]}]}]}
 
     A part of code is what is typed at once, and what is answered; an empty text where there is nothing in a language. A file may be
-    ``None`` in a language. Pictures are inside of the HTML. Links to other pages of the documentation are plain words.
+    ``None`` in a language. Text for one language is in ``<div data-only="lisp">`` or ``"hy"``. Pictures are inside
+    of the HTML. Links to other pages of the documentation are plain words.
     """
     return {
         "pages": [
@@ -77,8 +78,12 @@ def as_html(text: str) -> str:
         import markdown
     except ImportError:
         raise ImportError(f"The pages of the course become HTML with the package markdown. {install_command('web')}") from None
-    text = _PICTURE.sub(_picture, _LINK.sub(r"\1", re.sub(r"<!--.*?-->\n?", "", text, flags=re.S)))
-    return markdown.markdown(text, extensions=["tables", "fenced_code"])
+    pieces = []
+    for language, piece in by_language(text):
+        piece = _PICTURE.sub(_picture, _LINK.sub(r"\1", re.sub(r"<!--.*?-->\n?", "", piece, flags=re.S)))
+        piece = markdown.markdown(piece, extensions=["tables", "fenced_code"])
+        pieces.append(piece if language is None else f'<div data-only="{language}">{piece}</div>')
+    return "\n".join(pieces)
 
 
 def _picture(match):

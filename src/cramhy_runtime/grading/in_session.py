@@ -15,6 +15,7 @@ from pathlib import Path
 from cramhy_runtime import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+from cramhy_runtime.ros import graph
 from cramhy_runtime.session.session import Interruption
 from cramhy_runtime.turtlesim.node import running_simulator
 
@@ -124,7 +125,15 @@ def _tried(exercise: Exercise, check: Check, seed: int, evaluate):
     if told.error and told.doing == "before":
         return [f"{told.what} cannot be used:\n{told.error['text']}"]
     wrong = judging.of_answers(check, work, values, told) if check.kind == "ask" else judging.of_run(check, work, values, told)
-    return [_plainer(sentence) for sentence in wrong]
+    return [*(_plainer(sentence) for sentence in wrong), *(_other_drivers() if wrong and check.kind == "do" else ())]
+
+
+def _other_drivers():
+    """What to say of other nodes that may drive the turtle, too, such as the demonstration that draws squares."""
+    topic = graph.active().topics.get("/turtle1/cmd_vel")
+    for publication in topic.visible_publications if topic is not None else ():
+        if publication.node is not graph.active().lisp_node:
+            yield f"The node {publication.node.name} may drive the turtle, too. End it: rosnode kill {publication.node.name}"
 
 
 def _plainer(sentence):

@@ -177,7 +177,10 @@ def _at(table, values, replay, told):
         wanted = math.radians(computed(goal["heading"], values))
         off = abs(math.remainder(place[2] - wanted, math.tau))
         if off > math.radians(goal.get("degrees", 10)):
-            yield f"The turtle looks to {math.degrees(place[2]):.0f} degrees at the end. It should look to {math.degrees(wanted):.0f}."
+            yield (
+                f"The turtle looks to {math.degrees(place[2]):.0f} degrees at the end. It should look to {math.degrees(wanted):.0f}. "
+                "(0 is to the right, 90 is up.)"
+            )
 
 
 def _visits(table, values, replay, told):

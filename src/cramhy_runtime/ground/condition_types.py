@@ -12,7 +12,7 @@ from cramhy_runtime import kernel
 from cramhy_runtime.kernel.images import part
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
-from .data import UNBOUND, Cons
+from .data import UNBOUND, Cons, Symbol
 from .dynamic import binding
 from .classes import class_name, find_class, when_classes_change
 from .ports import PORTS
@@ -105,6 +105,10 @@ def matches(condition: Condition, specifier: Any) -> bool:
         return True
     if specifier is None:
         return False
+    if specifier.__class__ is Symbol:
+        decided = DECIDED.get((specifier, condition.__class__))
+        if decided is not None:
+            return decided
 
     # what names no type fits nothing: an error about it here would come to the same handler again, without end
     test = PORTS.types.test(specifier)

@@ -96,6 +96,8 @@ def handled(condition, run=None):
             exit_ = cluster.exit_for(condition, clusters)
             if exit_ is not None:
                 return exit_
+        elif isinstance(cluster, Cluster):
+            cluster.offer(condition, clusters)
         else:
             _offer(condition, clusters)
         clusters = outer

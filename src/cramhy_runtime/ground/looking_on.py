@@ -6,8 +6,6 @@ looks on, such as a recorder, gets none: an object that has none yet shows as ``
 
 from __future__ import annotations
 
-from contextlib import contextmanager
-
 from cramhy_runtime import kernel
 
 
@@ -22,14 +20,16 @@ _NOBODY = object()
 _onlooker = _Onlooker()
 
 
-@contextmanager
-def looking_on():
-    """While the block runs, what this task prints gets no addresses and no numbers."""
-    before, _onlooker.task = _onlooker.task, _this_task()
-    try:
-        yield
-    finally:
-        _onlooker.task = before
+class looking_on:  # noqa: N801 (reads as a statement)
+    """``with looking_on():`` While the block runs, what this task prints gets no addresses and no numbers."""
+
+    __slots__ = ("_before",)
+
+    def __enter__(self):
+        self._before, _onlooker.task = _onlooker.task, _this_task()
+
+    def __exit__(self, *exception):
+        _onlooker.task = self._before
 
 
 def _this_task():

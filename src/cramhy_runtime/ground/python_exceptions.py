@@ -47,7 +47,8 @@ def python_condition(exception):
     """The condition for an exception that has no meaning of its own in Lisp."""
     condition = condition_class(type(exception))(exception)
     if isinstance(exception, ModuleNotFoundError) and exception.name:
-        condition.hint = f"Is there a module {exception.name} in this Python, or is it to be installed with pip?"
+        asked = f"Is there a module {exception.name} in this Python, or is it to be installed with pip?"
+        condition.hint = getattr(exception, "hint", asked)
     if isinstance(exception, SyntaxError):  # it knows its place itself, and perhaps what to try
         condition.hint = getattr(exception, "hint", None)
         if exception.filename and exception.lineno:

@@ -53,6 +53,7 @@ budget = Budget()
 
 HEADROOM = 100  # levels that a hand-over and modest callbacks need
 STEPS = 24  # levels that a hand-over needs when there is nothing to call
+FEW_STEPS = 12  # and where it is known which task comes next
 
 
 def room(levels):
@@ -81,3 +82,4 @@ def room(levels):
 
 need_headroom = room(HEADROOM)
 need_steps = room(STEPS)
+need_few_steps = room(FEW_STEPS)

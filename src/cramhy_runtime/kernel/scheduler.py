@@ -23,13 +23,13 @@ from collections import deque
 
 from . import images, reports
 from .backends import make_backend
-from .budget import SLICE, budget, need_headroom, need_steps
+from .budget import SLICE, budget, need_few_steps, need_headroom, need_steps
 from .clocks import VirtualClock, make_clock
 from .endings import CLEANUP_LIMIT, PATIENCE, Endings
 from .errors import Cancelled, Deadlock, Interrupted, KernelError, NoStack, Terminated, TimeLimit
 from .inbox import Outside
 from .tasks import BLOCKED, DEAD, PARKED, RUNNABLE, RUNNING, SETTLING, SchedulerTask, Task, shield
-from .timers import CALLBACK, Timer, TimerHeap
+from .timers import TimerHeap, Timing
 from .typing_names import TYPE_CHECKING, NoReturn, TypeVar, TypeVarTuple
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def lots(seed: int | float | str) -> Callable[[deque[Task[object]]], int]:
     return lambda queue: int(draw() * len(queue))
 
 
-class Kernel(Endings, Outside):
+class Kernel(Endings, Outside, Timing):
     """A set of tasks with their clock. `kernel.start` makes it; the functions of `active` act on the active one."""
 
     # Slots, since Python finds attributes of an object that has thirty or more of them in a slower way.
@@ -175,13 +175,24 @@ class Kernel(Endings, Outside):
         me = self.current
         if me.attention and me.deliver():
             return True
-        entries, clock = self._timers.entries, self.clock
-        next_waits = len(self._queue) > self._streak and type(clock) is VirtualClock and not (entries and entries[0][0] <= clock.time)
-        if self._inbox or self._unclaimed or entries and not next_waits:
+        entries, clock, queue = self._timers.entries, self.clock, self._queue
+        next_waits = len(queue) > self._streak and type(clock) is VirtualClock and not (entries and entries[0][0] <= clock.time)
+        next_carrier = None  # as `hand_over` and `_next` would find out, if nothing comes before the first task and it has a stack
+        if (
+            next_waits
+            and not (self._inbox or self._urgent or self._choose)
+            and self._steps < STEPS_PER_INSTANT
+            and (until is None or until > clock.now())
+        ):
+            next_carrier = queue[0].carrier
+        if next_carrier is not None:
+            need_few_steps()
+        elif self._inbox or self._unclaimed or entries and not next_waits:
             need_headroom()
         else:  # no timer fires before the next task runs
             need_steps()
-        if me.carrier.ident != get_ident():
+        carrier = me.carrier
+        if carrier is None or carrier.ident != get_ident():
             self._refuse("wait")
         me.why = why
         if until is not None and until != INFINITY:
@@ -190,10 +201,22 @@ class Kernel(Endings, Outside):
             me.timed = True
             self._timers.add_deadline(until, me)
         me.state = PARKED
-        if me.dynamic is None:
+        dynamic = me.dynamic
+        if dynamic is not None:
+            dynamic.leave()
+        if next_carrier is None:
             self.hand_over(me)
         else:
-            self.rest(me)
+            self._steps += 1
+            self.current = queue.popleft()
+            if carrier.direct:
+                next_carrier.switch()
+            else:
+                self.backend.transfer(carrier, next_carrier)
+            me.state = RUNNING
+            budget.left = SLICE
+        if dynamic is not None:
+            dynamic.enter()
         if me.attention:
             me.deliver()
         return me.woken
@@ -205,7 +228,15 @@ class Kernel(Endings, Outside):
             self._refuse("wake a task")
         if task.state is not PARKED:
             return False
-        self._wake(task, True)
+        task.ticket += 1  # as `_wake` does
+        task.woken = True
+        if task.timed:
+            task.timed = False
+            self._timers.went_stale()
+        task.state = RUNNABLE
+        task.preempted = False
+        self._queue.append(task)
+        self._streak = 0
         return True
 
     def _wake(self, task: Task[object], woken: bool) -> None:
@@ -396,6 +427,8 @@ class Kernel(Endings, Outside):
             task._name = "a task that has ended" if task._exception is None else str(task.name)
         if task.delivered.__class__ is Cancelled:
             task.delivered.__traceback__ = None  # which holds the whole stack
+        if task.cancel_request is not None:
+            task.cancel_request = (None,)  # without the function that made the reason, which may know whose task this is
         del self._tasks[task.id]
         if task.dynamic is not None:
             task.dynamic.leave()
@@ -546,45 +579,6 @@ class Kernel(Endings, Outside):
     def _reach_limit(self) -> None:
         self._alarm(TimeLimit(reports.time_limit_text(self, self.time_limit)), True)
         self._limit = self.clock.now() + self.time_limit  # what is left to do in cleanup gets as long again
-
-    # ------------------------------------------------------------------ timers
-
-    def call_at(self, time: float, fn: Callback) -> Timer:
-        """Call FN in the scheduler when the clock reaches TIME, finite seconds, and return the Timer. FN must not park."""
-        if not time < INFINITY:
-            raise ValueError(f"A timer needs a finite time, not {time}.")
-        return self._timers.add(time, fn)
-
-    def call_every(self, period: float, fn: Callback, first: float | None = None) -> Timer:
-        """Call FN every PERIOD seconds, without drift, from the time FIRST on (by default one period from now). Returns the Timer.
-
-        FN must not park. A PERIOD that is not positive and finite is a ValueError.
-        """
-        if not 0 < period < INFINITY:
-            raise ValueError(f"The period of a timer must be more than 0 s and finite, not {period}.")
-        if first is None:
-            first = self.clock.now() + period
-        return self._timers.add(first, fn, period)
-
-    def _fire(self, now: float) -> None:
-        """Fire the timers that are due. Timers that the callbacks add fire in the next turn, so no callback keeps the baton for ever."""
-        timers = self._timers
-        entries, newest = timers.entries, timers.order
-        while entries and entries[0][0] <= now and entries[0][1] < newest:
-            _, _, what, ticket = timers.pop()
-            if ticket != CALLBACK:
-                if what.ticket == ticket:
-                    self._wake(what, False)
-                continue
-            fn = what.fn
-            if fn is None:
-                continue
-            if what.period is None:
-                what.fn = None
-            else:
-                what.advance(now)
-                timers.push(what)
-            self._call(fn)
 
     def _call(self, fn: Callback) -> None:
         try:

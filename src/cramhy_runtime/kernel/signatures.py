@@ -32,6 +32,11 @@ class Carrier(Protocol):
 
     ident: int
 
+    @property
+    def direct(self) -> bool: ...
+
+    def switch(self) -> object: ...
+
 
 class Backend(Protocol):
     """Makes stacks (carriers), and jumps between them; see `cramhy_runtime.kernel.backends`."""

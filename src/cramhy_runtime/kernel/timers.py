@@ -13,12 +13,13 @@ from heapq import heapify, heappop, heappush
 from .typing_names import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .signatures import Callback
+    from .signatures import Callback, Clock
     from .tasks import Task
 
     Entry = tuple[float, int, Any, int]  # when, its order, a Timer or a Task, a ticket
 
 CALLBACK = -1  # the ticket of entries that are timers; tasks' tickets count from 0
+INFINITY = float("inf")
 SWEEP_FROM = 64  # stale entries below this number are not worth a sweep
 MAX_LAG = 1.0  # s; a periodic timer that is later than this (the process slept) leaves firings out
 
@@ -114,6 +115,56 @@ class TimerHeap:
                 return entries[0][0]
             self.pop()
         return None
+
+
+class Timing:
+    """The part of the kernel that has timers."""
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:  # what the other parts have
+        clock: Clock
+        _timers: TimerHeap
+
+        def _wake(self, task: Task[object], woken: bool) -> None: ...
+        def _call(self, fn: Callback) -> None: ...
+
+    def call_at(self, time: float, fn: Callback) -> Timer:
+        """Call FN in the scheduler when the clock reaches TIME, finite seconds, and return the Timer. FN must not park."""
+        if not time < INFINITY:
+            raise ValueError(f"A timer needs a finite time, not {time}.")
+        return self._timers.add(time, fn)
+
+    def call_every(self, period: float, fn: Callback, first: float | None = None) -> Timer:
+        """Call FN every PERIOD seconds, without drift, from the time FIRST on (by default one period from now). Returns the Timer.
+
+        FN must not park. A PERIOD that is not positive and finite is a ValueError.
+        """
+        if not 0 < period < INFINITY:
+            raise ValueError(f"The period of a timer must be more than 0 s and finite, not {period}.")
+        if first is None:
+            first = self.clock.now() + period
+        return self._timers.add(first, fn, period)
+
+    def _fire(self, now: float) -> None:
+        """Fire the timers that are due. Timers that the callbacks add fire in the next turn, so no callback keeps the baton for ever."""
+        timers = self._timers
+        entries, newest = timers.entries, timers.order
+        while entries and entries[0][0] <= now and entries[0][1] < newest:
+            _, _, what, ticket = timers.pop()
+            if ticket != CALLBACK:
+                if what.ticket == ticket:
+                    self._wake(what, False)
+                continue
+            fn = what.fn
+            if fn is None:
+                continue
+            if what.period is None:
+                what.fn = None
+            else:
+                what.advance(now)
+                timers.push(what)
+            self._call(fn)
 
 
 def _counts(entry: Entry) -> bool:

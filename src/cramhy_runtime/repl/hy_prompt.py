@@ -51,7 +51,8 @@ from cramhy_runtime.session.session import Interruption, Session
 
 IN_PACKAGE = sym("IN-PACKAGE")
 _IN_PACKAGE = Symbol("in-package")
-_LAST_ERROR = hy.mangle("*e")
+LAST_ERROR = hy.mangle("*e")
+"""Where a REPL of Hy keeps, among its ``locals``, the exception that came last."""
 _PS2 = "... "
 """Hy's own prompt for a line that goes on with a form."""
 PIPED = "<stdin>"
@@ -265,9 +266,9 @@ class HyPrompt(Listener):
         with self._goes_on():
             forms, refused = self._forms(source, filename)
             while forms and not self.in_lisp:
-                errors = self.repl.locals.get(_LAST_ERROR)
+                errors = self.repl.locals.get(LAST_ERROR)
                 type(self.repl).runsource(self.repl, forms.pop(0), filename, symbol)
-                if self.repl.locals.get(_LAST_ERROR) is not errors:
+                if self.repl.locals.get(LAST_ERROR) is not errors:
                     self.tell_not_evaluated(" ".join(" ".join(forms).split()))
                     break
             else:

@@ -53,12 +53,14 @@ class Lines:
     Ctrl-C was pressed after the line that was read, before the form runs that it is for. ``ended``: whether the terminal has ended the line
     that was broken off, so that the next prompt stands below it. ``shows_open``: whether the prompt of a line that goes on with a form says
     what is open; in a pipe and in Emacs' ``run-lisp`` these prompts would stand in a heap in front of the answer. ``before``: the lines
-    before this one of the form that is being typed. ``edits``: whether keys such as TAB do something."""
+    before this one of the form that is being typed. ``edits``: whether keys such as TAB do something. ``sent``: the last line, if an editor
+    has sent it: its text, the path of the file, and the line and column, from 1, where it begins there."""
 
     interactive = False
     shows_open = False
     before: Sequence[str] = ()
     edits = False
+    sent: tuple[str, str, int, int] | None = None
     can_be_woken = True
     pressed = False
     ended = False

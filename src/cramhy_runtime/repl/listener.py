@@ -141,8 +141,9 @@ class Listener:
         return "... " if opened is None else opened.prompt()
 
     def remember(self, text):
-        """Keep ``text``, whole forms, in the history of what was typed. The number of a restart means nothing later."""
-        if isinstance(self.input, Lines) and not (self.level and text.strip().isdigit()):
+        """Keep ``text``, whole forms, in the history of what was typed. The number of a restart, and the way out, mean nothing later."""
+        of_debugger = self.level and (text.strip().isdigit() or prompt_words.word(text, (*prompt_words.OUT, *prompt_words.BACK)))
+        if isinstance(self.input, Lines) and not of_debugger:
             self.input.remember(text)
 
     def read_line(self, prompt):
@@ -231,7 +232,9 @@ class Listener:
                     leave()
                 if prompt_words.word(text, prompt_words.BACKTRACE):
                     return self.say("There is no error here. In the debugger, backtrace shows the calls that led to it.")
-            reader = self.session.reader(text)
+                if prompt_words.word(text, prompt_words.KEYS):
+                    return self.say("; This is the prompt: no debugger is open. (exit) ends the session.")
+            reader = self.reader_of(text)
             for form in self.session.forms(reader):
                 begun = None
                 if self.level == 0 and self.leads_away(form, reader):
@@ -259,6 +262,13 @@ class Listener:
         finally:
             if reader is not None:
                 self.tell_not_evaluated(rest_of(reader, begun))
+
+    def reader_of(self, text):
+        """A reader of ``text``, which knows where it stands: in a file, if an editor has sent it."""
+        sent = self.input.sent if isinstance(self.input, Lines) else None
+        if sent is None or sent[0].strip() != text.strip():
+            return self.session.reader(text)
+        return self.session.reader_in_file(*sent)
 
     def tell_not_evaluated(self, text):
         """Tell that ``text``, which stands behind a form that failed, was not evaluated. Closing parentheses alone are no forms."""
@@ -349,7 +359,7 @@ class Listener:
         aborts = [restart for restart in restarts if symbol_name(restart.name) == "ABORT"]
         if aborts and prompt_words.word(text, prompt_words.BACK):
             return conditions.invoke_restart_interactively(aborts[0])
-        if aborts and prompt_words.word(text, prompt_words.LEAVING):
+        if aborts and prompt_words.word(text, prompt_words.OUT):
             return conditions.invoke_restart_interactively(aborts[-1])
         if prompt_words.word(text, prompt_words.BACKTRACE):
             return self.say("\n".join(backtrace.calls(condition, sys._getframe(1))))

@@ -15,8 +15,12 @@ from cramhy_runtime.session.session import leaving
 
 _QUOTES = (sym("QUOTE"), sym("FUNCTION"))
 LEAVING = ("exit", "quit", "bye")
-BACK = ("q", "abort")
-"""In the debugger: one level back. There, the words for leaving lead back to the prompt."""
+BACK = ("a", "abort")
+"""In the debugger: one level back."""
+OUT = ("q", *LEAVING)
+"""In the debugger: back to the prompt, out of all levels. ``a`` and ``q`` are the keys of SLIME's debugger."""
+KEYS = ("q",)
+"""What is typed at the prompt by those who take it for the debugger."""
 HELP = ("help", "?")
 BACKTRACE = ("backtrace", "bt")
 
@@ -38,7 +42,7 @@ The debugger waits where the error arose. Type
   a number, or :abort         to go on by one of the restarts above
   backtrace (bt)              to see the calls that led here
   a form                      to evaluate it here
-  q                           to go back by one level; exit: to the first prompt
+  q                           to go back to the prompt; a: only one level back
   (exit)                      to leave the program"""
 
 

@@ -25,7 +25,11 @@ def current() -> World | None:
     """The world that is shown, or ``None``."""
     if _chosen.value is not None:
         return _chosen.value
-    return next(filter(None, (offer() for offer in _offers)), None)
+    for offered in _offers:
+        world = offered()
+        if world:
+            return world
+    return None
 
 
 def show(world: World | None) -> None:

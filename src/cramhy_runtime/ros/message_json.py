@@ -42,6 +42,24 @@ T = TypeVar("T")
 text_of: Callable[[object], str] = json.JSONEncoder(separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode
 """The text of plain data, without spaces. A number that is not finite is a ValueError."""
 
+MOST_TEXTS = 2048
+"""Numbers whose texts are kept."""
+
+
+class _Texts(dict[float, str]):
+    """Number → its text as a float. Most numbers are told several times, as where a turtle is, and to make a text takes a microsecond."""
+
+    def __missing__(self, number: float) -> str:
+        text = float.__repr__(float(number))
+        if number:  # zero has two texts
+            if len(self) >= MOST_TEXTS:
+                self.clear()
+            self[number] = text
+        return text
+
+
+float_texts = _Texts()
+
 
 class MessageJsonError(ValueError):
     """Data that do not fit the message type, or a message that has no JSON. The text names type, field, value and a remedy.
@@ -343,7 +361,7 @@ _as_data = _Form(
 )
 _as_text = _Form(
     values={
-        **dict.fromkeys(("float32", "float64"), f"number(float(value)) {_FINITE} 'null'"),
+        **dict.fromkeys(("float32", "float64"), f"numbers[value] {_FINITE} 'null'"),
         "bool": f"'true' if {_TRUE} else 'false'",
         "string": f"quoted({_TEXT})",
         **dict.fromkeys(("time", "duration"), "text(moment({0}))"),
@@ -357,7 +375,7 @@ _as_text = _Form(
         *(f"    {value}," for _, value in parts),
         ")",
     ],
-    scope={**_as_data.scope, "number": float.__repr__, "quoted": json.encoder.encode_basestring, "digits": int.__repr__, "text": text_of},
+    scope={**_as_data.scope, "numbers": float_texts, "quoted": json.encoder.encode_basestring, "digits": int.__repr__, "text": text_of},
     encoders={},
 )
 

@@ -278,6 +278,16 @@ class Session:
         return Reader(text, filename=name)
 
     @staticmethod
+    def reader_in_file(text, path, line, column):
+        """A reader of a text that an editor has sent from the file ``path``, where it begins in that line and column, counted from 1."""
+        import linecache  # it imports the tokenizer
+
+        from cramhy_runtime.languages.commonlisp.reader.reader import Reader
+
+        linecache.checkcache(path)  # errors show the lines of now
+        return Reader(text, filename=path, line=line, column=column)
+
+    @staticmethod
     def forms(reader):
         """The forms that ``reader`` reads."""
         end = object()

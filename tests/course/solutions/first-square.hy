@@ -1,4 +1,4 @@
-(defn draw-square []
+(defn drive-square []
   (for [i (range 4)]
     (ahead 2)
     (turn-left)))

@@ -1,4 +1,4 @@
-(defun draw-square ()
+(defun drive-square ()
   (dotimes (i 4)
     (ahead 2)
     (turn-left)))

@@ -100,9 +100,10 @@ export class Editor {
     return completionStatus(this.view.state) === "active";
   }
 
-  // Which line, from 1, a place is in.
-  lineOf(place) {
-    return this.view.state.doc.lineAt(place).number;
+  // {line, column} of a place, each from 1.
+  placeOf(place) {
+    const { number, from } = this.view.state.doc.lineAt(place);
+    return { line: number, column: place - from + 1 };
   }
 
   // Begin with another text, in "lisp", "hy" or "text". kept: what `leave` has returned for that text, with its history and its cursor.

@@ -94,8 +94,9 @@ export class Code {
     if (!form) this.say("No complete form stands at the cursor.", "bad");
     else {
       this.say("");
-      tab.run(form.text.trim(), this.#around(form.start));
-      this.files.save().catch((problem) => this.files.fail(problem));
+      this.files.save().catch((problem) => this.files.fail(problem)); // before it is evaluated: an error shows the line of the file
+      const start = form.start + form.text.search(/\S/);
+      tab.run(form.text.trim(), { ...this.#around(form.start), place: { path: this.files.path, ...this.editor.placeOf(start) } });
     }
     return true;
   }

@@ -36,6 +36,16 @@ function offerTime() {
   });
 }
 
+// Have the site kept in the browser, once Python is there: it fetches all files, for which a first visit should not wait. Without a service
+// worker the page needs its network again.
+function keepOffline() {
+  let asked = false;
+  tab.on("prompt", () => {
+    if (!asked) navigator.serviceWorker?.register("offline.js").catch(() => {});
+    asked = true;
+  });
+}
+
 async function start() {
   translate(document.body);
   for (const group of ["parts", "books"]) {
@@ -61,7 +71,7 @@ async function start() {
   tab.begin();
   lesson.begin().catch((problem) => prompt.note(problem.message));
   code.openLink();
-  navigator.serviceWorker?.register("offline.js").catch(() => {}); // without one the page needs its network again
+  keepOffline();
 }
 
 start();

@@ -54,6 +54,7 @@ export class Lesson {
   render() {
     const page = this.pages[this.number];
     if (!page) return;
+    byId("lesson-page").dataset.language = this.progress.language; // hides what is for the other one
     byId("lesson-pages").selectedIndex = this.number;
     byId("lesson-before").disabled = this.number === 0;
     byId("lesson-after").disabled = this.number === this.pages.length - 1;

@@ -15,6 +15,7 @@ class Tab {
     this.questions = new Map(); // number -> {resolve, reject}
     this.number = 0;
     this.listeners = new Map();
+    this.spare = globalThis.firstPython ?? null; // a Python that is being made ready
     this.state = "begins"; // "waits", "reads" (a program wants a line), "busy", "ended", "failed", "unfit"
     this.prompt = { text: "", language: "lisp", package: ["COMMON-LISP-USER", "CL-USER"], virtual: true };
     this.lispPackage = "CL-USER"; // to which Lisp returns after Hy
@@ -119,8 +120,8 @@ class Tab {
   }
 
   // Evaluate TEXT at the prompt, as one, in a language ("lisp" or "hy") and in a package of Lisp. What leads there is typed first. At the
-  // prompt a long text is not shown whole.
-  run(text, { language = "lisp", name = null } = {}) {
+  // prompt a long text is not shown whole. place: {path, line, column} of a file, where the text stands.
+  run(text, { language = "lisp", name = null, place = null } = {}) {
     const lines = [];
     if (language === "hy") {
       if (this.prompt.language !== "hy") lines.push("(in-hy)");
@@ -133,7 +134,7 @@ class Tab {
       }
     }
     this.prompt = { ...this.prompt, language }; // as it will be, for what is typed before the next prompt comes
-    this.worker.postMessage({ kind: "lines", value: [...lines, text] });
+    this.worker.postMessage({ kind: "lines", value: [...lines, text], place });
   }
 
   interrupt() {

@@ -13,9 +13,15 @@ const PACKAGES = "/lib/python3.14/site-packages";
 let page = null; // the port of the views
 let folder = null; // the user's files
 let waiting = null; // resolves the promise that the prompt waits for
-const lines = []; // that were typed ahead
+const lines = []; // that were typed ahead: {text, place}
 
 const tell = (kind, value = null) => postMessage({ kind, value });
+
+function next() {
+  const { text, place } = lines.shift();
+  host.place = JSON.stringify(place);
+  return text;
+}
 
 // What jspi.py and tab.py use. Accessors must stay accessors, which Object.assign would not do.
 Object.defineProperties(
@@ -24,6 +30,7 @@ Object.defineProperties(
     receive: null, // set by Python: takes an operation of the page
     interrupt: null, // set by Python: Ctrl-C
     ask: null, // set by Python: a question of the page
+    place: "null", // JSON: where the line that was given last stands, {path, line, column}, if the editor has sent it
     prompt: "{}", // JSON: what the page is told of the prompt
     answer: (text) => tell("answer", JSON.parse(text)),
     debug: (text) => tell("debug", JSON.parse(text)),
@@ -36,7 +43,7 @@ Object.defineProperties(
       waiting?.(null);
     },
     get line() {
-      if (lines.length) return Promise.resolve(lines.shift());
+      if (lines.length) return Promise.resolve(next());
       tell("prompt", JSON.parse(host.prompt));
       folder.keep();
       return new Promise((resolve) => {
@@ -55,9 +62,10 @@ const requests = {
     page = port;
     page.onmessage = ({ data }) => host.receive?.(data);
   },
-  lines: (texts) => {
-    lines.push(...texts);
-    if (waiting && lines.length) waiting(lines.shift());
+  lines: (texts, _, place = null) => {
+    lines.push(...texts.map((text) => ({ text, place: null })));
+    if (lines.length) lines.at(-1).place = place;
+    if (waiting && lines.length) waiting(next());
   },
   interrupt: () => {
     lines.length = 0;
@@ -77,9 +85,9 @@ const requests = {
   },
 };
 const wanted = new Promise((resolve) => {
-  requests.begin = resolve; // until then this is a spare, made ready for a restart
+  requests.begin = resolve; // until then this is made ready: before the page is there, or for a restart
 });
-onmessage = ({ data: { kind, value }, ports }) => requests[kind]?.(value, ports);
+onmessage = ({ data: { kind, value, place }, ports }) => requests[kind]?.(value, ports, place);
 
 let python = null;
 
@@ -116,4 +124,8 @@ main`);
   tell("ended", status);
 }
 
-begin().catch((problem) => tell("failed", String(problem?.message ?? problem).slice(-4000)));
+begin().catch((problem) => {
+  const complain = () => tell("failed", String(problem?.message ?? problem).slice(-4000));
+  complain();
+  wanted.then(complain); // nobody may have heard it
+});

@@ -15,7 +15,16 @@ from cramhy_runtime.kernel.active import ACTIVE
 
 from cramhy_runtime.ground import condition_types as types
 from cramhy_runtime.ground.catching import Cluster, HandlerExit
-from cramhy_runtime.ground.conditions import error, make_condition, matches, offer_late, raised_by_handler, signal_condition, type_error
+from cramhy_runtime.ground.conditions import (
+    error,
+    handled,
+    make_condition,
+    matches,
+    offer_late,
+    raised_by_handler,
+    signal_condition,
+    type_error,
+)
 from cramhy_runtime.ground.data import lisp_list, list_from
 from cramhy_runtime.ground.source_places import locate
 from cramhy_runtime.ground.classes import class_name
@@ -41,6 +50,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 _new = SimplePlanFailure.__new__
+_new_handling = BaseException.__new__
 
 
 def fail(*arguments: Any) -> NoReturn:
@@ -53,10 +63,12 @@ def fail(*arguments: Any) -> NoReturn:
         condition.format_control, condition.format_arguments = arguments[0], arguments[1:]
     else:
         condition = _designated(*arguments)
-    if active_tags or on_fail.methods or BREAK_ON_PLAN_FAILURES.value or current_task() is None or not isinstance(condition, PlanFailure):
+    running = ACTIVE.value
+    owner = None if running is None else running.current.owner
+    if active_tags or on_fail.methods or BREAK_ON_PLAN_FAILURES.value or owner is None or not isinstance(condition, PlanFailure):
         _begin_to_fail(condition, arguments)
-    signal_condition(condition)
-    raise condition
+    exit_ = handled(condition)
+    raise condition if exit_ is None else exit_
 
 
 def fail_with_advice(advice: str | Callable[[], str] | None, *arguments: Any) -> NoReturn:
@@ -109,17 +121,13 @@ class Handling(Cluster, BaseException):
     Lisp is written ``(return value)`` and compiled to an exit of its own. It is the exception that unwinds to its form.
     """
 
-    __slots__ = ("clauses", "task", "ending", "observed", "id", "left", "values")
-
-    def __init__(self, clauses: Sequence[Clause]):
-        running = ACTIVE.value
-        self.clauses = clauses
-        self.task = task = kernel.current() if running is None else running.current
-        self.ending = task.cancelled_delivered
-        self.observed = False  # the hook of its beginning has run, and returned
-        self.id: object = None
-        self.left = False
-        self.values: object = None
+    __slots__ = ("clauses", "task", "ending")
+    clauses: Sequence[Clause]
+    task: kernel.Task[object]
+    ending: bool  # whether the task was ending when the form began
+    id: object = None  # which the hook of its beginning gave
+    left = False
+    values: object = None
 
     def __call__(self) -> NoReturn:
         """Unwind to the form, and try its body again."""
@@ -156,31 +164,6 @@ class Handling(Cluster, BaseException):
         finally:
             task.handlers = before
 
-    def run(self, body: Callable[[Handling], T]) -> T:
-        """Call ``body`` with the handlers in force, and again after each ``retry``. Returns its values, or what a handler left with."""
-        if not self.observed and (on_with_failure_handling_begin.methods or on_with_failure_handling_end.methods):
-            self.observed = True
-            return observed([_type_name(specifier) for specifier, _ in self.clauses], lambda: self.run(body), self)
-        task = self.task
-        outer = task.handlers
-        while True:
-            task.handlers = self, outer
-            try:
-                try:
-                    return body(self)
-                except (types.Condition, Exception) as exception:
-                    offer_late(exception)
-                    raise
-                finally:
-                    task.handlers = outer
-            except Handling as again:
-                if again is not self:
-                    raise
-                self.__traceback__ = self.__context__ = None  # a circle with the frames that it passed
-                if self.left:
-                    return self.values  # type: ignore[return-value]  # what the handler says is what the form returns
-            kernel.checkpoint()
-
 
 def with_failure_handling(clauses: Sequence[Clause], body: Callable[[Handling], T]) -> T:
     """``(with-failure-handling clauses body...)``: the values of ``body(retry)``, with ``clauses`` in force.
@@ -190,17 +173,52 @@ def with_failure_handling(clauses: Sequence[Clause], body: Callable[[Handling], 
     or outer form is asked. ``retry()`` tries the body again, and ``retry.leave(value)`` returns from the form. In Lisp, ``(return value)``
     leaves the compiler's block named nil. Source: cpl.md 4.5.
     """
-    return Handling(clauses).run(body)
+    return handling_failures(body, *(part for clause in clauses for part in clause))
 
 
-def observed(types: list[str], thunk: Callable[[], T], handling: Handling | None = None) -> T:
+def handling_failures(body: Callable[[Handling], T], *given: Any) -> T:
+    """As `with_failure_handling`, in the form that compiled code calls: ``given`` are the types and handlers in turn.
+
+    All is done in this one function, since each call of Python on the way makes a failure take longer.
+    """
+    running = ACTIVE.value
+    handling = _new_handling(Handling)
+    handling.clauses = (given,) if len(given) == 2 else [given[index : index + 2] for index in range(0, len(given), 2)]
+    handling.task = task = kernel.current() if running is None else running.current
+    handling.ending = task.cancelled_delivered
+    is_observed = on_with_failure_handling_begin.methods or on_with_failure_handling_end.methods
+    if is_observed:
+        handling.id = on_with_failure_handling_begin.first(list_from([_type_name(specifier) for specifier, _ in handling.clauses]))
+    outer = task.handlers
+    try:
+        while True:
+            task.handlers = handling, outer
+            try:
+                try:
+                    return body(handling)
+                except (types.Condition, Exception) as exception:
+                    offer_late(exception)
+                    raise
+                finally:
+                    task.handlers = outer
+            except Handling as again:
+                if again is not handling:
+                    raise
+                handling.__traceback__ = handling.__context__ = None  # a circle with the frames that it passed
+                if handling.left:
+                    return handling.values  # type: ignore[return-value]  # what the handler says is what the form returns
+            kernel.checkpoint()
+    finally:
+        if is_observed:
+            on_with_failure_handling_end(handling.id)
+
+
+def observed(types: list[str], thunk: Callable[[], T]) -> T:
     """Call ``thunk`` between the hooks of a failure-handling form, and return its values. ``types`` is a list of names of conditions.
 
-    ``handling``, if given, keeps the id that the first hook returned. In the original, ``top-level`` calls these hooks too.
+    In the original, ``top-level`` calls these hooks too.
     """
     run_id = on_with_failure_handling_begin.first(list_from(types))
-    if handling is not None:
-        handling.id = run_id
     try:
         return thunk()
     finally:

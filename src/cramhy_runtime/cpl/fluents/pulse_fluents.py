@@ -55,7 +55,12 @@ class PulseFluent(Fluent[bool | None]):
 
     def input_pulsed(self) -> None:
         self.seen = self.parent.pulses
-        self.pulse()
+        self.pulses += 1
+        if self.nets or self.callbacks:
+            self._notify(True if self.processed < self.seen else None)
+        elif self.processed < self.seen:
+            for task in self.waiters:
+                task.kernel.unpark(task)
 
     def pulse(self) -> None:
         self.pulses += 1

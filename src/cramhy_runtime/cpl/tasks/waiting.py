@@ -13,6 +13,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, Typ
 
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.active import ACTIVE
+from cramhy_runtime.kernel.budget import budget
 
 from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import is_ratio, truth
@@ -108,9 +109,16 @@ def whenever(fluent: Fluent[object], body: Callable[[], object]) -> NoReturn:
     Source: cpl.md 2.11.
     """
     while True:
-        wait_for(fluent)
+        if user_wait.value is None and isinstance(fluent, Fluent):  # as `wait_for` does
+            value = fluent.read()
+            if value is None or value is False:
+                _wait(fluent, None)
+        else:
+            wait_for(fluent)
         body()
-        kernel.checkpoint()
+        budget.left = left = budget.left - 1  # as `kernel.checkpoint` does
+        if left < 0:
+            kernel.slice_over()
 
 
 def sleep_star(seconds: float) -> None:

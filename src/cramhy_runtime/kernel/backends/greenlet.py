@@ -22,6 +22,7 @@ class GreenletCarrier(greenlet):
     """A greenlet that carries task after task."""
 
     __slots__ = ("backend", "job", "ident", "started")
+    direct = True  # it gives the baton to a carrier that has started by that one's ``switch``, without `GreenletBackend.transfer`
 
     def __init__(self, backend, job):
         super().__init__(parent=backend.root.stack)
@@ -54,6 +55,7 @@ class RootCarrier:
 
     __slots__ = ("stack", "switch", "ident")
     started = True
+    direct = False
 
     def __init__(self):
         self.stack = getcurrent()

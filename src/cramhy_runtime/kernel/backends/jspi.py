@@ -44,8 +44,8 @@ except ImportError:
     host = None  # this is not WebAssembly: the module can be imported, and makes no back end
 
 KEEP = 256  # idle stacks that one kernel keeps
-MOST = 8_000
-"""Stacks at a time. Each takes 24 KiB, and V8 ends Python without a message somewhere below 20,000 (measured in Node 26)."""
+MOST = 8_000 if host is None else host.most
+"""Stacks at a time. It is the browser's matter; see ``stacks.mjs``."""
 FULL = f"There is room for {MOST:,} tasks at a time in a browser, and all of it is taken. End some tasks before you start more."
 
 _stacks = 0  # that are not over, of all kernels
@@ -84,6 +84,7 @@ class Carrier:
     """A stack with its turn."""
 
     __slots__ = ("backend", "job", "started", "suspended", "ident", "_turn", "_asker", "_seen", "_counts")
+    direct = False
 
     def __init__(self, backend: JspiBackend, job: Job | None):
         self.backend = backend

@@ -38,6 +38,7 @@ class ThreadCarrier:
     """A thread with its lock."""
 
     __slots__ = ("lock", "job", "ident", "tid")
+    direct = False
 
     def __init__(self):
         self.lock = _thread.allocate_lock()

@@ -268,9 +268,7 @@ class Bodies(Matching):
             given = [build(argument, names) for argument in goal.cdr or ()]
             predicate = self.predicate
             if not goals and context.repeat and functor is predicate.functor and len(given) == predicate.arity:
-                if given:
-                    comma = "," if len(given) == 1 else ""
-                    self.emit(f"{', '.join(f'a{i}' for i in range(len(given)))}{comma} = {', '.join(given)}{comma}")
+                self.assign_arguments(given)
                 self.emit(context.repeat)
                 return
             callee = self.constant(self.predicate_of(functor, len(given)))

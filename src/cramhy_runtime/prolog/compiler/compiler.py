@@ -244,11 +244,12 @@ class PredicateCode(Holes, Bodies):
             self._candidates(numbers, known)
             return
         a, c = f"a{position}", f"c{position}"
-        self.emit(f"while {a}.__class__ is Var:")
-        self.emit(f"    r = {a}.ref")
-        self.emit("    if r is UNSET: break")
-        self.emit(f"    {a} = r")
         self.emit(f"{c} = {a}.__class__")
+        self.emit(f"if {c} is Var:")
+        self.depth += 1
+        self.follow(a)
+        self.emit(f"{c} = {a}.__class__")
+        self.depth -= 1
         kinds = {n: self._kind(n, position) for n in numbers}
 
         def fit(*wanted):

@@ -71,6 +71,12 @@ class Source:
     def emit(self, line):
         self.lines.append("    " * self.depth + line)
 
+    def assign_arguments(self, given):
+        """Emit the assignment of the expressions ``given`` to the arguments, for the next turn; ``None``: an argument stays as it is."""
+        moved = [(f"a{i}", item) for i, item in enumerate(given) if item is not None and item != f"a{i}"]
+        if moved:
+            self.emit(f"{', '.join(a for a, _ in moved)} = {', '.join(item for _, item in moved)}")
+
     def fresh(self, prefix):
         """A new Python name."""
         self.counter += 1

@@ -79,8 +79,11 @@ class Matching(Source):
                 names[pattern.name] = self.fresh("rest")
                 self.emit(f"{names[pattern.name]} = {built}")
 
-    def match(self, pattern, x, names, depth, known=None):
-        """Emit code that unifies ``pattern`` with the term in the Python variable ``x``. If it is ``known``, it is dereferenced."""
+    def match(self, pattern, x, names, depth, known=None, own=False):
+        """Emit code that unifies ``pattern`` with the term in the Python variable ``x``. If it is ``known``, it is dereferenced.
+
+        own: nobody else needs ``x``, so the value of a variable may take its place.
+        """
         if variable(pattern):
             if pattern is ANONYMOUS:
                 return
@@ -97,16 +100,14 @@ class Matching(Source):
         if isinstance(pattern, Cons) and known is None and (depth >= _DEEP or (is_ground(pattern) and not _short(pattern))):
             self.fail_unless(f"unify({self.build(pattern, names)}, {x}, trail)")
             return
-        if known is None:
+        if known is None and not own:
             term, x = x, self.fresh("x")
             self.emit(f"{x} = {term}")
-            self.emit(f"while {x}.__class__ is Var:")
-            self.emit(f"    r = {x}.ref")
-            self.emit("    if r is UNSET: break")
-            self.emit(f"    {x} = r")
         if isinstance(pattern, Cons):
             self._match_list(pattern, x, names, depth, known)
             return
+        if known is None:
+            self.follow(x)
         value = self.constant(pattern)
         if known is UNBOUND:
             self._set(x, value)
@@ -120,6 +121,13 @@ class Matching(Source):
         other = f"{x}.__class__ is Symbol or " if identical else ""
         self.emit(f"    elif {other}not unify({x}, {value}, trail): {self.failing}")
 
+    def follow(self, x):
+        """Emit code after which ``x`` is the value, if it is a variable that has one."""
+        self.emit(f"while {x}.__class__ is Var:")
+        self.emit(f"    r = {x}.ref")
+        self.emit("    if r is UNSET: break")
+        self.emit(f"    {x} = r")
+
     def _set(self, x, value):
         self.emit(f"{x}.ref = {value}")
         self.emit(f"trail.append({x})")
@@ -131,20 +139,20 @@ class Matching(Source):
         if known is UNBOUND:
             self._set(x, self._cell(pattern, names))
             return
-        kind = self.fresh("c")
-        self.emit(f"{kind} = {x}.__class__")
-        self.emit(f"if {kind} is LazyTail or {kind} is TermTail:")
-        self.emit(f"    {x} = {x}.force()")
-        self.emit(f"    {kind} = {x}.__class__")
+        self.emit(f"if {x}.__class__ is not Cons:")
+        self.depth += 1
+        self.follow(x)
+        self.emit(f"if {x}.__class__ is LazyTail or {x}.__class__ is TermTail: {x} = {x}.force()")
+        self.depth -= 1
         before = dict(names)
-        self.emit(f"if {kind} is Cons:")
+        self.emit(f"if {x}.__class__ is Cons:")
         self.depth += 1
         count = len(self.lines)
         self._match_parts(pattern, x, names, depth)
         if len(self.lines) == count:
             self.emit("pass")
         self.depth -= 1
-        self.emit(f"elif {kind} is Var:")
+        self.emit(f"elif {x}.__class__ is Var:")
         self.depth += 1
         inside = variables(pattern)
         for name in names:
@@ -164,7 +172,7 @@ class Matching(Source):
             else:
                 piece = self.fresh("p")
                 self.emit(f"{piece} = {x}.{attribute}")
-                self.match(part, piece, names, depth + further)
+                self.match(part, piece, names, depth + further, own=True)
 
     # ------------------------------------------------------------------------------------------------------------ building terms
 

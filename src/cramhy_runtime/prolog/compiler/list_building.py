@@ -79,10 +79,7 @@ class Holes:
         self.depth -= 2
         self._take_parts(first, telling, names)
         x = f"a{position}"
-        self.emit(f"while {x}.__class__ is Var:")
-        self.emit(f"    r = {x}.ref")
-        self.emit("    if r is UNSET: break")
-        self.emit(f"    {x} = r")
+        self.follow(x)
         self.emit(f"if {x}.__class__ is Var:")
         self.depth += 1
         inside = dict(names)
@@ -100,7 +97,5 @@ class Holes:
 
     def _next_turn(self, call, position, names):
         given = [self.build(item, names) if i != position else None for i, item in enumerate(call.cdr)]
-        moved = [(f"a{i}", item) for i, item in enumerate(given) if item is not None and item != f"a{i}"]
-        if moved:
-            self.emit(f"{', '.join(a for a, _ in moved)} = {', '.join(item for _, item in moved)}")
+        self.assign_arguments(given)
         self.emit("continue")

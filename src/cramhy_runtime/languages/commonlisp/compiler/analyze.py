@@ -67,8 +67,7 @@ class Analyzer(Scrutiny):
 
     def fail(self, control, *arguments):
         """A compile error at the form that is being analysed."""
-        condition = CompileError(control, *arguments, position=self.place())
-        return error(condition)
+        return error(CompileError(control, *arguments, position=self.place()))
 
     def place(self):
         return (self.filename, *self._at[:2]) if self._at else None
@@ -144,7 +143,8 @@ class Analyzer(Scrutiny):
             return self._call(form, env) if shorter is form else self.form(shorter, env)
         if isinstance(head, Cons) and head.car is LAMBDA:
             return CallValue(self.function(head, env), self.arguments(form, env))
-        return self.fail("~S cannot be called: the head of a form must be a symbol or a lambda expression.", head)
+        told = "~S cannot be called: the head of a form must be a symbol or a lambda expression."
+        return error(CompileError(told, head, position=self.place(), called=form))
 
     def expand(self, form, env):
         """(expansion, whether expanded); the expansion inherits the place of ``form``."""

@@ -52,17 +52,32 @@ class ExitGenerator:
             self.effects += 1
             return
         exit_name = self.temporary("Le")
-        handler, _ = self.captured(
-            lambda: self.finish(
-                self.call("block_value", word(exit_name), self.reference(block.variable)), nodes.Call(None, []), destination
-            )
-        )
+        handler, _ = self.captured(lambda: self.finish(self.value_left_with(exit_name, block), nodes.Call(None, []), destination))
         self.emit(
             word("try"),
             *(statements or [NONE]),
             expression(word("except"), List([word(exit_name), word("LBlockExit")]), *handler),
-            expression(word("finally"), self.call("end_block", self.reference(block.variable))),
+            expression(word("finally"), self.ended(block)),
         )
+
+    def value_left_with(self, exit_name, target):
+        """The value with which ``target`` is left by the exception ``exit_name``. An exit of another block or tagbody goes on."""
+        left = word(exit_name)
+        self.emit(word("when"), expression(word("is-not"), left, self.reference(target.variable)), expression(word("raise")))
+        # It leads to frames that hold the exit: a circle that only the garbage collector would find.
+        self.emit(word("setv"), expression(DOT, left, word("__traceback__")), NONE)
+        return expression(DOT, left, word("value"))
+
+    def ended(self, target):
+        """Code after which nobody can leave ``target`` any more, a block or tagbody."""
+        return expression(word("setv"), expression(DOT, self.reference(target.variable), word("active")), word("False"))
+
+    def leave(self, target, value):
+        """Leave ``target``, a block or tagbody of an outer function, with ``value``."""
+        exit_ = self.reference(target.variable)
+        self.emit(word("setv"), expression(DOT, exit_, word("value")), value)
+        self.emit(word("when"), expression(word("not"), expression(DOT, exit_, word("active"))), self.call("nothing_to_leave"))
+        self.emit(word("raise"), exit_)
 
     def block_body(self, node, destination):
         if destination.kind == "return":
@@ -78,8 +93,8 @@ class ExitGenerator:
     def ReturnFrom(self, node, destination):
         block = node.block
         if block.owner is not self.scope:
-            value = self.gen(node.value, VALUES)
-            return self.finish(self.call("return_from", self.reference(block.variable), value), nodes.Constant(None), destination)
+            self.leave(block, self.gen(node.value, VALUES))
+            return NONE if destination.kind == "value" else None
         target = self.destinations[block]
         self.gen(node.value, target)
         if target.kind != "return":
@@ -233,14 +248,11 @@ class ExitGenerator:
         parts.append(expression(word("break")))
         if tagbody.escapes:
             exit_name = self.temporary("Le")
-            target = expression(
-                word("setv"), word(tagbody.counter), self.call("block_value", word(exit_name), self.reference(tagbody.variable))
-            )
-            parts = [expression(word("try"), *parts, expression(word("except"), List([word(exit_name), word("LBlockExit")]), target))]
+            handler, _ = self.captured(lambda: self.assign(tagbody.counter, self.value_left_with(exit_name, tagbody)))
+            parts = [expression(word("try"), *parts, expression(word("except"), List([word(exit_name), word("LBlockExit")]), *handler))]
         loop = self.ticking(parts, len(self.frames))
         if tagbody.escapes:
-            end = self.call("end_block", self.reference(tagbody.variable))
-            self.emit(word("try"), loop, expression(word("finally"), end))
+            self.emit(word("try"), loop, expression(word("finally"), self.ended(tagbody)))
         else:
             self.out.append(loop)
             self.effects += 1
@@ -249,7 +261,8 @@ class ExitGenerator:
     def Go(self, node, destination):
         tagbody = node.tagbody
         if tagbody.owner is not self.scope:
-            return self.finish(self.call("return_from", self.reference(tagbody.variable), node.index), nodes.Constant(None), destination)
+            self.leave(tagbody, node.index)
+            return NONE if destination.kind == "value" else None
         if tagbody.structured:
             self.jump((tagbody, node.index))
         else:

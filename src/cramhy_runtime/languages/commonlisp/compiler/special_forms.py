@@ -284,7 +284,9 @@ def _local_functions(analyzer, form, env, recursive):
     specifiers, _, forms = analyzer.declarations(forms, env)
     _free_specials(analyzer.specials(specifiers), inner, ())
     body = analyzer.scope((), specifiers, forms, inner)
-    return bound(body, Functions(functions, body))
+    if not recursive:  # nobody can call the others, as `retry` in the body of most with-failure-handling forms
+        functions = [(variable, function) for variable, function in functions if variable.used]
+    return bound(body, Functions(functions, body)) if functions else body
 
 
 def _with_next_methods(analyzer, definitions, variables, forms, env, inner):

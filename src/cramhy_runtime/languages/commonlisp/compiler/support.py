@@ -168,9 +168,14 @@ def block_value(exit_, token):
 def return_from(token, value):
     """Leave the block of ``token`` with ``value``."""
     if not token.active:
-        error(SimpleControlError("attempt to RETURN-FROM a block or GO to a tag that no longer exists"))
+        nothing_to_leave()
     token.value = value
     raise token
+
+
+def nothing_to_leave():
+    """Signal that the block or tagbody of an exit is over."""
+    error(SimpleControlError("attempt to RETURN-FROM a block or GO to a tag that no longer exists"))
 
 
 def end_block(token):
@@ -330,9 +335,7 @@ NAMESPACE = {
     "Lhandler": function_of,
     "Lcheckpoint": kernel.checkpoint,
     "LBlockExit": BlockExit,
-    "Lblock_value": block_value,
-    "Lend_block": end_block,
-    "Lreturn_from": return_from,
+    "Lnothing_to_leave": nothing_to_leave,
     "Lrefill": kernel.refill,
     "Lcounting": counting,
     "Litems": items,

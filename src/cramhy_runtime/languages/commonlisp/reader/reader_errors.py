@@ -7,6 +7,8 @@ stands beside it, in attributes that the REPL and the loader print: ``position``
 
 from __future__ import annotations
 
+import re
+
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import EndOfFile, ReaderError, ReaderPackageError, SimpleStyleWarning, SimpleWarning, shown
 from cramhy_runtime.ground.conditions import ask_value, restart_case
@@ -203,3 +205,9 @@ def _prefix(package):
 
 def _either(names):
     return names[0] if len(names) == 1 else ", ".join(names[:-1]) + " or " + names[-1]
+
+
+def comma_hint(text, at):
+    """What to try for the comma at ``at``, outside of a backquote: it may be that of a number, or separate the elements of a list."""
+    before, after = re.search(r"[-+]?\d+\Z", text[:at]), re.match(r"\d+", text[at + 1 :])
+    return f"Numbers have a point: {before[0]}.{after[0]}" if before and after else "Lists are written without commas: (1 2 3)."

@@ -312,7 +312,7 @@ class Reader(InputStream):
             self.backquotes += 1
         elif symbol is Comma:
             if not self.backquotes and SUPPRESS.value is None:
-                fail(self, start, "Comma not inside a backquote.", hint="Lists are written without commas: (1 2 3).")
+                fail(self, start, "Comma not inside a backquote.", hint=reader_errors.comma_hint(self.text, start))
             following = self.peek_char()
             if following and following in "@.":
                 self.offset += 1

@@ -73,3 +73,6 @@ SHAPES = {
 """.strip().splitlines()
 }
 """Name → the shape of a call."""
+
+EXAMPLES = {"DOLIST": "(dolist (x '(1 2 3)) (print x))", "DOTIMES": "(dotimes (i 4) (print i))"}
+"""Calls of those macros whose shape alone is hard to read for a beginner."""

@@ -13,7 +13,7 @@ from cramhy_runtime.ground.data import list_from
 from cramhy_runtime.ground.packages import COMMON_LISP, find_package, find_package_or_error, keyword, sym
 from ...operators import TABLES, operator_of
 from ...operators.grammar import UnknownOption, WrongShape, fill, match
-from .macro_shapes import SHAPES
+from .macro_shapes import EXAMPLES, SHAPES
 from .macro_symbols import symbol_in
 
 
@@ -105,5 +105,6 @@ def malformed(form, symbol, problem):
             break
     operator = operator_of(symbol)
     shape = SHAPES.get(symbol.name) if symbol.package is COMMON_LISP else operator and operator.shape
-    hint = None if shape is None else f"It is written {shape}."
+    example = f", for example {EXAMPLES[symbol.name]}" if symbol.package is COMMON_LISP and symbol.name in EXAMPLES else "."
+    hint = None if shape is None else f"It is written {shape}{example}"
     return error(CompileError("The ~A form ~S is malformed: ~A", symbol, form, why), hint=hint)

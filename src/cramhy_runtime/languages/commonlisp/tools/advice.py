@@ -22,12 +22,14 @@ from cramhy_runtime.ground.dispatch.generic_errors import NoApplicableMethodErro
 from cramhy_runtime.ros.definition_files import why_no_lisp_package
 from cramhy_runtime.ground.packages import all_packages, is_symbol, near_names, sym, symbol_name
 from cramhy_runtime.ground.ports import PORTS
+from ..evaluation.forms import special_operator_p
 from ..printer import pprint_dispatch
 from ..printer.print_controls import PACKAGE
 from ..printer.printer import princ_to_string
 from ..streams.streams import ERROR_OUTPUT, output_stream
+from .call_advice import glued, of_head
 from .fluent_advice import fluent_advice
-from .operators_around import undefined_operator
+from .operators_around import names_before, undefined_operator
 from .words_of_hy import hint_for_operator, hint_for_variable
 
 CONDITION = sym("CONDITION")
@@ -134,6 +136,9 @@ def _advice(condition):
         own = own()
     if own:
         return own
+    called = getattr(condition, "called", None)
+    if called is not None:
+        return of_head(called, getattr(condition, "position", None))
     name = getattr(condition, "name", None)
     undefined = getattr(condition, "undefined", None)
     if isinstance(name, Symbol):
@@ -143,7 +148,7 @@ def _advice(condition):
                 called = operator.name.lower()
                 taken = f"Nobody has defined {called} here, so ({called} ...) is taken for a call, whose arguments are evaluated."
                 return "\n".join(filter(None, [taken, _function(operator)]))
-            return _variable(name)
+            return _variable(name, getattr(condition, "position", None))
         if undefined == "function" or isinstance(condition, types.UndefinedFunction):
             return _function(name)
         if undefined == "type":
@@ -178,21 +183,30 @@ def _visible(test):
                 yield name
 
 
-def _variable(symbol):
+def _variable(symbol, position=None):
     if of_hy := hint_for_variable(symbol.name):
         return of_hy
     starred = f"*{symbol.name}*"
     variables = set(_visible(lambda other: other.value is not UNBOUND and other.special))
     if starred in variables:
         return f"There is a variable {starred}, with stars."
-    if not isinstance(symbol.function, UndefinedFunction):
-        return f"{symbol.name} is a function, no variable: a call of it is ({symbol.name.lower()} ...), in parentheses of its own."
-    near = near_names(symbol.name, variables)
+    if is_operator(symbol) or special_operator_p(symbol):
+        kind = "a special operator" if special_operator_p(symbol) else "a macro" if symbol.macro is not None else "a function"
+        return f"{symbol.name} is {kind}, no variable: a call of it is ({symbol.name.lower()} ...), in parentheses of its own."
+    of_designator = symbol.name.startswith("?")
+    near = near_names(symbol.name, variables if of_designator else variables | _parameters_before(position))
     if near:
         return f"Did you mean {' or '.join(near)}?"
-    if symbol.name.startswith("?"):
+    if of_designator:
         return f"A variable in a designator must be bound around it: (let (({symbol.name.lower()} ...)) ...)."
     return None
+
+
+def _parameters_before(position):
+    """The names before ``position`` in its form that may be parameters or variables of it."""
+    package = PACKAGE.value
+    found = ((name, package.lookup(name)[0]) for name in (names_before(position) if position else ()))
+    return {name for name, symbol in found if isinstance(symbol, Symbol) and not is_operator(symbol)}
 
 
 def _function(symbol):
@@ -204,6 +218,8 @@ def _function(symbol):
     other = elsewhere(symbol)
     if other is not None:
         return f"There is {_qualified(other)} in another package."
+    if missing_space := glued(symbol.name):
+        return missing_space
     home = _users_package_with(symbol)
     if home is not None:
         name = min(home.names, key=len).lower()

@@ -1,4 +1,4 @@
-"""Which operators a place in Lisp text stands inside of, found in the text itself.
+"""Which operators a place in Lisp text stands inside of, and which names come before it, found in the text itself.
 
 ``(def-fact-group animals (legs))`` in a package that has no such macro is a call of a function. Its arguments are evaluated before
 anybody looks for the function, so all that is signalled is that ``animals`` is unbound. Where that happened the text tells the rest.
@@ -23,12 +23,8 @@ _FORMS_INSIDE = frozenset(
 
 def operators_around(position):
     """The first tokens of the lists that ``position`` (file, line, column) stands in, the outermost first; "" where a list begins one."""
-    filename, line, column = (*position, None)[:3]
-    import linecache  # it imports the tokenizer
-
-    text = "".join(linecache.getlines(filename)[: line - 1]) + linecache.getline(filename, line)[: (column or 1) - 1]
     stack, opened = [], False
-    for token in TOKEN.findall(text):
+    for token in _tokens_before(position):
         if token == "(":
             if opened:
                 stack[-1] = ""
@@ -39,6 +35,35 @@ def operators_around(position):
             stack[-1] = token
         opened = token == "("
     return stack
+
+
+def names_before(position):
+    """The names, in capital letters, that the top-level form around ``position`` (file, line, column) has before that place."""
+    names, depth = set(), 0
+    for token in _tokens_before(position):
+        if token in ("(", ")"):
+            depth += 1 if token == "(" else -1
+            if depth <= 0:
+                names.clear()
+        elif token[0] not in '";#':
+            names.add(token.lstrip("'`,@").upper())
+    return names
+
+
+def token_at(position, offset=0):
+    """The token ``offset`` characters behind ``position`` in its line, or ``""``."""
+    filename, line, column = (*position, None)[:3]
+    import linecache
+
+    match = TOKEN.match(linecache.getline(filename, line), (column or 1) - 1 + offset)
+    return match[0] if match else ""
+
+
+def _tokens_before(position):
+    filename, line, column = (*position, None)[:3]
+    import linecache  # it imports the tokenizer
+
+    return TOKEN.findall("".join(linecache.getlines(filename)[: line - 1]) + linecache.getline(filename, line)[: (column or 1) - 1])
 
 
 def undefined_operator(position):

@@ -32,12 +32,6 @@ def with_parallel_childs(name, thunks, watcher):
     return operators.with_parallel_childs(name, python_list(thunks), watcher)
 
 
-def with_failure_handling(body, *clauses):
-    """``clauses``: a type and a function for each, in turn."""
-    pairs = (clauses,) if len(clauses) == 2 else [clauses[index : index + 2] for index in range(0, len(clauses), 2)]
-    return failures.Handling(pairs).run(body)
-
-
 def with_tree_node(path_part, function, name, sexp, lambda_list, parameters, log_parameters, log_pattern):
     return tree.with_task_tree_node(
         path_part,
@@ -101,7 +95,7 @@ FUNCTIONS = {
     "without-scheduling": suspension.without_scheduling,
     "with-scheduling": suspension.with_scheduling,
     "define-task-variable": lambda name, init: task_variables.define_task_variable(name, name.value, init_function=init),
-    "with-failure-handling": with_failure_handling,
+    "with-failure-handling": failures.handling_failures,
     "retry": failures.Handling.__call__,
     "make-retry-counter": retry_counters.RetryCounter,
     "use-retry": lambda counter: counter.use(),

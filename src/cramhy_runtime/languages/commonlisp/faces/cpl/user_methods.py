@@ -26,6 +26,7 @@ from cramhy_runtime.cpl.fluents import fluents, nets
 from cramhy_runtime.cpl.tasks import waiting
 from cramhy_runtime.cpl.fluents.fluents import Fluent, ValueFluent
 from cramhy_runtime.cpl.fluents.nets import CachedNet, peeking
+from cramhy_runtime.cpl.fluents.pulse_fluents import PulseFluent
 
 _replaced = {}
 """(class, name of a Python method) → the method that was there, or ``None``, for those that call a generic function now."""
@@ -100,6 +101,11 @@ def _pulse_through(fluent):
     PULSE.generic(fluent)
 
 
+def _seen_and_pulse(fluent):
+    fluent.seen = fluent.parent.pulses
+    PULSE.generic(fluent)
+
+
 def _store_and_pulse(fluent, new):
     """`ValueFluent.set` for fluents whose value or pulses users see to: it passes through both, and no request to end between them."""
     with kernel.shield():
@@ -134,6 +140,8 @@ def _prepare(cls):
         _replace(cls, pulse=_pulse_through)
         if issubclass(cls, CachedNet):
             _replace(cls, input_pulsed=_pulse_through)
+        elif issubclass(cls, PulseFluent):
+            _replace(cls, input_pulsed=_seen_and_pulse)
     if issubclass(cls, ValueFluent):
         if readers or pulsers:
             _replace(cls, set=_store_and_pulse)
