@@ -253,7 +253,10 @@ Each is what the standard says that it expands into; see the section of ANSI in 
       `(prog1 ~form)))
 
 (defoperator nth-value [n form]
-  `(nth ~n (multiple-value-list ~form)))
+  (if (and (is (type n) int) (<= 0 n 4))
+      (do (setv names (lfor _ (range (+ n 1)) (gensym "VALUE")))
+          `(multiple-value-bind ~names ~form ~(get names n)))
+      `(nth ~n (multiple-value-list ~form))))
 
 (defoperator destructuring-bind [lambda-list form #* body]
   (import cramhy_runtime.languages.commonlisp.syntax.lambda_lists [destructure])

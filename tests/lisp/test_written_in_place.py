@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import pytest
 
+from cramhy_runtime.ground import hash_tables
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
@@ -211,6 +212,102 @@ def test_the_element_that_is_found_is_not_what_the_function_made_of_its_variable
 def test_a_local_function_and_a_shadowed_one_are_not_the_standard_one(evaluate):
     assert evaluate("(flet ((check (x) (> x 1))) (find-if #'check '(1 2 3)))") == "2"
     assert evaluate("(list (mapcar #'1+ '(1 2)) (mapcar #'car '((1) (2))) (some #'null '(1 nil)))") == "((2 3) (1 2) T)"
+
+
+# ------------------------------------------------------------------------------------------------------ reduce and maphash
+
+REDUCED = [
+    "(lambda (a b) (+ a (if (numberp b) b 1)))",
+    "(lambda (a b) (list a b))",
+    "(lambda (a b) (values (cons b (if (listp a) a nil)) :more))",
+    "(lambda (a b) (setq b (list b) a (list a)) (append a b))",
+    "(lambda (a b) (declare (ignore a)) b)",
+    '(lambda (a b) "doc" (if (eql b 4) (throw \'out a) b))',
+    "(lambda (*special* b) (if (numberp b) (see) *special*))",
+    "(lambda (a b) (block nil (when (eql b 1) (return a)) (note b) a))",
+    "(lambda (&rest all) all)",
+    "(lambda (a &optional b) (list a b))",
+    "#'list",
+]
+
+
+@pytest.mark.parametrize("function", REDUCED)
+def test_reduce_is_the_same_in_place(evaluate, function):
+    evaluate("(progn (defvar *special* 1) (defun see () *special*))")
+    for sequence in SEQUENCES:
+        for more in (
+            ":initial-value 0",
+            ":initial-value nil",
+            ":initial-value (values 1 2)",
+            ":initial-value 0 :from-end t",
+            ":key #'identity",
+        ):
+            call = f"(reduce {function} {sequence} {more})"
+            if "+" in function and ("nil" in more or "end" in more) or ":key" in more and ("+" in function or "'()" in sequence):
+                continue
+            called = evaluate(f"(logged (catch 'out (locally (declare (notinline reduce)) {call})))")
+            assert evaluate(f"(logged (catch 'out {call}))") == called, call
+
+
+ENTRIES = "(let ((h (make-hash-table))) (setf (gethash 1 h) :one (gethash 2 h) :two (gethash 3 h) :three) ~)"
+
+
+@pytest.mark.parametrize(
+    ("form", "answer"),
+    [
+        ("(let (all) (list (maphash (lambda (k v) (push (list k v) all)) h) all))", "(NIL ((3 :THREE) (2 :TWO) (1 :ONE)))"),
+        ("(let (all) (maphash (lambda (k v) (push (lambda () (list (incf k) v)) all)) h) (mapcar #'funcall all))",
+         "((4 :THREE) (3 :TWO) (2 :ONE))"),
+        ("(progn (maphash (lambda (k v) v (remhash k h) (remhash 2 h)) h) (hash-table-count h))", "0"),
+        ("(let (all) (maphash (lambda (k v) v (push k all) (remhash 2 h)) h) all)", "(3 1)"),
+        ("(progn (maphash (lambda (k v) (setf (gethash k h) (list v))) h) (gethash 3 h))", "(:THREE) ; T"),
+        ("(let (all) (maphash (lambda (k v) v (setf (gethash (+ k 10) h) k) (push k all)) h) (list all (hash-table-count h)))", "((3 2 1) 6)"),
+        ("(block out (maphash (lambda (k v) (when (eql k 2) (return-from out v))) h) :none)", ":TWO"),
+        ("(let ((n 0)) (tagbody (maphash (lambda (k v) v (incf n) (when (eql k 2) (go end))) h) (setf n :all) end) n)", "2"),
+        ("(let (all) (maphash (lambda (k v) (maphash (lambda (l w) w (push (list k l) all)) h) v) h) (length all))", "9"),
+        ("(let ((n 0)) (maphash #'(lambda (k v) (declare (ignore v)) (incf n k)) h) n)", "6"),
+        ("(let (all) (maphash (lambda (k &optional v) (push (list k v) all)) h) (length all))", "3"),
+        ("(let (all) (maphash (lambda (&rest both) (push both all)) h) (length all))", "3"),
+        ("(let (all) (flet ((keep (k v) (push (list k v) all))) (maphash #'keep h)) (length all))", "3"),
+        ("(let ((n 0)) (declare (notinline maphash)) (maphash (lambda (k v) v (incf n k)) h) n)", "6"),
+        ("(handler-case (maphash (lambda (k) k) h) (program-error () :wrong))", ":WRONG"),
+        ("(let (all) (maphash (lambda (k *special*) k (push (see) all)) h) all)", "(:THREE :TWO :ONE)"),
+        ("(let ((k 0) (all nil)) (maphash (lambda (k v) v (setq k (list k)) (push k all)) h) (list k all))", "(0 ((3) (2) (1)))"),
+    ],
+)  # fmt: skip
+def test_maphash_in_place(evaluate, form, answer):
+    evaluate("(progn (defvar *special* 1) (defun see () *special*))")
+    assert evaluate(ENTRIES.replace("~", form)) == answer
+
+
+@pytest.mark.parametrize("name", ["maphash", "reduce"])
+@pytest.mark.parametrize("thing", ["5", "'(1 2 . 3)", "'a", '"text"'])
+def test_what_is_no_table_or_sequence_is_told_alike(evaluate, name, thing):
+    texts = set()
+    more = "" if name == "maphash" else ":initial-value 0"
+    call = f"({name} (lambda (a b) b (list a)) {thing} {more})"
+    for form in (call, f"(locally (declare (notinline {name})) {call})"):
+        try:
+            texts.add(evaluate(form))
+        except Condition as told:
+            texts.add((type(told).__name__, str(told)))
+    assert len(texts) == 1
+
+
+def test_arguments_of_loops_in_place_are_evaluated_in_order(evaluate):
+    call = "(reduce (lambda (a b) (note (list a b)) b) (progn (note 1) '(5)) :initial-value (progn (note 2) 3))"
+    assert evaluate(f"(logged {call})") == "(5 (1 2 (3 5)))"
+    assert evaluate("(logged (let ((l '(1))) (reduce (lambda (a b) (+ a b)) l :initial-value (progn (setq l '(5)) 0))))") == "(1 NIL)"
+
+
+def test_a_long_walk_over_a_table_passes_checkpoints(evaluate, monkeypatch):
+    evaluate("(progn (defvar *table* (make-hash-table)) (dotimes (i 5000) (setf (gethash i *table*) i)))")
+    passed = []
+    monkeypatch.setattr(hash_tables, "checkpoint", lambda: passed.append(1))
+    for notinline in ("maphash", "reduce"):
+        evaluate(f"(locally (declare (notinline {notinline})) (maphash (lambda (k v) k v) *table*))")
+        assert len(passed) == 2
+        passed.clear()
 
 
 def test_loops_in_place_are_interrupted(session, evaluate):

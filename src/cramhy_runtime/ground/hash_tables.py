@@ -14,7 +14,9 @@ from __future__ import annotations
 
 import weakref
 from binascii import crc32
+from itertools import chain, repeat
 
+from cramhy_runtime.kernel.active import checkpoint
 from cramhy_runtime.kernel.images import per_image
 
 from .arrays import is_bit_vector
@@ -31,7 +33,9 @@ hash-table-rehash-size hash-table-rehash-threshold sxhash
 EXTENSION_NAMES = "hash-table-weakness hash-table-synchronized-p"
 """Names of package SB-EXT."""
 
-_NOTHING = object()
+REMOVED = object()
+TURN = 2000
+"""So many entries are walked between two checkpoints."""
 _TESTS = {eq: "EQ", eql: "EQL", equal: "EQUAL", equalp: "EQUALP"}
 _BY_KEY = ("KEY", "KEY-AND-VALUE", "KEY-OR-VALUE")
 _BY_VALUE = ("VALUE", "KEY-AND-VALUE", "KEY-OR-VALUE")
@@ -104,21 +108,29 @@ class HashTable:
 
     def _forget(self, hash_key):
         self.originals.pop(hash_key, None)
-        return self.entries.pop(hash_key, _NOTHING) is not _NOTHING
+        return self.entries.pop(hash_key, REMOVED) is not REMOVED
 
     def clear(self):
         """Remove all entries."""
         self.entries.clear()
         self.originals.clear()
 
+    def walk(self):
+        """Iterate over (key, value) in order of first storing. An entry that is removed meanwhile has the value ``REMOVED``."""
+        hash_keys = list(self.entries)
+        return chain.from_iterable(self._part(hash_keys, start) for start in range(0, len(hash_keys), TURN))
+
+    def _part(self, hash_keys, start):
+        if start:
+            checkpoint()
+        hash_keys = hash_keys[start : start + TURN]
+        keys = map(self.originals.get, hash_keys, hash_keys) if self.originals else hash_keys
+        pairs = zip(keys, map(self.entries.get, hash_keys, repeat(REMOVED)), strict=False)
+        return pairs if self.weakness is None else ((_strong(key), _strong(value)) for key, value in pairs)
+
     def items(self):
         """Iterate over (key, value) in order of first storing; entries that are removed meanwhile are left out."""
-        entries, original = self.entries, self.originals.get
-        for hash_key in list(entries):
-            value = entries.get(hash_key, _NOTHING)
-            if value is not _NOTHING:
-                key = original(hash_key, hash_key)
-                yield (key, value) if self.weakness is None else (_strong(key), _strong(value))
+        return (pair for pair in self.walk() if pair[1] is not REMOVED)
 
     def keys(self):
         return (key for key, _ in self.items())
@@ -138,8 +150,8 @@ class HashTable:
         return self.hash_key(key) in self.entries
 
     def __getitem__(self, key):
-        value = self.entries.get(self.hash_key(key), _NOTHING)
-        if value is _NOTHING:
+        value = self.entries.get(self.hash_key(key), REMOVED)
+        if value is REMOVED:
             raise KeyError(key)
         return _strong(value)
 
@@ -281,8 +293,8 @@ def value_and_presence(key, table, default=None):
     """The two values of `gethash` as a plain tuple, for compiled code that takes both apart at once."""
     if table.__class__ is not HashTable:
         need_table(table)
-    value = table.entries.get(key if key.__class__ in table.plain else table.hash_key(key), _NOTHING)
-    if value is _NOTHING:
+    value = table.entries.get(key if key.__class__ in table.plain else table.hash_key(key), REMOVED)
+    if value is REMOVED:
         return default, None
     return value if table.weakness is None else _strong(value), True
 
@@ -310,8 +322,9 @@ def clrhash(table):
 def maphash(function, table):
     """``maphash``: call ``function`` with each key and value; it may change or remove entries. Returns nil."""
     function = function_of(function, "\nwhen binding SB-KERNEL:FUNCTION-DESIGNATOR")
-    for key, value in need_table(table).items():
-        function(key, value)
+    for key, value in need_table(table).walk():
+        if value is not REMOVED:
+            function(key, value)
 
 
 def hash_table_p(thing):

@@ -18,11 +18,12 @@ from ..objects.slots import named_slot
 from . import core, nodes
 from .core import NONE, TRUE, List, Tuple, expression, word
 from .destinations import FIRST_OF_VALUES
+from .kinds import INT, exactly, kind_of, raw
 from .several_values import gives_tuple, values_calls
 from .destinations import VALUES as ALL_VALUES
 from .arithmetic.operations import AND, DOT, IF, INT_CLASS, IS, IS_NOT, SETX, class_of
 
-FIND, FLOOR, GETHASH, LIST, VALUES = map(sym, "FIND FLOOR GETHASH LIST VALUES".split())
+FIND, FLOOR, GETHASH, LIST, TRUNCATE, VALUES = map(sym, "FIND FLOOR GETHASH LIST TRUNCATE VALUES".split())
 MAKE_INSTANCE, SAME_CHARACTER, SLOT_VALUE = map(sym, "MAKE-INSTANCE CHAR= SLOT-VALUE".split())
 CHARACTER, GET, IN, PLUS, SETV = map(word, "Lcharacter get in + setv".split())
 
@@ -287,13 +288,27 @@ class CallGenerator:
             return None
         if symbol is GETHASH and len(arguments) in (2, 3):
             return self.entry_and_presence(node, arguments)
-        if symbol is FLOOR and len(arguments) == 2:
-            if _is_number(arguments[1]):
-                divisor = arguments[1].value
-                number, name = self.named(arguments[0])
-                slow = self.call("spread", self.positioned(expression(self.known_function(symbol), name, divisor), node), 2)
-                return expression(IF, expression(IS, class_of(number), INT_CLASS), self.call("divmod", name, divisor), slow)
+        if (symbol is FLOOR or symbol is TRUNCATE) and len(arguments) == 2:
+            return self.quotient_and_rest(node, symbol, arguments)
         return None
+
+    def quotient_and_rest(self, node, symbol, arguments):
+        """Both values of ``floor`` or ``truncate`` of two arguments, as a tuple: Python's ``divmod``, where that gives the same."""
+        if not all(kind_of(argument) & INT and not raw(kind_of(argument)) for argument in arguments):
+            return None
+        operands = number, divisor = self.operands(arguments)
+        self.settle(operands)
+        tests = [expression(IS, self.class_of(each.later), INT_CLASS) for each in operands if not exactly(each.kind, INT)]
+        certain = _is_number(divisor.node) and (symbol is FLOOR or divisor.node.value > 0)
+        if symbol is TRUNCATE:
+            tests.append(expression(word("<="), 0, number.later))
+        if not certain:
+            tests.append(expression(word("!=" if symbol is FLOOR else "<"), 0, divisor.later))
+        quick = self.call("divmod", number.later, divisor.later)
+        if not tests:
+            return quick
+        call = self.positioned(expression(self.known_function(symbol), *map(self.argument, operands)), node)
+        return expression(IF, tests[0] if len(tests) == 1 else expression(AND, *tests), quick, self.call("spread", call, 2))
 
 
 def _keys_begin(function, arguments):

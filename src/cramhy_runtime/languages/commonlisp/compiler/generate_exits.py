@@ -208,12 +208,15 @@ class ExitGenerator:
         )
 
     def Each(self, node, destination):
-        items = self.call("each_of_all" if node.whole else "each", self.value(node.sequence), *([node.context] if node.context else []))
+        items = self.call(node.source, self.value(node.sequence), *([node.context] if node.context else []))
+        names = [word(variable.name) for variable in node.variables]
         frame = Frame()
         self.frames.append(frame)
         body, _ = self.captured(lambda: self.gen(node.body, EFFECT))
         self.frames.pop()
-        self.emit(word("for"), List([word(node.variable.name), items]), *(body or [NONE]))
+        if node.source == "each_entry":
+            body.insert(0, expression(word("when"), expression(word("is"), names[1], word("Lremoved")), expression(word("continue"))))
+        self.emit(word("for"), List([List(names) if len(names) > 1 else names[0], items]), *(body or [NONE]))
         self.continue_exits(frame)
         return self.finish(NONE, node, destination, pure=True)
 

@@ -208,12 +208,13 @@ class TagbodyNode(Node):
 
 @dataclass
 class Each(Node):
-    """``body`` for each element of a sequence, which is the value of ``variable``. whole: a list is looked at as a whole before."""
+    """``body`` for each item that ``source``, a function of ``compiler/support.py``, gives for a sequence. It is the value of the variable,
+    or a tuple of the values of several."""
 
-    variable: object
+    variables: list
     sequence: Node
     body: Node
-    whole: bool
+    source: str
     context: str
     single = True
 

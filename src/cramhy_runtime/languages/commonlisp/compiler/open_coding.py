@@ -3,7 +3,8 @@
 ``(mapcar (lambda (x) ...) list)`` means a loop whose body is that of the function, and becomes one. So the variables around stay
 variables of one Python function, and ``return-from`` and ``go`` out of the function written in place are jumps. Functions of
 several lists end with the shortest. What has another shape (a lambda list with keywords, a function that is computed) is called.
-``(find-if (lambda (x) ...) sequence)`` and its relatives become loops likewise, over sequences of any kind (``cramhy::each``).
+``(find-if (lambda (x) ...) sequence)`` and its relatives become loops likewise, over sequences of any kind (``cramhy::each``), and so do
+``(reduce (lambda (a b) ...) sequence :initial-value value)`` and ``(maphash (lambda (key value) ...) table)``.
 
 A method that uses ``call-next-method`` and ``next-method-p`` has them as local functions, so that it can give them away, too. Where its
 parameters are all required, the definitions of these functions say which variable holds the function of the next method, and which the
@@ -25,7 +26,8 @@ LET, LET_STAR, TAGBODY, IF, GO, SETQ, PROGN, ATOM, CONS, FUNCTION, LAMBDA = map(
 MAPPING = {MAPCAR: COLLECT, MAPC: None, MAPCAN: COLLECT_NCONC}
 SEARCHING: dict = {}
 """Symbol of a function of a predicate and a sequence → the function that writes the loop."""
-OPEN_CODED = {*MAPPING}
+MAPHASH, REDUCE, INITIAL_VALUE = map(sym, "MAPHASH REDUCE :INITIAL-VALUE".split())
+OPEN_CODED = {*MAPPING, MAPHASH, REDUCE}
 SIMPLE = {
     sym(name)
     for name in """CAR CDR CAAR CADR CDDR FIRST SECOND THIRD REST 1+ 1- - NOT NULL EVENP ODDP ZEROP PLUSP MINUSP CONSP ATOM LISTP SYMBOLP
@@ -52,7 +54,9 @@ def open_coded(form, local):
     if not (isinstance(function, Cons) and function.car is LAMBDA and isinstance(function.cdr, Cons)):
         return None
     variables = _variables(function.cdr.car)
-    if variables is None or len(variables) != len(lists):
+    if variables is not None and len(variables) == 2 and (form.car is MAPHASH or form.car is REDUCE):
+        return (_maphash if form.car is MAPHASH else _reduce)(variables, function.cdr.cdr, *lists)
+    if variables is None or len(variables) != len(lists) or form.car is MAPHASH or form.car is REDUCE:
         return None
     if form.car in SEARCHING:
         if len(lists) > 1:
@@ -114,7 +118,7 @@ def searching(name):
 
 def _each(item, sequence, form, whole=False, context=""):
     """A loop that evaluates ``form`` for each element. whole: a list is looked at as a whole before."""
-    return lisp_list(EACH, lisp_list(item, sequence, True if whole else None, context), form)
+    return lisp_list(EACH, lisp_list(item, sequence, "each_of_all" if whole else "each", context), form)
 
 
 def _leaving(loop_for, otherwise):
@@ -189,6 +193,23 @@ def _remove_if(item, test, sequence):
 @searching("REMOVE-IF-NOT")
 def _remove_if_not(item, test, sequence):
     return _kept(item, sequence, lambda keep: lisp_list(IF, test, keep, None))
+
+
+def _maphash(variables, body, table, *more):
+    if more:
+        return None
+    items = [gensym("KEY"), gensym("VALUE")]
+    value = Cons(LET, Cons(list_from(map(lisp_list, variables, items)), body))
+    return lisp_list(EACH, lisp_list(list_from(items), table, "each_entry", ""), value)
+
+
+def _reduce(variables, body, sequence, *rest):
+    if len(rest) != 2 or rest[0] is not INITIAL_VALUE:
+        return None
+    whole, item, result = gensym("SEQUENCE"), gensym("ITEM"), gensym("RESULT")
+    value = Cons(LET, Cons(list_from(map(lisp_list, variables, (result, item))), body))
+    loop = _each(item, whole, lisp_list(SETQ, result, value), whole=True)
+    return lisp_list(LET, lisp_list(lisp_list(whole, sequence), lisp_list(result, rest[1])), loop, result)
 
 
 # -------------------------------------------------------------------------------------------------------- next methods

@@ -391,16 +391,21 @@ def _tagbody(analyzer, form, env):
 
 @special("CRAMHY::EACH")
 def _each(analyzer, form, env):
-    """``(each (variable sequence whole context) . body)``: what is written in place of searching functions (``open_coding.py``)."""
-    (symbol, sequence, whole, context), *forms = parts_of(analyzer, form, 1)
-    sequence, inner = analyzer.form(sequence, env), env.child()
-    variable = inner.variables[symbol] = Variable(symbol, env.scope)
+    """``(each (variable sequence source context) . body)``: what is written in place of searching functions (``open_coding.py``).
+
+    For a list of variables each item of the source is a tuple of their values.
+    """
+    (symbols, sequence, source, context), *forms = parts_of(analyzer, form, 1)
+    sequence, inner, variables = analyzer.form(sequence, env), env.child(), []
+    for symbol in symbols if isinstance(symbols, Cons) else (symbols,):
+        variable = inner.variables[symbol] = Variable(symbol, env.scope)
+        variables.append(variable)
     env.scope.loop_depth += 1
     try:
         body = analyzer.body(forms, inner)
     finally:
         env.scope.loop_depth -= 1
-    return Each(variable, sequence, body, whole is True, context)
+    return Each(variables, sequence, body, source, context)
 
 
 @special("GO")

@@ -52,7 +52,7 @@ from cramhy_runtime.ground.data import (
     one,
     truth,
 )
-from cramhy_runtime.ground.hash_tables import HashTable, value_and_presence, value_in_table
+from cramhy_runtime.ground.hash_tables import REMOVED, HashTable, need_table, value_and_presence, value_in_table
 from cramhy_runtime.ground.keyword_calls import keyword_calls
 from cramhy_runtime.ground.dynamic import Bindings, bind, unbind
 from cramhy_runtime.ground.functions import function_of
@@ -150,6 +150,11 @@ def each(sequence, context=""):
 def each_of_all(sequence):
     """The elements of a sequence, which is looked at as a whole before."""
     return in_turns(elements(sequence))
+
+
+def each_entry(table):
+    """The pairs of key and value of a hash table, with ``REMOVED`` for what was removed meanwhile."""
+    return need_table(table).walk()
 
 
 def block_value(exit_, token):
@@ -376,6 +381,8 @@ NAMESPACE = {
     "Lvector": list,
     "Leach": each,
     "Leach_of_all": each_of_all,
+    "Leach_entry": each_entry,
+    "Lremoved": REMOVED,
     "Lkeep": list.append,
     "Lsame_kind": same_kind,
     "Lany_vector": Vector,

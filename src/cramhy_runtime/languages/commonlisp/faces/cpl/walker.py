@@ -358,9 +358,10 @@ def _catching(walk, form, env):
 @special("CRAMHY::EACH")
 def _each(walk, form, env):
     loop, body = _two(form)
-    inner, (symbol, sequence, *rest) = env.child(), _items(loop)  # only the compiler writes this form
-    _bind(symbol, inner)
-    return Cons(form.car, Cons(lisp_list(symbol, walk.form(sequence, env), *rest), _body(walk, body, inner)))
+    inner, (variables, sequence, *rest) = env.child(), _items(loop)  # only the compiler writes this form
+    for symbol in _items(variables) if isinstance(variables, Cons) else (variables,):
+        _bind(symbol, inner)
+    return Cons(form.car, Cons(lisp_list(variables, walk.form(sequence, env), *rest), _body(walk, body, inner)))
 
 
 @special("CRAMHY::HANDLING")
