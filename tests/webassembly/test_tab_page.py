@@ -332,6 +332,7 @@ def test_the_page_speaks_the_language_of_the_system(visit):
     assert page.locator("#code-load").inner_text() == "Datei laden"
     assert page.locator("#repl-stop").get_attribute("title") == "Ctrl-C: die laufende Form beenden"
     assert page.locator("#lesson-done").get_attribute("title") == "0 von 1 Aufgaben sind gelöst"
+    assert page.locator("#show-grid").inner_text() == "Gitter"  # of the live page
     assert visit(locale="fr-FR").locator("#code-load").inner_text() == "Load file"
 
 
@@ -400,9 +401,9 @@ def test_without_the_packages_of_the_editor_the_command_says_what_to_type(tmp_pa
 
 def test_what_the_page_says_is_in_the_table_of_the_other_language():
     folder = Path(site.__file__).parent
-    table = (folder / "static" / "german.js").read_text(encoding="utf-8")
+    table = (folder / "static" / "desk-german.js").read_text(encoding="utf-8")
     known = {json.loads(text) for text in re.findall(r'^  ("(?:[^"\\]|\\.)*"):', table, re.M)}
-    scripts = "\n".join(file.read_text(encoding="utf-8") for file in (folder / "static").glob("*.js") if file.name != "german.js")
+    scripts = "\n".join(file.read_text(encoding="utf-8") for file in (folder / "static").glob("*.js") if file.name != "desk-german.js")
     said = {json.loads(text) for text in re.findall(r'(?:\bt|\bthis\.say|UnfitLink)\(\s*("(?:[^"\\]|\\.)+")', scripts)}
     markup = (folder / "desk.html").read_text(encoding="utf-8")
     said |= {" ".join(text.split()) for text in re.findall(r">([^<>]*[a-z]{3}[^<>]*)<", markup)} - {"Lisp"}

@@ -1,4 +1,4 @@
-// What the page says in German, by what it says in English. What the session itself says stays English, as Lisp does.
+// What the desk says in German, by what it says in English. What the session itself says stays English, as Lisp does.
 
 export const GERMAN = {
   // the desk
