@@ -3,8 +3,12 @@
 
 (function () {
   if (typeof WebAssembly !== "object" || typeof WebAssembly.Suspending !== "function") return;
-  var python = (globalThis.firstPython = new Worker("worker.mjs" + location.search, { type: "module" }));
-  python.onerror = function () {
+  globalThis.newPython = function () {
+    var kept = navigator.serviceWorker && navigator.serviceWorker.controller ? "#kept" : ""; // see unpacking.mjs
+    return new Worker("worker.mjs" + location.search + kept, { type: "module" });
+  };
+  globalThis.firstPython = newPython();
+  firstPython.onerror = function () {
     globalThis.firstPython = null; // tab.js makes another one, and tells what is wrong with it
   };
 })();

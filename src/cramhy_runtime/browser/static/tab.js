@@ -5,7 +5,7 @@ const SPARE = 5000; // ms after the first prompt, when another Python is made re
 const ROOM = 2; // GB of memory that a machine needs for another Python, which takes 70 MB (Chromium 156)
 
 const hasRoom = () => navigator.hardwareConcurrency > 1 && (navigator.deviceMemory ?? ROOM) >= ROOM;
-const python = () => new Worker(`worker.mjs${location.search}`, { type: "module" });
+const python = () => globalThis.newPython(); // of begin.js
 
 export const supported = typeof WebAssembly === "object" && typeof WebAssembly.Suspending === "function";
 

@@ -1,6 +1,8 @@
-// The large files of the site, which are packed. Not every static host packs what it sends, so the site is packed by itself.
+// The large files of the site, which are packed. Not every static host packs what it sends, so the site is packed by itself. The service
+// worker has them unpacked.
 
 const PACKED = /\/pyodide\/[^/]+\.(wasm|zip)$/; // what Pyodide fetches under its own name, and the site has as .gz
+const KEPT = "#kept"; // behind the worker's address: the page has a service worker
 const LIBRARY = "/lib/python3.14";
 const TIME = 1_000_000_000_000; // ms since 1970, of every file, as in packing.py
 const plain = globalThis.fetch;
@@ -21,6 +23,10 @@ async function unzipped(path) {
 
 globalThis.fetch = async (address, ...rest) => {
   if (!PACKED.test(address)) return plain(address, ...rest);
+  if (location.hash === KEPT) {
+    const answer = await plain(address, ...rest);
+    if (answer.ok) return answer;
+  }
   return new Response(await unzipped(`${address}.gz`), { headers: { "Content-Type": "application/wasm" } });
 };
 
