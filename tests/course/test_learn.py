@@ -138,8 +138,15 @@ def test_hints_come_one_after_the_other_and_begin_again(typed, language):
 
 def test_in_the_debugger_nothing_is_checked_and_hints_are_given(typed):
     shown = typed([TASK["lisp"], "(car 7)", ":check", ":hint", "(car 8)", "q", "(* 24 60 60)", ":check", ":quit"])
-    assert "The debugger is open. Leave it first" in shown and "Hint 1 of 2" in shown and "Well done" in shown
-    assert shown.count("; q leads back to the prompt.") == 2
+    assert "; The debugger is open. Type q first, and then :check." in shown and "Hint 1 of 2" in shown and "Well done" in shown
+    assert shown.count("; q leads back to the prompt. You need not read the choices.") == 2
+
+
+def test_who_goes_on_in_the_debugger_is_told_once(typed):
+    shown = typed(["(car 7)", "(+ 1 2)", "(+ 1 3)", ":next", "q", ":next", ":quit"])
+    assert shown.count("; You are in the debugger still. q leads back to the prompt.") == 1
+    assert "; The debugger is open. Type q first, and then :next." in shown and shown.count("--- Page 1, step 2") == 1
+    assert "in the debugger still" not in typed(["(car 7)", "q", "(car 8)", "q", ":quit"])
 
 
 @pytest.mark.parametrize(
@@ -310,6 +317,8 @@ def test_the_forms_of_a_step_are_typed_for_you(typed, language):
     shown = typed([":type", ":t", ":type", ":type", TASK[language], ":type", ":quit"], language=language)
     assert "(max 3 7 5)\n7\n" in shown and shown.count("To see the next step, type :next") == 1
     assert "This step has nothing more to type." in shown and "A task is for you to type." in shown
+    begun = typed([":page 2 4", ":type", "(rectangle-around 2 3)", ":check", ":quit"], "first-forms", language)
+    assert "(rectangle-around 2 3)\n5\n" in begun and "Not yet." in begun
 
 
 def test_the_mistake_on_purpose_is_typed_too_and_left(typed):

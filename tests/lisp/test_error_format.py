@@ -112,6 +112,23 @@ COMPILATION = [
     ^""",
     ),
     (
+        "(defun f\n  (dotimes (i 4) (print i)))",
+        """\
+  The lambda list (DOTIMES (I 4) (PRINT I)) is malformed: a parameter must be a symbol.
+  at plan.lisp:1:1
+    (defun f
+    ^
+  The list of the parameters comes behind the name of the function. If it has none, write () there: (defun name () ...)""",
+    ),
+    (
+        "(defun f\n  (nobody (i 4)))",
+        """\
+  The lambda list (NOBODY (I 4)) is malformed: a parameter must be a symbol.
+  at plan.lisp:1:1
+    (defun f
+    ^""",
+    ),
+    (
         "(defun f ()\n  (list 1\n    (return-from g 2)))",
         """\
   return for unknown block: G

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { Connection } from "./connection.js";
-import { clock, decimal, duration, plural, shortName } from "./format.js";
+import { clock, decimal, duration, grouped, shortName } from "./format.js";
 import { History } from "./history.js";
 import { foremost, outline } from "./outline.js";
 import { Playback, between } from "./playback.js";
@@ -342,7 +342,7 @@ test("times and numbers are written for people", () => {
   assert.deepEqual([clock(0), clock(4.2), clock(187.5), clock(7387), clock(null)], ["0.00 s", "4.20 s", "3:07.5", "2:03:07", "–"]);
   assert.deepEqual([duration(0.25), duration(12.34), duration(187.5), duration(NaN)], ["0.25 s", "12.3 s", "3:07", ""]);
   assert.deepEqual([decimal(-0.001), decimal(-1.5), decimal(null), decimal(Infinity)], ["0.00", "−1.50", "NaN", "∞"]);
-  assert.deepEqual([plural(1, "task"), plural(1200, "task")], ["1 task", "1,200 tasks"]);
+  assert.deepEqual([grouped(1), grouped(1200)], ["1", "1,200"]);
 });
 
 // -------------------------------------------------------------------------------------------------------------- connection

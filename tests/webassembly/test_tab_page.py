@@ -1,16 +1,18 @@
-"""The page of a tab in Chromium, with a worker that has no Python: what it shows, which keys it hears, and what it asks its session.
+"""The page of a tab in Chromium (and parts of it in Firefox), with a worker that has no Python: what it shows, which keys it hears, and what it asks its session.
 
 `test_tab_session.py` has Python behind it, and takes minutes.
 """
 
 from __future__ import annotations
 
+import contextlib
+import functools
 import json
 import re
 from pathlib import Path
 
 import pytest
-from browsers import chromium
+from browsers import browser
 from node import node, pyodide
 from systems import takes_long
 from test_site import served
@@ -59,19 +61,26 @@ def made(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def browser():
-    with chromium() as started:
-        yield started
+def browsers():
+    """A function that returns the browser of a kind. Each is started once."""
+    with contextlib.ExitStack() as open_ones:
+        yield functools.cache(lambda kind: open_ones.enter_context(browser(kind)))
 
 
 @pytest.fixture
-def visit(made, browser):
+def kind():
+    """Which browser visits the page. A test that is parametrized with ``kind`` has others."""
+    return "chromium"
+
+
+@pytest.fixture
+def visit(made, browsers, kind):
     """A function that opens the page and returns it at its first prompt. path: what follows the site's address. options: of the context."""
     with served(made) as (address, _):
         contexts = []
 
         def visit(path="", **options):
-            context = browser.new_context(**{"viewport": {"width": 1500, "height": 900}, "locale": "en-US", **options})
+            context = browsers(kind).new_context(**{"viewport": {"width": 1500, "height": 900}, "locale": "en-US", **options})
             context.set_default_timeout(LIMIT)
             contexts.append(context)
             page = context.new_page()
@@ -326,12 +335,85 @@ def test_the_page_fits_and_shows_what_there_is_room_for(visit, width, height, be
             assert name in beside
 
 
+def share(page, name):
+    """(the share of the part before a bar in percent as the bar says, and its size in pixels)."""
+    part = {"lesson": "#lesson", "repl": "#code", "live": ".desk"}[name]
+    box = page.locator(part).bounding_box()
+    return int(page.locator(f"#split-{name}").get_attribute("aria-valuenow")), round(box["height" if name == "repl" else "width"])
+
+
+@pytest.mark.parametrize("kind", ["chromium", pytest.param("firefox", marks=takes_long)])
+def test_parts_are_made_larger_by_mouse_and_by_keys_and_sizes_are_kept(visit, kind):
+    page = visit()
+    bar = page.locator("#split-live")
+    assert (bar.get_attribute("aria-orientation"), bar.get_attribute("aria-valuemax")) == ("vertical", "91")
+    began, width = share(page, "live")
+    box = bar.bounding_box()
+    page.mouse.move(box["x"] + 2, box["y"] + 200)
+    page.mouse.down()
+    page.mouse.move(box["x"] - 98, box["y"] + 300, steps=3)
+    page.mouse.up()
+    page.mouse.move(200, 200)  # which changes nothing any more
+    percent, smaller = share(page, "live")
+    assert abs(smaller - width + 100) <= 2 and percent < began
+    rows = page.locator("#split-repl")
+    assert rows.get_attribute("aria-orientation") == "horizontal"
+    before, _ = share(page, "repl")
+    for key, change in (("ArrowDown", 2), ("Shift+ArrowDown", 10), ("ArrowUp", -2), ("ArrowLeft", 0)):
+        rows.press(key)
+        after, _ = share(page, "repl")
+        assert after - before == pytest.approx(change, abs=1), key
+        before = after
+    columns = page.locator("#split-lesson")
+    columns.press("End")
+    assert columns.get_attribute("aria-valuenow") == columns.get_attribute("aria-valuemax")
+    assert round(page.locator("#code").bounding_box()["width"]) == 140
+    columns.press("Home")
+    assert round(page.locator("#lesson").bounding_box()["width"]) == 140
+    assert page.locator("#notice").inner_text() == ""  # no key drove the turtle
+    sizes = [share(page, name) for name in ("live", "repl", "lesson")]
+    page.reload()
+    page.locator("body[data-prompt=waits]").wait_for()
+    assert [share(page, name) for name in ("live", "repl", "lesson")] == sizes
+    columns.press("Enter")
+    assert share(page, "lesson")[0] == 46
+    bar.dblclick()
+    assert share(page, "live") == (began, width)
+
+
+@takes_long
+def test_a_finger_moves_the_bars_of_a_tablet_and_each_layout_has_its_sizes(visit):
+    page = visit(viewport={"width": 768, "height": 1024}, has_touch=True)
+    bar, live = page.locator("#split-live"), page.locator(".live")
+    height = live.bounding_box()["height"]
+    box = bar.bounding_box()
+    touches = page.context.new_cdp_session(page)
+    x, y = box["x"] + 300, box["y"] - 5  # a finger is not exact
+
+    def touch(kind, *points):
+        touches.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": place} for place in points]})
+
+    touch("touchStart", y)
+    for step in range(1, 6):
+        touch("touchMove", y + 20 * step)
+    touch("touchEnd")
+    assert live.bounding_box()["height"] == pytest.approx(height + 100, abs=2)
+    page.set_viewport_size({"width": 1024, "height": 768})
+    page.locator("#split-live[aria-orientation=vertical]").wait_for()
+    assert share(page, "live")[0] == 50
+    page.set_viewport_size({"width": 768, "height": 1024})
+    page.locator("#split-live[aria-orientation=horizontal]").wait_for()
+    assert live.bounding_box()["height"] == pytest.approx(height + 100, abs=2)
+    assert page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]") == [768, 1024]
+
+
 def test_the_page_speaks_the_language_of_the_system(visit):
     page = visit(locale="de-AT")
     assert page.locator("html").get_attribute("lang") == "de"
     assert page.locator("#code-load").inner_text() == "Datei laden"
     assert page.locator("#repl-stop").get_attribute("title") == "Ctrl-C: die laufende Form beenden"
     assert page.locator("#lesson-done").get_attribute("title") == "0 von 1 Aufgaben sind gelöst"
+    assert page.locator("#show-grid").inner_text() == "Gitter"  # of the live page
     assert visit(locale="fr-FR").locator("#code-load").inner_text() == "Load file"
 
 
@@ -400,9 +482,9 @@ def test_without_the_packages_of_the_editor_the_command_says_what_to_type(tmp_pa
 
 def test_what_the_page_says_is_in_the_table_of_the_other_language():
     folder = Path(site.__file__).parent
-    table = (folder / "static" / "german.js").read_text(encoding="utf-8")
+    table = (folder / "static" / "desk-german.js").read_text(encoding="utf-8")
     known = {json.loads(text) for text in re.findall(r'^  ("(?:[^"\\]|\\.)*"):', table, re.M)}
-    scripts = "\n".join(file.read_text(encoding="utf-8") for file in (folder / "static").glob("*.js") if file.name != "german.js")
+    scripts = "\n".join(file.read_text(encoding="utf-8") for file in (folder / "static").glob("*.js") if file.name != "desk-german.js")
     said = {json.loads(text) for text in re.findall(r'(?:\bt|\bthis\.say|UnfitLink)\(\s*("(?:[^"\\]|\\.)+")', scripts)}
     markup = (folder / "desk.html").read_text(encoding="utf-8")
     said |= {" ".join(text.split()) for text in re.findall(r">([^<>]*[a-z]{3}[^<>]*)<", markup)} - {"Lisp"}

@@ -180,7 +180,8 @@ class Guide:
         solved = " (solved)" if task.name in self.progress.solved else ""
         found = [self.style.bold(f"Task: {task.title}{solved}"), shown.text(text_in(task.markdown, self.language), self.style)]
         if self.language in task.start:
-            found += ["Begin with this, and change it:", shown.code(task.start[self.language], self.style)]
+            begin = "Begin with this, and change it (:type types it, and the arrow key up brings it back):"
+            found += [begin, shown.code(task.start[self.language], self.style)]
         return "\n\n".join(found)
 
     def _foot(self):
@@ -220,6 +221,11 @@ class Guide:
                 f"; Lisp took each of these words for a form of its own. A call has parentheses around it: ({' '.join(text.split())})"
             )
         self._read = next((typed for typed in self._waiting if _squeezed(typed.form) == _squeezed(text)), None)
+
+    def of_debugger(self) -> str:
+        """What to say when the debugger has opened."""
+        more = " You need not read the choices." if self.page.name in contents.NAMES[:3] else ""
+        return f"; q leads back to the prompt.{more}"
 
     def failed(self) -> None:
         """What was typed last has failed, or was ended by Ctrl-C."""
@@ -298,7 +304,10 @@ class Guide:
             self.replay.type(self._waiting[0].text)
             return ""
         if isinstance(part, Task):
-            return "; A task is for you to type. :hint gives a hint."
+            if self.language not in part.start:
+                return "; A task is for you to type. :hint gives a hint."
+            self.replay.type(part.start[self.language].rstrip("\n"))
+            return ""
         return "; This step has nothing more to type. :next goes on."
 
     def _write(self):

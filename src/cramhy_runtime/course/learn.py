@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
     from cramhy_runtime.session.session import Session
 
+LEADS_AWAY = ("next", "back", "page", "replay", "check")
+"""Commands that wait until the debugger is left: a form typed there belongs to it."""
 FOLDER = "cramhy-course"
 """The folder for files of the student, below the one where ``cramhy learn`` was typed."""
 _PROMPT = re.compile(r"\s*(?:[A-Z][A-Z-]*> |=> )")
@@ -44,6 +46,7 @@ class Guided(Listener):
 
     guide: Guide
     _greeted = False
+    _answered_there: bool | None = None  # whether a form was answered in the debugger that is open; ``False``: and that was told
 
     def read_line(self, prompt: str) -> Any:
         """The next line that is not a command; ``None`` when the page is left."""
@@ -55,6 +58,9 @@ class Guided(Listener):
         while not self.guide.over:
             if self._begins() and not self.level and (cue := self.guide.cue()):
                 self.tell(cue)
+            if self._begins() and self.level and self._answered_there:
+                self.tell("; You are in the debugger still. q leads back to the prompt.")
+                self._answered_there = False
             line = self.guide.replay.line()
             if line is not None:
                 streams.CONSOLE_OUTPUT.write(f"{prompt}{line}\n")
@@ -90,11 +96,13 @@ class Guided(Listener):
         try:
             if self.ctrl_c_came():
                 kernel.interrupt()
-            if name != "check":
+            if self.level and name in LEADS_AWAY:
+                self.tell(f"; The debugger is open. Type q first, and then :{name}.")
+            elif name != "check":
                 if told := self.guide.do(name, argument):
                     self.tell(told)
-            elif self.level or not at_the_prompt():
-                self.tell("; The debugger is open. Leave it first: type q. Then check.")
+            elif not at_the_prompt():
+                self.tell("; The debugger of a plan is open. Leave it first: type q. Then check.")
             else:
                 self.tell(self.guide.check(self.evaluator()))
         except kernel.Terminated:
@@ -106,12 +114,15 @@ class Guided(Listener):
         super().remember(text)
         if not self.level:
             self.guide.replay.was_read(text)
+        elif self._answered_there is None:
+            self._answered_there = True
         self.guide.typed(text)
 
     def announce(self, condition: Any, restarts: list[Any]) -> None:
         self.guide.failed()
         super().announce(condition, restarts)
-        self.tell("; q leads back to the prompt.")
+        self.tell(self.guide.of_debugger())
+        self._answered_there = None
 
     def forget_interrupt(self) -> None:
         self.guide.failed()

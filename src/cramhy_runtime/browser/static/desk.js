@@ -3,6 +3,7 @@
 
 import { byId, el } from "./dom.js";
 import { keep, kept } from "./settings.js";
+import { offerSplitters } from "./splitters.js";
 import { supported, tab } from "./tab.js";
 import { t, translate } from "./texts.js";
 
@@ -57,6 +58,7 @@ async function start() {
   const wanted = kept("part", "lesson");
   document.body.dataset.book = "lesson";
   show(PARTS.includes(wanted) ? wanted : "lesson");
+  offerSplitters();
   if (!supported) { // old.js has told it
     tab.unfit();
     return;

@@ -15,6 +15,7 @@ import { Session } from "./session.js";
 import { offerSwitch } from "./settings.js";
 import { Stage } from "./stage.js";
 import { StatusView } from "./status.js";
+import { t, translate } from "./texts.js";
 import { offerThemes } from "./theme.js";
 import { Timeline } from "./timeline.js";
 import { make, ready, token, url } from "./transport.js";
@@ -22,14 +23,14 @@ import { TreeView } from "./tree.js";
 import { WorldView } from "./world.js";
 
 const PANEL_PAUSE = 100; // ms between two looks at a panel
-const STANDS = "Virtual time stands still while the prompt waits. Step lets some of it pass.";
+const STANDS = t("Virtual time stands still while the prompt waits. Step lets some of it pass.");
 const PAGE = /^http:\/\/127\.0\.0\.1:\d+\/#[\w-]+$/; // the address of a session's page
-const IS_PAST = "This is a recording: what its turtles did is done, and they cannot be driven.";
+const IS_PAST = t("This is a recording: what its turtles did is done, and they cannot be driven.");
 
 // In a few words, what goes on; running: the task that runs now, or "".
 function doing({ recording, paused, busy }, running) {
-  if (recording) return `replays ${recording}`;
-  const what = paused ? "paused" : busy ? "a form runs" : "the prompt waits";
+  if (recording) return t("replays {recording}", { recording });
+  const what = paused ? t("paused") : busy ? t("a form runs") : t("the prompt waits");
   return running ? `${what}: ${running}` : what;
 }
 
@@ -39,6 +40,7 @@ function moved({ data }) {
 }
 
 async function start() {
+  translate(document.body);
   offerThemes(byId("theme"), byId("projector"));
   offerPanes(document.querySelector("main"), byId("tabs"));
   const shapes = await fetch("shapes.json");
@@ -147,8 +149,9 @@ async function start() {
     past.state = session.history.at(stamp);
     world.showPast(session.worldAt(stamp, past.state));
     byId("past").hidden = false;
-    setText(byId("past"), `as it was at ${clock(stamp)}`);
-    stage.showPast(past.state.robots, `as it was at ${clock(stamp)}`);
+    const said = t("as it was at {time}", { time: clock(stamp) });
+    setText(byId("past"), said);
+    stage.showPast(past.state.robots, said);
     document.body.classList.add("looking-back");
     hurry();
     if (stamp <= session.start + 0.02 * (session.time - session.start)) session.earlier();
@@ -180,11 +183,11 @@ async function start() {
   }
 
   if (token) ready.then(() => session.connect());
-  else status.connection(STATES.REFUSED, "this address has no token");
+  else status.connection(STATES.REFUSED, t("this address has no token"));
   requestAnimationFrame(frame);
 }
 
 start().catch((error) => {
-  setText(byId("banner"), `The page could not start: ${error.message}. Load it again; if that does not help, start the session anew.`);
+  setText(byId("banner"), t("The page could not start: {why}. Load it again; if that does not help, start the session anew.", { why: error.message }));
   byId("banner").hidden = false;
 });

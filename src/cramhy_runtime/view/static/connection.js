@@ -4,6 +4,8 @@
 // observer, whom the lists of the graph do not show. What was asked and not answered when the connection broke is refused, never
 // repeated: a second /reset is not the same as one.
 
+import { t } from "./texts.js";
+
 const FIRST_PAUSE = 400; // ms
 const LONGEST_PAUSE = 5000;
 const PATIENCE = 10_000; // ms that an answer may take
@@ -72,12 +74,12 @@ export class Connection {
 
   // The service's answer; an Error with the server's text when it fails, or when nothing comes within `patience` ms.
   call(service, args = {}, patience = PATIENCE) {
-    if (!this.open) return Promise.reject(new Error(`${service} was not called: there is no connection.`));
+    if (!this.open) return Promise.reject(new Error(t("{service} was not called: there is no connection.", { service })));
     const id = `call:${++this.count}`;
     return new Promise((resolve, reject) => {
       const timer = setTimeout(() => {
         this.pending.delete(id);
-        reject(new Error(`${service} has not answered for ${patience / 1000} seconds.`));
+        reject(new Error(t("{service} has not answered for {seconds} seconds.", { service, seconds: patience / 1000 })));
       }, patience);
       this.pending.set(id, { resolve, reject, timer, service });
       this.#send({ op: "call_service", id, service, args });
@@ -117,7 +119,7 @@ export class Connection {
       else if (message.op === "service_response") this.#answered(message);
       else if (message.op === "status") this.status(message.level, String(message.msg));
     } catch (error) {
-      this.status("error", `A message of the session could not be read: ${error.message}`); // the next one counts
+      this.status("error", t("A message of the session could not be read: {why}", { why: error.message })); // the next one counts
     }
   }
 
@@ -126,7 +128,7 @@ export class Connection {
     if (!waiting) return;
     this.pending.delete(id);
     clearTimeout(waiting.timer);
-    if (result === false) waiting.reject(new Error(typeof values === "string" && values ? values : `${waiting.service} failed.`));
+    if (result === false) waiting.reject(new Error(typeof values === "string" && values ? values : t("{service} failed.", waiting)));
     else waiting.resolve(values ?? {});
   }
 
@@ -138,7 +140,7 @@ export class Connection {
     if (!this.entered) this.bare = !this.bare;
     for (const { reject, timer, service } of this.pending.values()) {
       clearTimeout(timer);
-      reject(new Error(`${service}: the connection was lost.`));
+      reject(new Error(t("{service}: the connection was lost.", { service })));
     }
     this.pending.clear();
     if (code === POLICY && !this.heard) { // later on it only means that we were too slow

@@ -3,6 +3,7 @@
 // the simulator's namespace, and so are the parameters that scale a command.
 
 import { el, svg } from "./dom.js";
+import { t } from "./texts.js";
 
 const KEYS = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, 1], ArrowRight: [0, -1] };
 const SCALE = 2; // m/s and rad/s, the original's, unless the parameters say otherwise
@@ -11,10 +12,10 @@ const FIRST_REPEAT = 500; // ms
 const REPEAT = 50;
 const OWN_ARROWS = "input, select, [role=radiogroup], .scroll, .room, .room-controls, .own-arrows"; // these use the arrow keys themselves
 const BUTTONS = [
-  ["ArrowUp", "forward", "M6 2.5 10.5 8h-9z"],
-  ["ArrowLeft", "turn left", "M2.5 6 8 1.5v9z"],
-  ["ArrowDown", "backward", "M6 9.5 1.5 4h9z"],
-  ["ArrowRight", "turn right", "M9.5 6 4 10.5v-9z"],
+  ["ArrowUp", t("forward"), "M6 2.5 10.5 8h-9z"],
+  ["ArrowLeft", t("turn left"), "M2.5 6 8 1.5v9z"],
+  ["ArrowDown", t("backward"), "M6 9.5 1.5 4h9z"],
+  ["ArrowRight", t("turn right"), "M9.5 6 4 10.5v-9z"],
 ];
 
 export class Drive {

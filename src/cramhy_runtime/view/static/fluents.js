@@ -3,6 +3,7 @@
 
 import { arrange, el, setAttribute, setText, svg } from "./dom.js";
 import { Series, WINDOW, numberOf } from "./series.js";
+import { t } from "./texts.js";
 
 const MOST = 80; // rows; of more, the ones that changed last
 const WIDTH = 120;
@@ -41,7 +42,7 @@ export class FluentsView {
     const known = fluents.length;
     if (!this.all) fluents = fluents.filter(({ internal }) => !internal);
     setText(this.count, known ? (fluents.length < known ? `${fluents.length} of ${known}` : String(known)) : "");
-    setText(this.empty, known ? "The program has made no fluent. Process modules have." : "No fluent yet.");
+    setText(this.empty, known ? t("The program has made no fluent. Process modules have.") : t("No fluent yet."));
     const shown = new Set(fluents.map(({ id }) => id));
     if (fluents.length > MOST) {
       const latest = new Set([...fluents].sort((one, other) => (touched.get(other.id) ?? 0) - (touched.get(one.id) ?? 0)).slice(0, MOST));

@@ -1,5 +1,7 @@
 // How times and numbers are written on the page.
 
+import { language } from "./texts.js";
+
 const EPOCH = 1e8; // s; a clock that shows more counts from 1970
 
 // Seconds of plan time: "4.20 s", "3:07.5", "2:03:07".
@@ -28,7 +30,8 @@ export function decimal(number, places = 2) {
   return Number(text) === 0 ? (0).toFixed(places) : text.replace("-", "−");
 }
 
-export const plural = (count, one, many = `${one}s`) => `${count.toLocaleString("en")} ${count === 1 ? one : many}`;
+// A count with its thousands set apart.
+export const grouped = (count) => count.toLocaleString(language);
 
 // "[GOAL-PERFORM] (GOAL (PERFORM #<A MOTION ...>)), call 2" as "[PERFORM] #<A MOTION ...>, call 2": there is one line for it.
 export function shortName(name) {

@@ -1,7 +1,8 @@
 // Process modules: what each executes, and what waits in its queue.
 
 import { arrange, el, setAttribute, setText } from "./dom.js";
-import { plural } from "./format.js";
+import { grouped } from "./format.js";
+import { t } from "./texts.js";
 
 const MOST_QUEUED = 8;
 
@@ -9,7 +10,7 @@ export class ModulesView {
   constructor({ list }) {
     this.list = list;
     this.rows = new Map(); // name → row
-    this.empty = el("li", { class: "nothing" }, "No process module is running.");
+    this.empty = el("li", { class: "nothing" }, t("No process module is running."));
   }
 
   render(state) {
@@ -28,19 +29,19 @@ export class ModulesView {
     setText(row.name, module.name);
     setAttribute(row.name, "title", module.name);
     setText(row.state, module.state.toLowerCase());
-    setText(row.executes, module.executes || "executes nothing");
+    setText(row.executes, module.executes || t("executes nothing"));
     row.executes.classList.toggle("idle", !module.executes);
     const shown = module.queue.slice(0, MOST_QUEUED);
     const rest = module.queue.length - shown.length;
     setAttribute(row.queue, "hidden", module.queue.length ? null : "");
     row.queue.replaceChildren(...shown.map((text) => el("li", {}, text)));
-    if (rest) row.queue.append(el("li", { class: "rest" }, plural(rest, "request more", "requests more")));
+    if (rest) row.queue.append(el("li", { class: "rest" }, rest === 1 ? t("1 request more") : t("{count} requests more", { count: grouped(rest) })));
     return row.node;
   }
 }
 
 function newRow() {
   const [name, state, executes] = ["name", "state", "executes"].map((kind) => el("span", { class: kind }));
-  const queue = el("ol", { class: "queue", "aria-label": "waits in its queue" });
+  const queue = el("ol", { class: "queue", "aria-label": t("waits in its queue") });
   return { node: el("li", { class: "module" }, el("p", {}, name, state), executes, queue), name, state, executes, queue };
 }

@@ -1,8 +1,9 @@
 // How plan time passes: pause, one step, speed. Only virtual time can be held; the wall's cannot, and then the controls say so.
 
 import { setAttribute, setText } from "./dom.js";
+import { t } from "./texts.js";
 
-const WALL = "Time is the wall's in this session. It can be paused, stepped and sped up in one that was started with --time virtual.";
+const WALL = t("Time is the wall's in this session. It can be paused, stepped and sped up in one that was started with --time virtual.");
 
 export class PaceView {
   // call(service, arguments) asks the session; failed(error) tells the user.
@@ -25,7 +26,7 @@ export class PaceView {
       control.disabled = !held;
       setAttribute(control, "title", pace && !held ? WALL : null);
     }
-    setText(this.pause, pace?.paused ? "Resume" : "Pause");
+    setText(this.pause, pace?.paused ? t("Resume") : t("Pause"));
     setAttribute(this.pause, "aria-pressed", String(Boolean(pace?.paused)));
     if (pace) this.#select(pace.speed);
   }

@@ -3,6 +3,7 @@
 
 import { setText } from "./dom.js";
 import { keep, kept } from "./settings.js";
+import { t } from "./texts.js";
 
 export class Stage {
   // stage, controls: where picture and buttons of the room go. worlds: the buttons that choose, where there are both. live(): the State now.
@@ -66,8 +67,8 @@ export class Stage {
     this.worlds.hidden = !both;
     if (document.body.dataset.stage === wanted) return;
     document.body.dataset.stage = wanted;
-    setText(this.title, wanted === "room" ? "The robot's world" : "The turtles' world");
-    setText(this.tab, wanted === "room" ? "Robot" : "Turtle");
+    setText(this.title, wanted === "room" ? t("The robot's world") : t("The turtles' world"));
+    setText(this.tab, wanted === "room" ? t("Robot") : t("Turtle"));
     for (const button of this.worlds.children) button.setAttribute("aria-pressed", String(button.dataset.stage === wanted));
   }
 }

@@ -2,16 +2,17 @@
 
 import { STATES } from "./connection.js";
 import { setText } from "./dom.js";
+import { t } from "./texts.js";
 
 const NOTICE = 8000; // ms for which a complaint stands
 const NAMES = {
-  [STATES.CONNECTING]: "connecting",
-  [STATES.OPEN]: "connected",
-  [STATES.LOST]: "connection lost",
-  [STATES.REFUSED]: "refused",
+  [STATES.CONNECTING]: t("connecting"),
+  [STATES.OPEN]: t("connected"),
+  [STATES.LOST]: t("connection lost"),
+  [STATES.REFUSED]: t("refused"),
 };
-const LOST = "The connection to the session is lost. Trying again; what you see is the last that was heard.";
-const REFUSED = "Open the address that it prints; it has a new token each time.";
+const LOST = t("The connection to the session is lost. Trying again; what you see is the last that was heard.");
+const REFUSED = t("Open the address that it prints; it has a new token each time.");
 
 export class StatusView {
   constructor({ pill, banner, notice }) {
@@ -27,7 +28,7 @@ export class StatusView {
       setText(this.pill, NAMES[state]);
     }
     if (state === STATES.LOST) setText(this.banner, LOST);
-    if (state === STATES.REFUSED) setText(this.banner, `The session does not let this page in${detail ? `: ${detail.replace(/\.$/, "")}` : ""}. ${REFUSED}`);
+    if (state === STATES.REFUSED) setText(this.banner, `${t("The session does not let this page in")}${detail ? `: ${detail.replace(/\.$/, "")}` : ""}. ${REFUSED}`);
     if (state !== STATES.CONNECTING) this.banner.hidden = state === STATES.OPEN;
     document.body.classList.toggle("offline", state !== STATES.OPEN);
   }

@@ -2,15 +2,17 @@
 
 import { setText } from "./dom.js";
 import { keep, kept, offerSwitch } from "./settings.js";
+import { t } from "./texts.js";
 
-const THEMES = ["auto", "light", "dark"];
+const NAMES = { auto: t("auto"), light: t("light"), dark: t("dark") };
+const THEMES = Object.keys(NAMES);
 
 export function offerThemes(button, projector) {
   let theme;
   const enter = (chosen) => {
     theme = THEMES.includes(chosen) ? chosen : "auto";
     document.documentElement.dataset.theme = theme;
-    setText(button.lastElementChild, theme);
+    setText(button.lastElementChild, NAMES[theme]);
   };
   enter(kept("theme", "auto"));
   button.addEventListener("click", () => {

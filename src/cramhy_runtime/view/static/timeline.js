@@ -4,6 +4,7 @@
 import { arrange, setAttribute, svg } from "./dom.js";
 import { clock } from "./format.js";
 import { told } from "./state.js";
+import { t } from "./texts.js";
 
 const WIDTH = 1000;
 const LANES = 4;
@@ -57,7 +58,7 @@ export class Timeline {
     setAttribute(this.button, "aria-pressed", String(this.past === null));
     this.button.hidden = Boolean(this.recording);
     // Live it does not change, since a reader of the screen would say every change.
-    const text = this.past === null && !this.recording ? "live" : `${clock(value)} of ${clock(this.range.end)}`;
+    const text = this.past === null && !this.recording ? t("live") : t("{moment} of {end}", { moment: clock(value), end: clock(this.range.end) });
     setAttribute(this.slider, "aria-valuetext", text);
   }
 

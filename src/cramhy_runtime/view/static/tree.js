@@ -3,9 +3,10 @@
 // What runs now is marked and kept in sight, until somebody scrolls or walks in the tree; the button brings that back.
 
 import { arrange, el, setAttribute, setText, svg } from "./dom.js";
-import { duration, plural, shortName } from "./format.js";
+import { duration, grouped, shortName } from "./format.js";
 import { alive, foremost, outline } from "./outline.js";
 import { told } from "./state.js";
+import { t } from "./texts.js";
 
 const MARKS = {
   CREATED: "M6 5.2a.8.8 0 1 0 .01 0z",
@@ -55,7 +56,7 @@ export class TreeView {
     if (focused && !this.tree.contains(document.activeElement)) this.rows.get(this.current)?.node.focus({ preventScroll: true });
     let running = 0;
     for (const task of state.tasks.values()) running += alive(task);
-    setText(this.count, state.tasks.size ? `${running} alive, ${state.tasks.size - running} ended` : "");
+    setText(this.count, state.tasks.size ? t("{alive} alive, {ended} ended", { alive: running, ended: state.tasks.size - running }) : "");
     this.now = foremost(rows) ?? null;
     if (this.follows) this.#show();
   }
@@ -95,7 +96,7 @@ export class TreeView {
     setAttribute(node, "aria-setsize", row.of);
     if (row.task) this.#fill(known, row);
     else {
-      setText(known.text, `${plural(row.hidden, "task")} more that ended`);
+      setText(known.text, row.hidden === 1 ? t("1 task more that ended") : t("{count} tasks more that ended", { count: grouped(row.hidden) }));
       setAttribute(node, "aria-expanded", String(row.open));
     }
     return known;
@@ -188,8 +189,8 @@ const stateOf = (task) => (task.state === "RUNNING" && task.waits_for ? "WAITING
 
 // What a task is about now: what it waits for while it lives, what became of it after.
 function remark(task) {
-  if (alive(task)) return task.waits_for ? `waits for ${task.waits_for}` : "";
-  return task.result ? `${task.state === "FAILED" ? "failed with" : "gave"} ${task.result}` : "";
+  if (alive(task)) return task.waits_for ? t("waits for {what}", { what: task.waits_for }) : "";
+  return task.result ? task.state === "FAILED" ? t("failed with {what}", { what: task.result }) : t("gave {what}", { what: task.result }) : "";
 }
 
 function taskRow(key) {

@@ -6,6 +6,7 @@ import { decimal } from "./format.js";
 import { WaySheet, drawGoals, drawGrid, drawing } from "./marks.js";
 import { Paper, drawWorld, toWorld } from "./paper.js";
 import { Playback } from "./playback.js";
+import { t } from "./texts.js";
 import { Way } from "./way.js";
 
 const NEAR = 0.7; // m from a turtle, within which a click means it
@@ -189,7 +190,7 @@ function readings(list) {
     turn: (turtle) => decimal(turtle.angular_velocity),
     pen: (turtle) => (turtle.pen ? `${turtle.width} px` : "up"),
   };
-  const units = { x: "x, m", y: "y, m", theta: "θ, rad", speed: "v, m/s", turn: "ω, rad/s", pen: "pen" };
+  const units = { x: "x, m", y: "y, m", theta: "θ, rad", speed: "v, m/s", turn: "ω, rad/s", pen: t("pen") };
   const values = {};
   const swatch = svg("rect", { x: 0.5, y: 0.5, width: 11, height: 11, rx: 3, id: "swatch" });
   for (const key of Object.keys(text)) {

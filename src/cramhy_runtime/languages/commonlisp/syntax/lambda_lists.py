@@ -65,7 +65,7 @@ def _marker(item):
 
 
 def malformed(lambda_list, why):
-    return error(CompileError("The lambda list ~S is malformed: ~A", lambda_list, why))
+    return error(CompileError("The lambda list ~S is malformed: ~A", lambda_list, why, lambda_list=lambda_list))
 
 
 def parse(lambda_list, destructuring=False, default=None):

@@ -27,7 +27,7 @@ from ..printer import pprint_dispatch
 from ..printer.print_controls import PACKAGE
 from ..printer.printer import princ_to_string
 from ..streams.streams import ERROR_OUTPUT, output_stream
-from .call_advice import glued, of_head
+from .call_advice import glued, of_head, of_lambda_list
 from .fluent_advice import fluent_advice
 from .operators_around import names_before, undefined_operator
 from .words_of_hy import hint_for_operator, hint_for_variable
@@ -139,6 +139,8 @@ def _advice(condition):
     called = getattr(condition, "called", None)
     if called is not None:
         return of_head(called, getattr(condition, "position", None))
+    if forgotten := of_lambda_list(getattr(condition, "lambda_list", None)):
+        return forgotten
     name = getattr(condition, "name", None)
     undefined = getattr(condition, "undefined", None)
     if isinstance(name, Symbol):

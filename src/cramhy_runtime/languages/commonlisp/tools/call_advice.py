@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.ground.data import Cons, Symbol, UndefinedFunction, list_parts
+from ..evaluation.forms import special_operator_p
 from ..printer.printer import prin1_to_string
 from .operators_around import token_at
 
@@ -24,6 +25,16 @@ def of_head(form, position) -> str | None:
     name = operators[0]
     first = next(each for each in elements if each is not name)
     return f"The name of the function comes first: ({name.name.lower()} {prin1_to_string(first)} ...)"
+
+
+def of_lambda_list(lambda_list) -> str | None:
+    """What to try where ``lambda_list`` is a call, so that the list of the parameters was forgotten; ``None`` if it is none."""
+    head = lambda_list.car if isinstance(lambda_list, Cons) else None
+    if not isinstance(head, Symbol):
+        return None
+    if head.macro is None and not special_operator_p(head) and isinstance(head.function, UndefinedFunction):
+        return None
+    return "The list of the parameters comes behind the name of the function. If it has none, write () there: (defun name () ...)"
 
 
 def glued(token: str) -> str | None:

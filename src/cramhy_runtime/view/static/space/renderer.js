@@ -5,6 +5,7 @@
 
 import { NOWHERE, projection, writeRows } from "./maths.js";
 import { Surface, VERTEX, addShape } from "./solids.js";
+import { t } from "../texts.js";
 
 const SOLID = `#version 300 es
 layout(location = 0) in vec3 place;
@@ -82,7 +83,7 @@ export class Renderer {
   // Throws an Error where there is no WebGL.
   constructor(canvas) {
     const gl = canvas.getContext("webgl2", { alpha: false, antialias: false });
-    if (!gl) throw new Error("This browser draws no WebGL 2, so the robot's world cannot be shown. Its settings, or another browser, may help.");
+    if (!gl) throw new Error(t("This browser draws no WebGL 2, so the robot's world cannot be shown. Its settings, or another browser, may help."));
     Object.assign(this, { canvas, gl });
     this.frames = 0; // that were drawn
     this.begin();

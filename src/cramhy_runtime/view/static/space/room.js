@@ -15,6 +15,7 @@ import { Renderer } from "./renderer.js";
 import { addFrames, addGrasps, addOffset, addPaths } from "./sketches.js";
 import { Sharpness } from "./sharpness.js";
 import { Surface } from "./solids.js";
+import { t } from "../texts.js";
 
 const LIGHT = { sky: [0.925, 0.94, 0.955], one: [0.84, 0.835, 0.815], other: [0.79, 0.785, 0.765], accent: [0.05, 0.62, 0.52], edge: 0.45 };
 const DARK = { sky: [0.08, 0.09, 0.1], one: [0.175, 0.185, 0.2], other: [0.145, 0.155, 0.17], accent: [0.37, 0.9, 0.75], edge: 0.55 };
@@ -26,17 +27,17 @@ const APART = 0.03; // m between two places of a path
 const LONGEST = 4000; // places of a path
 const FREE = "";
 const SHOWS = [
-  ["path", "Path", true, "Where the base of the robot has been"],
-  ["belief", "Belief", true, "Where the robot has perceived objects, beside where they are"],
-  ["grasps", "Grasps", false, "Poses to which the tools were to go: green where they were reached, red where not"],
-  ["costmap", "Costmap", true, "From where places were drawn last: the brighter, the more probable"],
-  ["frames", "Frames", false, "Frames of the room, of objects and of links: x red, y green, z blue"],
+  ["path", t("Path"), true, t("Where the base of the robot has been")],
+  ["belief", t("Belief"), true, t("Where the robot has perceived objects, beside where they are")],
+  ["grasps", t("Grasps"), false, t("Poses to which the tools were to go: green where they were reached, red where not")],
+  ["costmap", t("Costmap"), true, t("From where places were drawn last: the brighter, the more probable")],
+  ["frames", t("Frames"), false, t("Frames of the room, of objects and of links: x red, y green, z blue")],
 ];
 const ARROWS = [
-  ["ArrowUp", "away", "M6 2.5 10.5 8h-9z", [0, 1]],
-  ["ArrowLeft", "to the left", "M2.5 6 8 1.5v9z", [-1, 0]],
-  ["ArrowDown", "nearer", "M6 9.5 1.5 4h9z", [0, -1]],
-  ["ArrowRight", "to the right", "M9.5 6 4 10.5v-9z", [1, 0]],
+  ["ArrowUp", t("away"), "M6 2.5 10.5 8h-9z", [0, 1]],
+  ["ArrowLeft", t("to the left"), "M2.5 6 8 1.5v9z", [-1, 0]],
+  ["ArrowDown", t("nearer"), "M6 9.5 1.5 4h9z", [0, -1]],
+  ["ArrowRight", t("to the right"), "M9.5 6 4 10.5v-9z", [1, 0]],
 ];
 const ORDER = new Intl.Collator("en", { numeric: true });
 
@@ -298,7 +299,7 @@ export class Room {
       ? { x: decimal(pose[0]), y: decimal(pose[1]), z: decimal(pose[2]), yaw: `${Math.round(yaw(pose))}°`, held: state?.holder || "–" }
       : {};
     for (const [key, node] of Object.entries(this.values)) setText(node, told[key] ?? "–");
-    setText(this.title, this.chosen ?? "nothing chosen");
+    setText(this.title, this.chosen ?? t("nothing chosen"));
     const movable = Boolean(things.get(this.chosen)?.movable) && !this.past;
     for (const button of this.pad.children) button.disabled = !movable;
     for (const [name, chip] of this.chips) setAttribute(chip, "aria-pressed", String(name === this.chosen));
@@ -329,7 +330,7 @@ export class Room {
     if (!thing?.movable) return false;
     const state = this.known.states.get(hit.name);
     if (state.holder) {
-      this.say(`${state.holder} holds ${hit.name} with ${state.link}, so it cannot be moved by hand. Let the plan put it down first.`, "bad");
+      this.say(t("{holder} holds {name} with {link}, so it cannot be moved by hand. Let the plan put it down first.", { ...state, name: hit.name }), "bad");
       return false;
     }
     this.motion.hurry();
@@ -396,20 +397,20 @@ export class Room {
 
   #build(stage, controls) {
     this.canvas = el("canvas", {
-      id: "room", width: 1, height: 1, tabindex: 0, role: "application", "aria-roledescription": "view of the robot's world",
-      "aria-label": "The robot's world. Arrow keys turn the view, with Shift they shift it; plus and minus go nearer and away; 0 shows everything.",
+      id: "room", width: 1, height: 1, tabindex: 0, role: "application", "aria-roledescription": t("view of the robot's world"),
+      "aria-label": t("The robot's world. Arrow keys turn the view, with Shift they shift it; plus and minus go nearer and away; 0 shows everything."),
     });
     this.tag = el("p", { class: "tag", "aria-hidden": "true", hidden: true });
     this.note = el("p", { class: "past", hidden: true });
     this.element = el("div", { class: "room" }, this.canvas, this.tag, this.note);
     stage.append(this.element);
 
-    this.eyes = el("select", { id: "room-view" }, new Option("free", FREE));
+    this.eyes = el("select", { id: "room-view" }, new Option(t("free"), FREE));
     this.eyes.addEventListener("change", () => {
       keep("room-view", this.eyes.value);
       this.dirty = true;
     });
-    const whole = el("button", { type: "button", id: "room-whole", title: "Show everything", on: { click: () => this.whole() } }, "Whole view");
+    const whole = el("button", { type: "button", id: "room-whole", title: t("Show everything"), on: { click: () => this.whole() } }, t("Whole view"));
     const shows = SHOWS.map(([name, text, on, title]) => {
       const button = el("button", { type: "button", id: `room-${name}`, class: "chip", "aria-pressed": String(on), title }, text);
       offerSwitch(button, `room-${name}`, (now) => {
@@ -419,24 +420,24 @@ export class Room {
       });
       return button;
     });
-    this.title = el("span", { class: "chosen" }, "nothing chosen");
+    this.title = el("span", { class: "chosen" }, t("nothing chosen"));
     this.values = {};
-    const readings = [["x", "x, m"], ["y", "y, m"], ["z", "z, m"], ["yaw", "yaw"], ["held", "held by"]].map(([key, text]) => {
+    const readings = [["x", "x, m"], ["y", "y, m"], ["z", "z, m"], ["yaw", "yaw"], ["held", t("held by")]].map(([key, text]) => {
       this.values[key] = el("span", {}, "–");
       const definition = el("dd", {}, this.values[key]);
       definition.dataset.reading = `room-${key}`;
       return el("div", {}, el("dt", {}, text), definition);
     });
-    this.objects = el("div", { class: "objects", role: "group", "aria-label": "Objects" });
-    this.pad = el("div", { class: "pad", role: "group", "aria-label": "Move the chosen object by hand" });
+    this.objects = el("div", { class: "objects", role: "group", "aria-label": t("Objects") });
+    this.pad = el("div", { class: "pad", role: "group", "aria-label": t("Move the chosen object by hand") });
     for (const [key, text, d, [across, away]] of ARROWS) {
-      const title = `Move the chosen object 5 cm ${text}`;
+      const title = t("Move the chosen object 5 cm {where}", { where: text });
       this.pad.append(el("button", { type: "button", class: `arrow ${key}`, "aria-label": title, title, on: { click: () => this.nudge(across, away) } },
         svg("svg", { viewBox: "0 0 12 12", "aria-hidden": "true" }, svg("path", { d }))));
     }
     controls.append(el("div", { class: "room-controls" },
-      el("div", { class: "commands" }, el("label", { class: "field" }, el("span", {}, "view"), this.eyes), whole,
-        el("div", { class: "shows", role: "group", "aria-label": "Shown in the room" }, ...shows)),
+      el("div", { class: "commands" }, el("label", { class: "field" }, el("span", {}, t("view")), this.eyes), whole,
+        el("div", { class: "shows", role: "group", "aria-label": t("Shown in the room") }, ...shows)),
       el("div", { class: "under" }, el("div", { class: "read" }, this.title, el("dl", { class: "pose" }, ...readings)), this.pad),
       this.objects));
   }
@@ -444,7 +445,7 @@ export class Room {
   #offerViews(cameras) {
     const wanted = this.eyes.value || kept("room-view", FREE);
     const options = cameras.map(([name, camera]) => new Option(`${name}: ${camera.replace(/_optical_frame$/, "").replaceAll("_", " ")}`, `${name}\n${camera}`));
-    this.eyes.replaceChildren(new Option("free", FREE), ...options);
+    this.eyes.replaceChildren(new Option(t("free"), FREE), ...options);
     this.eyes.value = options.some(({ value }) => value === wanted) ? wanted : FREE;
   }
 

@@ -2,11 +2,10 @@
 //
 // `t` gives the text that is said. `translate` goes over what stands in the page already: texts, titles and labels.
 
-import { GERMAN } from "./german.js";
+import { TABLES } from "./tables.js";
 
-const TABLES = { de: GERMAN };
 const ATTRIBUTES = ["title", "aria-label", "placeholder"];
-const wanted = [new URLSearchParams(location.search).get("lang"), ...(navigator.languages ?? [])]
+const wanted = [new URLSearchParams(globalThis.location?.search).get("lang"), ...(globalThis.navigator?.languages ?? [])]
   .filter(Boolean)
   .map((tag) => tag.toLowerCase().split("-")[0]);
 

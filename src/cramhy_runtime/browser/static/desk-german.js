@@ -1,4 +1,4 @@
-// What the page says in German, by what it says in English. What the session itself says stays English, as Lisp does.
+// What the desk says in German, by what it says in English. What the session itself says stays English, as Lisp does.
 
 export const GERMAN = {
   // the desk
@@ -6,6 +6,9 @@ export const GERMAN = {
   "Lesson or editor": "Lektion oder Editor",
   "Lesson": "Lektion",
   "Editor": "Editor",
+  "Share of the lesson": "Anteil der Lektion",
+  "Share of what is above the prompt": "Anteil dessen, was über der Eingabe steht",
+  "Share of what is before the live page": "Anteil dessen, was vor der Schildkröte steht",
   "Prompt": "Eingabe",
   "Turtle": "Schildkröte",
   "time": "Zeit",
