@@ -108,7 +108,7 @@ def test_the_wheel_teaches_the_course(unpacked):
     environment = {**os.environ, "PYTHONPATH": str(site), "HOME": str(site.parent), "CRAMHY_HISTORY": ""}
     words = [sys.executable, "-m", "cramhy_runtime.cli", "learn"]
     done = subprocess.run(words, cwd=site.parent, env=environment, input=":pages\n:quit\n", capture_output=True, text=True, timeout=100)
-    assert done.returncode == 0 and "Your first forms" in done.stdout and "11  Tests" in done.stdout, done.stdout + done.stderr
+    assert done.returncode == 0 and "Your first forms" in done.stdout and "12  Tests" in done.stdout, done.stdout + done.stderr
 
 
 @pytest.mark.parametrize("folder", ["src/cramhy_runtime", "hy_src/cramhy", "tutorials"])

@@ -187,6 +187,7 @@ def test_at_the_prompt_warnings_come_before_the_form_runs(lisp):
 ;   at <repl 1>:1:27
 ;     (defun greet (name) (prnt nam) (greet 1 2))
 ;                               ^
+;   Did you mean NAME?
 ; caught STYLE-WARNING:
 ;   The function GREET is called with two arguments, but wants exactly one.
 ;   at <repl 1>:1:32
@@ -226,6 +227,7 @@ def test_a_symbol_is_found_where_it_stands_in_a_template(lisp):
 ;   at <repl 1>:1:40
 ;     (defmacro twice (form) `(progn ,form ,@fom))
 ;                                            ^
+;   Did you mean FORM?
 """
     )
 

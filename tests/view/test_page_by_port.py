@@ -38,7 +38,7 @@ def fake():
     transport = static.joinpath("transport.js").read_text() + "\ntab.begin();\n"  # the rest of a tab's page would do that
     for name, text in (
         ("transport.js", transport),
-        ("tab.js", static.joinpath("tab.js").read_text()),
+        ("tab.js", static.joinpath("begin.js").read_text() + static.joinpath("tab.js").read_text()),
         ("worker.mjs", Path(__file__).with_name("relay.mjs").read_text()),
     ):
         made._files[f"/{name}"] = text.encode(), "text/javascript"

@@ -112,6 +112,6 @@ def test_an_import_of_what_is_left_out_says_why(monkeypatch):
         importlib.import_module("cramhy_runtime.swank.connection")
     assert str(refused.value) == (
         "cramhy_runtime.swank is not there in a browser's tab: it talks with other programs, and there are none in a tab. "
-        "Install cramhy on a computer for that."
+        'Install cramhy on a computer for that; the page "Install" of its documentation says how.'
     )
     assert importlib.util.find_spec("cramhy_runtime.cpl") and importlib.util.find_spec("cramhy_runtime.no_such_room") is None
