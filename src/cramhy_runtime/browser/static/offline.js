@@ -10,12 +10,14 @@ const PACKED = ".gz";
 const TYPES = { wasm: "application/wasm", zip: "application/zip" };
 const address = (path) => new URL(path, self.registration.scope).href;
 
+const unpackedName = (path) => (path.endsWith(PACKED) ? path.slice(0, -PACKED.length) : path);
+
 async function filled() {
   const cache = await caches.open(CACHE);
   const older = (await caches.keys()).filter((name) => name.startsWith(NAME) && name !== CACHE);
   for (const [path, fingerprint] of Object.entries(FILES)) {
     const packed = path.endsWith(PACKED);
-    const kept = `${address(packed ? path.slice(0, -PACKED.length) : path)}?${fingerprint}`;
+    const kept = `${address(unpackedName(path))}?${fingerprint}`;
     let answer = null;
     for (const name of older) answer ??= (await (await caches.open(name)).match(kept)) ?? null;
     answer ??= await fetch(address(path), { cache: "no-cache" });
@@ -50,10 +52,11 @@ self.addEventListener("fetch", (event) => {
   const path = url.origin + url.pathname === scope ? "index.html" : (url.origin + url.pathname).slice(scope.length);
   const fingerprint = FILES[path] ?? FILES[path + PACKED];
   if (!fingerprint) return;
+  // A page that does not know yet that it has a service worker asks for the packed file. It unpacks what is packed.
   event.respondWith(
     caches
       .open(CACHE)
-      .then((cache) => cache.match(`${address(path)}?${fingerprint}`))
+      .then((cache) => cache.match(`${address(unpackedName(path))}?${fingerprint}`))
       .then((found) => found ?? fetch(event.request)),
   );
 });
