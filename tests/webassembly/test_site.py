@@ -151,6 +151,8 @@ def test_both_lectures_give_the_answers_of_the_terminal_without_a_network(visit)
     cut()
     page.reload()
     wait_for_prompt(page)
+    packed = "fetch('pyodide/pyodide.asm.wasm.gz').then((answer) => answer.ok)"
+    assert page.evaluate(packed), "a page that does not see its service worker yet asks for the packed file"
     for text in [*LECTURE_34, *LECTURE_38]:
         enter(page, text)
     assert PLACE.sub("", transcript(page)).splitlines() == PLACE.sub("", native_transcript()).splitlines()
