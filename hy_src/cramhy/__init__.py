@@ -22,14 +22,8 @@ from cramhy_runtime.cpl import (  # noqa: F401  the classes of failures, by the 
 from cramhy_runtime.languages.hy.plan_macros import functions
 from cramhy_runtime.languages.hy.required_macros import RequiredMacros
 
-from cramhy_runtime.languages.hy import (
-    calls,
-    errors,
-    kept_code,
-    malformed,
-    module_names,
-    quick_requires,
-)  # they are there when the language is
+# they are there when the language is
+from cramhy_runtime.languages.hy import calls, errors, kept_code, malformed, module_names, quick_requires
 from cramhy_runtime.session.time_setting import time  # noqa: F401  cramhy.time; a star does not import it, since it would hide Python's module
 
 

@@ -133,7 +133,8 @@ def _other_drivers():
     topic = graph.active().topics.get("/turtle1/cmd_vel")
     for publication in topic.visible_publications if topic is not None else ():
         if publication.node is not graph.active().lisp_node:
-            yield f"The node {publication.node.name} may drive the turtle, too. End it: rosnode kill {publication.node.name}"
+            name = publication.node.name
+            yield f"The node {name} may drive the turtle, too. End it: rosnode kill {name} (in Hy, after (in-package :cl-user))"
 
 
 def _plainer(sentence):
