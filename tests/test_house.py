@@ -354,7 +354,7 @@ RUN_CODE = {
     "languages/commonlisp/evaluation/evaluator.py": "what the compiler made of a form that a user wrote",
     "languages/commonlisp/systems/loader.py": "the kept code of a user's file",
     "languages/commonlisp/systems/program_files.py": "the code of a user's compiled file",
-    "languages/hy/kept_code.py": "the bytecode of a user's Hy file",
+    "languages/kept_hy.py": "the bytecode of a user's Hy file",
     "jupyter/cells.py": "a cell in Hy that a user wrote",
 }
 """The files that call ``exec``, and what they run with it."""

@@ -76,7 +76,7 @@ def _codes(path):
         return []
     from hy.importer import HyLoader
 
-    from cramhy_runtime.languages.hy.kept_code import unguarded
+    from cramhy_runtime.languages.kept_hy import unguarded
 
     return [unguarded(HyLoader(path.stem, str(path)).get_code(path.stem))]
 

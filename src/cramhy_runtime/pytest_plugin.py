@@ -46,7 +46,13 @@ class _HyStaysHy(importlib.abc.MetaPathFinder):
         if "hy" not in sys.modules:
             return None
         spec = importlib.machinery.PathFinder.find_spec(name, path)
-        return spec if spec is not None and str(spec.origin).endswith(".hy") else None
+        if spec is None or not str(spec.origin).endswith(".hy"):
+            return None
+        if name != "hy" and not name.startswith("hy."):  # while those are imported, the keeper cannot be
+            from cramhy_runtime.languages import kept_hy
+
+            kept_hy.watch()
+        return spec
 
 
 def pytest_addoption(parser):
@@ -111,8 +117,9 @@ def pytest_collect_file(file_path, parent):
     if file_path.suffix not in (".lisp", ".hy", ".asd"):
         return None
     if _has_tests_in_hy(file_path):
-        import hy  # noqa: F401  teaches Python to import it
+        from cramhy_runtime.languages import kept_hy  # with Hy, which teaches Python to import it
 
+        kept_hy.watch()
         return pytest.Module.from_parent(parent, path=file_path)
     if not parent.session.isinitpath(file_path):
         from cramhy_runtime.languages.commonlisp.systems import unit_tests

@@ -9,8 +9,8 @@ import pytest
 
 OLDER = """\
 import cramhy, sys
-import cramhy_runtime.languages.hy.kept_code as kept_code
-kept_code.stamp = lambda: "of an older cramhy"
+import cramhy_runtime.languages.kept_hy as kept_hy
+kept_hy.stamp = lambda: "of an older cramhy"
 list(cramhy._hy_macros.keys())
 cramhy._hy_macros["seq"] = lambda *forms: "from an older macro"
 """
@@ -72,7 +72,7 @@ def test_the_next_one_imports_what_this_one_has_made_again(write, python, tmp_pa
 
 def test_code_in_common_lisp_is_guarded_too(write, python, tmp_path):
     write("plan.hy", LISP)
-    older = "import cramhy\nimport cramhy_runtime.languages.hy.kept_code as kept_code\nkept_code.stamp = lambda: 'older'\nimport plan"
+    older = "import cramhy\nimport cramhy_runtime.languages.kept_hy as kept_hy\nkept_hy.stamp = lambda: 'older'\nimport plan"
     assert python("-c", older).stdout == "from this macro\n"
     first, then = (python(*IMPORTS).stdout for _ in range(2))
     assert (first, then) == ("compiles plan\nfrom this macro\n", "from this macro\n")
@@ -116,7 +116,7 @@ def test_code_that_no_macro_of_ours_has_seen_is_kept_as_python_keeps_it(write, p
     write("other.py", "print('Python')\n")
     said = "Hy alone\nPython\n"
     assert [python("-c", "import cramhy, plan, other").stdout for _ in range(2)] == [said, said]
-    assert b"kept_code" not in bytecode(tmp_path).read_bytes() + bytecode(tmp_path, "other").read_bytes()
+    assert b"kept_hy" not in bytecode(tmp_path).read_bytes() + bytecode(tmp_path, "other").read_bytes()
 
 
 @pytest.mark.parametrize("language", ["hy", "python"])
@@ -127,11 +127,11 @@ def test_the_traceback_of_kept_code_has_no_frame_of_ours(write, python, tmp_path
     words = {"hy": ["-m", "hy", "plan.hy"], "python": ["program.py"]}[language]
     made, kept = (python(*words).stderr for _ in range(2))
     assert made == kept
-    assert "kept_code" not in kept and "frozen" not in kept
+    assert "kept_hy" not in kept and "frozen" not in kept
     assert "(divide 0)" in kept
 
 
 def test_the_tests_of_this_file_know_where_bytecode_is(write, python, tmp_path):
     write("plan.hy", PLAN)
     python("-c", "import hy, plan")
-    assert b"kept_code" in Path(bytecode(tmp_path)).read_bytes()
+    assert b"kept_hy" in Path(bytecode(tmp_path)).read_bytes()

@@ -13,6 +13,7 @@ from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.ground.packages import find_package, make_package, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.systems import loader
+from cramhy_runtime.storage.kept_files import kept_path
 
 
 @pytest.fixture
@@ -76,17 +77,17 @@ def test_a_kept_file_is_used_only_after_the_same_files(folder, compiled):
 def test_a_damaged_kept_file_is_made_anew(folder, rubbish):
     path = write(folder, "(defparameter *loaded* 3)")
     loader.load_file(path)
-    loader.kept_path(path).write_bytes(rubbish)
+    kept_path(path).write_bytes(rubbish)
     sym("CL-USER::*LOADED*").value = None
     loader.load_file(path)
     assert value("*LOADED*") == "3"
-    assert loader.kept_path(path).read_bytes() != rubbish
+    assert kept_path(path).read_bytes() != rubbish
 
 
 def test_a_truncated_kept_file_is_made_anew(folder):
     path = write(folder, "(defparameter *loaded* '(3 4 5))")
     loader.load_file(path)
-    kept = loader.kept_path(path)
+    kept = kept_path(path)
     whole = kept.read_bytes()
     for length in range(0, len(whole), 40):
         kept.write_bytes(whole[:length])
@@ -100,7 +101,7 @@ def test_where_the_folder_cannot_be_written_the_user_cache_is_used(folder, monke
     path = write(folder, "(defparameter *loaded* 4)")
     loader.load_file(path)
     assert not (folder / "__pycache__").exists()
-    assert list((folder / "cache" / "cramhy").iterdir()) == [loader.kept_path(path)]
+    assert list((folder / "cache" / "cramhy").iterdir()) == [kept_path(path)]
 
 
 def test_where_nothing_can_be_written_the_file_is_loaded_all_the_same(folder, monkeypatch):
@@ -159,7 +160,7 @@ def test_a_literal_that_no_code_can_make_keeps_the_file_from_being_kept(folder):
         loader.load_file(path)
         assert value("*AFTER*") == "(A (B))"
         assert value("*TABLE*").startswith("#<HASH-TABLE")
-    assert not loader.kept_path(path).exists()
+    assert not kept_path(path).exists()
 
 
 def test_definitions_of_all_kinds_work_from_a_kept_file(folder, compiled):
@@ -241,7 +242,7 @@ def test_a_file_with_an_error_is_not_kept(folder):
     for _ in range(2):
         with pytest.raises(Condition):
             loader.load_file(path)
-    assert not loader.kept_path(path).exists()
+    assert not kept_path(path).exists()
 
 
 def test_a_missing_file_is_a_file_error(folder):

@@ -14,10 +14,13 @@ from systems import posix
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ground import conditions
+from cramhy_runtime.languages import compiler_stamp
 from cramhy_runtime.languages.commonlisp.systems import program_files
 from cramhy_runtime.languages.commonlisp.systems import loader
 from cramhy_runtime.repl.session import Session
+from cramhy_runtime.storage import kept_code
 from cramhy_runtime.storage.checksummed_code import Unusable, sealed, unsealed
+from cramhy_runtime.storage.kept_files import kept_path
 
 root = pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can give files away")
 LINE, LABEL = b"# a test\n", "0" * 64
@@ -46,7 +49,7 @@ def kept(session, tmp_path, read):
     source.write_text("(defparameter cl-user::*loaded* 7)")
     loader.load_file(source)
     read.clear()
-    return source, loader.kept_path(source)
+    return source, kept_path(source)
 
 
 def loaded(session):
@@ -61,7 +64,7 @@ def test_good_code_is_used(session, kept, read):
 def test_the_fingerprint_of_cramhy_covers_every_folder_of_the_language(monkeypatch):
     seen, scandir = set(), os.scandir
     monkeypatch.setattr(os, "scandir", lambda folder: (seen.add(str(folder)), scandir(folder))[1])
-    loader.stamp.__wrapped__()
+    compiler_stamp.stamp.__wrapped__()
     language = Path(loader.__file__).parents[1]
     assert {str(path.parent) for path in language.rglob("*.py")} <= seen
 
@@ -105,7 +108,7 @@ def test_code_is_used_where_its_source_was_moved_to_and_knows_where_that_is(sess
             session.evaluate_text("(cl-user::fails '(1))")
         assert caught.value.position[:2] == (str(source), 4)
     assert len(read) == 2
-    made_in, _ = marshal.loads(unsealed(loader.kept_path(source), loader.FIRST_LINE, loader._fingerprint(source, source.read_text())))
+    made_in, _ = marshal.loads(unsealed(kept_path(source), kept_code.FIRST_LINE, loader._fingerprint(source, source.read_text())))
     assert made_in == str(source), "so that the next load has nothing to change"
 
 
@@ -113,14 +116,14 @@ def test_what_the_wheel_brings_is_used_where_the_user_cannot_write(session, kept
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     access = os.access
     monkeypatch.setattr(os, "access", lambda path, mode: access(path, mode) and not (mode == os.W_OK and "cache" not in Path(path).parts))
-    assert loader.kept_path(kept[0]).parent == tmp_path / "cache" / "cramhy"
+    assert kept_path(kept[0]).parent == tmp_path / "cache" / "cramhy"
     loader.load_file(kept[0])
     assert len(read) == 1 and loader.why_not_kept(kept[0]) is None and loaded(session) == [7]
     kept[1].write_bytes(kept[1].read_bytes()[:-3])  # the folder cannot be written to, so that stays
     for reads in (1, 2):
         loader.load_file(kept[0])
         assert len(read) == reads and loaded(session) == [7]
-    assert loader.kept_path(kept[0]).is_file()
+    assert kept_path(kept[0]).is_file()
 
 
 @pytest.fixture
@@ -130,15 +133,15 @@ def compiling(tmp_path, monkeypatch):
     (tmp_path / "compiler").mkdir()
     (tmp_path / "compiler").chmod(0o755)
     (tmp_path / "compiler" / "a.py").write_text("1")
-    monkeypatch.setattr(loader, "_compiling_folders", lambda: [tmp_path / "compiler"])
-    monkeypatch.setattr(loader, "__file__", str(tmp_path / "compiler" / "loader.py"))
-    return tmp_path / "compiler", loader.stamp.__wrapped__
+    monkeypatch.setattr(compiler_stamp, "_compiling_folders", lambda: [tmp_path / "compiler"])
+    monkeypatch.setattr(compiler_stamp, "__file__", str(tmp_path / "compiler" / "loader.py"))
+    return tmp_path / "compiler", compiler_stamp.stamp.__wrapped__
 
 
 def test_the_fingerprint_covers_all_folders_of_the_compiler():
     """A folder in the compiler's folder, too, in whichever depth."""
     compiler = Path(loader.__file__).parents[1] / "compiler"
-    assert {path.parent for path in compiler.rglob("*.py")} <= set(loader._compiling_folders())
+    assert {path.parent for path in compiler.rglob("*.py")} <= set(compiler_stamp._compiling_folders())
 
 
 def test_the_fingerprint_of_cramhy_is_that_of_its_content(compiling, tmp_path, monkeypatch):
@@ -156,14 +159,14 @@ def test_the_fingerprint_of_cramhy_is_that_of_its_content(compiling, tmp_path, m
     assert stamp() == changed
     (tmp_path / "elsewhere").mkdir()
     folder.rename(tmp_path / "elsewhere" / "compiler")
-    monkeypatch.setattr(loader, "_compiling_folders", lambda: [tmp_path / "elsewhere" / "compiler"])
+    monkeypatch.setattr(compiler_stamp, "_compiling_folders", lambda: [tmp_path / "elsewhere" / "compiler"])
     assert stamp() == changed
 
 
 @pytest.mark.parametrize("spoil", [lambda data: data[:40], lambda data: b"", lambda data: b"# something else\n" + data])
 def test_a_fingerprint_that_was_kept_and_is_damaged_is_made_anew(compiling, spoil):
     folder, stamp = compiling
-    first, place = stamp(), loader.kept_path(folder / "stamp")
+    first, place = stamp(), kept_path(folder / "stamp")
     good = place.read_bytes()
     place.write_bytes(spoil(good))
     assert stamp() == first and place.read_bytes() == good
@@ -171,7 +174,7 @@ def test_a_fingerprint_that_was_kept_and_is_damaged_is_made_anew(compiling, spoi
 
 def evil(path):
     """A file of code that would be valid, but for its owner."""
-    path.write_bytes(sealed(loader.FIRST_LINE, LABEL, marshal.dumps([compile("1/0", "evil", "exec")])))
+    path.write_bytes(sealed(kept_code.FIRST_LINE, LABEL, marshal.dumps([compile("1/0", "evil", "exec")])))
 
 
 def owned_by_another(source, kept):
@@ -224,7 +227,7 @@ def test_a_folder_that_others_may_write_to_is_not_used(session, kept, read, monk
     spoil(path.parent)
     loader.load_file(source)
     assert not read and loaded(session) == [7]
-    own = loader.kept_path(source)
+    own = kept_path(source)
     assert own.parent == tmp_path / "cache" / "cramhy" and own.exists() and path.read_bytes() == before
     loader.load_file(source)
     assert len(read) == 1
@@ -243,7 +246,7 @@ def test_kept_code_is_ours_alone_to_write_whatever_the_umask_is(session, tmp_pat
         loader.load_file(source)
     finally:
         os.umask(before)
-    path = loader.kept_path(source)
+    path = kept_path(source)
     assert not (path.stat().st_mode | path.parent.stat().st_mode) & (stat.S_IWOTH | stat.S_IWGRP)
     loader.load_file(source)
     assert len(read) == 1

@@ -2,7 +2,7 @@
 
 A tab would take ten seconds to compile them. So everything is compiled here, at the place where the tab will unpack it. Sources that are
 compiled stay away, since they would be a third of what is fetched. Files keep one fixed time, because kept code of Lisp is stamped with the
-times of its sources (`systems.loader.stamp`), and Hy's bytecode with that of its file.
+times of its sources (`languages.compiler_stamp`), and Hy's bytecode with that of its file.
 
 Pyodide brings Python's own library as sources in a zip file. To compile those that a session needs took most of the time until the first
 prompt. `Library` divides them: `boot` has, compiled, what Python needs before it can unpack anything, and the rest goes to the packages.

@@ -17,8 +17,9 @@ that folder.
 
 `partial_files` writes a file, in one go or for hours; `partial_names` gives it its names and locks meanwhile. `atomic_write` replaces a
 file at once, `file_transactions` several. `leftovers` removes or recovers what killed processes left. `backups` keeps the older version
-of a file. `checksummed_code` is for compiled code: it proves whose a file is and that it is undamaged before anybody reads it;
-`kept_files` says where such files are, `digests` has the sum. `owners` says whose a file is, and `system_errors` what to try.
+of a file. `kept_code` is the keeper of compiled code: `checksummed_code` proves whose a file is and that it is undamaged before anybody
+reads it, `kept_files` says where such files are, `digests` has the sum. `dependency_tracing` notes what a compilation asks of the world,
+and `dependencies` tells whether the answers are still the same. `owners` says whose a file is, and `system_errors` what to try.
 """
 
 from .leftovers import tidy, tidy_once

@@ -38,8 +38,8 @@ from ..commonlisp.evaluation.evaluator import PACKAGE
 from ..commonlisp.systems.loader import speaks_lisp
 from ..commonlisp.tools import backtrace
 from ..commonlisp.tools.error_reports import end_line, report_lines, show
+from ..kept_hy import calls_kept_code
 from . import malformed, shapes
-from .kept_code import calls_kept_code
 from .malformed import MalformedForm, retold, unreadable
 
 _HY = os.path.dirname(os.path.abspath(hy.__file__)) + os.sep

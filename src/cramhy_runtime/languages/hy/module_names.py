@@ -13,7 +13,8 @@ from weakref import WeakKeyDictionary
 
 from hy import models
 
-from . import calls, kept_code, plan_code
+from .. import kept_hy
+from . import calls, plan_code
 from .users_names import variables
 
 _WORD = re.compile(r"[^\W_]+")
@@ -62,7 +63,7 @@ def compiled(compiler, form):
     names = _names.get(compiler)
     if names is None:
         names = _names[compiler] = ModuleNames()
-        kept_code.seen(compiler.filename)
+        kept_hy.seen(compiler.filename)
     names.variables, names.bound, names.at_work = frozenset(variables(form)), frozenset(), True
     try:
         made = compiler.compile(form)

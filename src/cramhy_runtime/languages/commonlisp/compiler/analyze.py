@@ -14,6 +14,7 @@ from ..syntax.lambda_lists import parse, variables_of
 from ..syntax.macros import ensure_loaded, macroexpand_1
 from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.dispatch.methods import Shape
+from cramhy_runtime.storage.dependency_tracing import run
 from cramhy_runtime.ground.packages import is_symbol, sym
 from ..reader.form_places import FormPlaces
 from . import nodes
@@ -160,7 +161,7 @@ class Analyzer(Scrutiny):
         if data is None or "compiler-macro" not in data or form.car in self.notinline or "notinline" in data:
             return form
         with expanding(self.unit, form, self.place()):
-            expansion = one(data["compiler-macro"](form, env))
+            expansion = one(run(data["compiler-macro"], form, env))
         if expansion is not form:
             self.positions.inherit(expansion, form)
         return expansion

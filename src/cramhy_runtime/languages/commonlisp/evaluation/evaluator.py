@@ -273,4 +273,9 @@ def macro_expander(name, lambda_list, body, environment=None, text=None):
     """The expander function of a local macro. ``text``: see `compile_lambda`."""
     function, _ = macro_lambda(name, lambda_list, body, "MACROLET")
     compiled = compile_lambda(function, environment, text)
-    return lambda form, env: one(compiled(form, env))
+
+    def expander(form, env):
+        return one(compiled(form, env))
+
+    expander.source = compiled
+    return expander

@@ -18,6 +18,7 @@ from .definitions import data
 from .evaluator import macro_lambda
 from ..syntax.body_parts import body_parts
 from ..syntax.lambda_lists import destructure, gensym, parse, support
+from cramhy_runtime.storage.dependency_tracing import run
 from ..syntax.macros import checked_environment, macroexpand_1
 from ..syntax.operator_macros import malformed
 
@@ -39,7 +40,7 @@ def setf_expansion(place, environment=None):
     if local is None:
         expander = (head.compiler_data or {}).get("setf-expander")
         if expander is not None:
-            return expander(place, environment)
+            return run(expander, place, environment)
     expansion, expanded = macroexpand_1(place, environment)  # knows that a local function hides a macro
     if expanded:
         return setf_expansion(expansion, environment)
@@ -331,6 +332,7 @@ def define_setf_form(name, count, function, documentation=None):
         stores = [gensym("NEW") for _ in range(count)]
         return temporaries, forms, stores, one(function(getter.cdr, list_from(stores))), getter
 
+    expander.source = function
     return _define_place(name, expander, documentation)
 
 
@@ -348,6 +350,7 @@ def define_expander(name, function, documentation=None):
         temporaries, forms, stores, setter, getter = function(place, environment)
         return list(temporaries or ()), list(forms or ()), list(stores or ()), setter, getter
 
+    expander.source = function
     return _define_place(name, expander, documentation)
 
 

@@ -21,6 +21,7 @@ from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.ports import PORTS
 from ..numbers.arithmetic import is_real
 from ..objects.structures import structure_named
+from cramhy_runtime.storage.dependency_tracing import watched
 from cramhy_runtime.ground.packages import KEYWORD, is_symbol, keyword, near_names, sym, symbol_name
 from . import tokens
 from ..syntax.backquote import COMMA, COMMA_KINDS, Comma
@@ -328,7 +329,8 @@ def sharp_dot(stream, sub, argument):
     if not truth(READ_EVAL.value):
         return fail(reader, start, "can't read #. while *READ-EVAL* is NIL", hint="Evaluation while reading has been switched off.")
     try:
-        return one(PORTS.user.evaluate(form))
+        with watched():
+            return one(PORTS.user.evaluate(form))
     except RecursionError as problem:
         condition = condition_for(problem)
     except Condition as problem:

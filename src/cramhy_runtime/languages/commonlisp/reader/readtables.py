@@ -12,6 +12,7 @@ import re
 from cramhy_runtime.ground.condition_types import SimpleError
 from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import Character, Keyword, MultipleValues, Symbol, boolean
+from cramhy_runtime.storage.dependency_tracing import run
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.packages import keyword
 
@@ -130,7 +131,7 @@ READTABLE = special("*READTABLE*", STANDARD.copy())
 
 def call(function, *arguments):
     """Call a reader macro function, which may be given as a symbol."""
-    return (function.function if isinstance(function, Symbol) else function)(*arguments)
+    return run(function.function if isinstance(function, Symbol) else function, *arguments)
 
 
 # ---------------------------------------------------------------------------------------------- the functions of chapter 23

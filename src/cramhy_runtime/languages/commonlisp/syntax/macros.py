@@ -14,6 +14,7 @@ from cramhy_runtime.ground.data import Cons, Symbol, one
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, our_own, sym
 from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.storage.dependency_tracing import run
 from .backquote import QUOTE, Comma
 from .operator_macros import define_all
 
@@ -56,8 +57,8 @@ def macroexpand_1(form, environment=None):
         if expander is not None:
             hook = HOOK.value
             if hook is FUNCALL:
-                return expander(form, environment), True
-            return one(function_of(hook)(expander, form, environment)), True
+                return run(expander, form, environment), True
+            return one(run(function_of(hook), expander, form, environment)), True
     elif isinstance(form, Symbol):
         local = environment.variable(form) if environment is not None else None
         expansion = getattr(local, "expansion", None)

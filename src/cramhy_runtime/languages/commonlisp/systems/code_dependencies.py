@@ -6,7 +6,7 @@ tells, before code that was kept is run, whether all of that is still so.
 
 A meaning is told by a digest of the code that the compiler would run: of a macro's expander, of the functions that it calls, of the macros
 that its templates name, and so on. Code that comes with cramhy is left out, since the fingerprint of a kept file covers it. What a macro
-finds in a variable or in a file when it is expanded is not seen.
+asks of the world when it is expanded, such as the value of a variable or a file, is told by `lisp_questions`.
 """
 
 from __future__ import annotations
@@ -37,6 +37,7 @@ _AROUND = set(map(sym, ("PROGN", "EVAL-WHEN", "LOCALLY")))
 _NOT_COMPILED = {sym("DECLAIM"), sym("DEFINE-SYMBOL-MACRO")}
 """What stands in these forms is kept as it is."""
 _WITH_PARTS = frozenset((Cons, Comma, list))
+_CALLS = frozenset(("function", "setf_function"))
 _ABOUT_USERS = ("documentation", "advice")
 """Parts of the names of a compiler's notes that tell people something, and the compiler nothing."""
 _state = attrgetter("macro", "function", "setf_function", "special", "constant", "reads", "writes")
@@ -245,25 +246,30 @@ def _is_set(cell: types.CellType) -> bool:
 
 
 @functools.lru_cache(4096)
-def _globals_of(code: types.CodeType) -> list[tuple[str, bool]]:
-    """(name, whether the function of the symbol that it holds is called) for the globals that ``code`` uses, each once."""
+def globals_of(code: types.CodeType) -> list[tuple[str, frozenset[str]]]:
+    """(name, attributes of it that are used, such as "function" of a symbol) for the globals that ``code`` uses, each once."""
     import dis  # only where macros of the user's are
 
-    found: dict[str, bool] = {}
+    found: dict[str, frozenset[str]] = {}
     last = None
     for instruction in dis.get_instructions(code):
         if instruction.opname.startswith("LOAD_GLOBAL") or instruction.opname == "LOAD_NAME":
             last = instruction.argval
-            found.setdefault(last, False)
+            found.setdefault(last, frozenset())
         else:
-            if last is not None and instruction.argval in ("function", "setf_function"):
-                found[last] = True
+            if last is not None and isinstance(instruction.argval, str):
+                found[last] |= {instruction.argval}
             last = None
     for constant in code.co_consts:
         if isinstance(constant, types.CodeType):
-            for name, called in _globals_of(constant):
-                found[name] = found.get(name, False) or called
+            for name, used in globals_of(constant):
+                found[name] = found.get(name, frozenset()) | used
     return list(found.items())
+
+
+def code_digest(function: object) -> str:
+    """A digest of the code of ``function`` and of the functions that it calls; empty if there is none."""
+    return "" if function is None or isinstance(function, UndefinedFunction) else _digest([function])[0]
 
 
 def _digest(facts: list[Any], symbol: Symbol | None = None) -> tuple[str, list[tuple[Symbol, tuple[Any, ...]]]]:
@@ -304,10 +310,10 @@ def _digest(facts: list[Any], symbol: Symbol | None = None) -> tuple[str, list[t
             stack += [cell.cell_contents for cell in item.__closure__ or () if _is_set(cell)]
             if not _is_ours(item.__code__):
                 stack += item.__defaults__ or (), item.__code__
-                for name, called in _globals_of(item.__code__):
+                for name, attributes in globals_of(item.__code__):
                     used = item.__globals__.get(name)
                     stack.append(used)
-                    if called and isinstance(used, Symbol):
+                    if isinstance(used, Symbol) and not _CALLS.isdisjoint(attributes):
                         symbols.append((used, _now(used)))
                         stack += used.function, used.setf_function
         elif isinstance(item, types.CodeType):

@@ -14,18 +14,19 @@ cramhy itself and Python; and only if this user or root has written it and its c
 from __future__ import annotations
 
 import contextlib
-import importlib.util
-import marshal
 import os
-import functools
 import re
 import sys
 from pathlib import Path
 from types import CodeType
 
 from cramhy_runtime.kernel.typing_names import NamedTuple
-from cramhy_runtime.storage.checksummed_code import Unusable, sealed, unsealed
-from cramhy_runtime.storage.kept_files import keep, kept_bytes, kept_path
+from cramhy_runtime.storage import kept_code
+from cramhy_runtime.storage.checksummed_code import Unusable
+from cramhy_runtime.storage.dependencies import Facts
+from cramhy_runtime.storage.dependencies import holds as dependencies_hold
+from cramhy_runtime.storage.dependency_tracing import current as current_trace
+from cramhy_runtime.storage.dependency_tracing import tracing, untraced
 from cramhy_runtime.ground.function_codes import note_code
 from cramhy_runtime.ground.conditions import CompileError, Condition, FileError, error
 from cramhy_runtime.ground.data import Cons, all_values
@@ -36,11 +37,11 @@ from cramhy_runtime.ground.source_places import file_of_text, locate as locate_b
 from ..files.files import lisp_path
 from cramhy_runtime.ground.packages import symbol_name
 from ..reader.readtables import READTABLE
+from ...compiler_stamp import stamp
 from .code_dependencies import Expectations, Notes, Wanted, reading_state
 
 LOAD_PATHNAME, LOAD_TRUENAME = special("*LOAD-PATHNAME*"), special("*LOAD-TRUENAME*")
 
-FIRST_LINE, STAMP_LINE = b"# cramhy kept code 3\n", b"# cramhy stamp 1\n"
 
 _not_used = {}
 
@@ -49,44 +50,6 @@ def _sha256(text):
     from cramhy_runtime.storage.digests import sha256  # a prompt that loads nothing does without it
 
     return sha256(text.encode(errors="surrogatepass"))
-
-
-@functools.cache
-def stamp():
-    """A fingerprint of what compiles, cramhy and Python: kept files made by others are not used.
-
-    It is the same wherever cramhy stands, so that the wheel can bring kept files along. What is read for it is kept, too.
-    """
-    files = [(folder.name, entry) for folder in _compiling_folders() for entry in sorted(os.scandir(folder), key=lambda entry: entry.name)]
-    files = [(folder, entry) for folder, entry in files if entry.name.endswith((".py", ".pyc", ".hy", ".lisp"))]  # .pyc: in a tab
-    python = f"{sys.implementation.cache_tag} {importlib.util.MAGIC_NUMBER.hex()}"
-    states = [(entry.path, entry.stat()) for _, entry in files]
-    state = _sha256("".join([python, *(f"{path} {status.st_mtime_ns} {status.st_size} " for path, status in states)])).hexdigest()
-    place = Path(__file__).with_name("stamp")
-    with contextlib.suppress(Unusable, OSError):
-        return unsealed(kept_path(place), STAMP_LINE, state).decode()
-    digest = _sha256(python)
-    for folder, entry in files:
-        data = Path(entry.path).read_bytes()
-        digest.update(f"{folder}/{entry.name} {len(data)} ".encode(errors="surrogatepass") + data)
-    made = digest.hexdigest()
-    keep(place, lambda: sealed(STAMP_LINE, state, made.encode()))
-    return made
-
-
-def _compiling_folders():
-    """The folders with what compiles, in an order that depends on their names only."""
-    here = Path(__file__).parents[1]
-    libraries, ground = here.parents[1] / "libraries", here.parents[1] / "ground"
-    inside = [
-        Path(entry)
-        for room in (here, here / "compiler", here / "faces", libraries, ground)
-        for entry in os.scandir(room)
-        if entry.is_dir() and entry.name != "__pycache__"
-    ]
-    folders = [here, ground, here.parent / "operators", here.parent / "hy", *sorted(inside, key=lambda folder: folder.parts)]
-    language = importlib.util.find_spec("cramhy")
-    return folders + [Path(folder) for folder in (language and language.submodule_search_locations or ())]
 
 
 def decoded(path, encoding=None):
@@ -166,13 +129,15 @@ class _Text(NamedTuple):
 class _KeptForm(NamedTuple):
     """A top-level form in a kept file.
 
-    ``place``: its offset in the text, its line and column. ``unit``: forms with the same number share their globals.
+    ``place``: its offset in the text, its line and column. ``unit``: forms with the same number share their globals. ``wanted``: what its
+    symbols meant to the compiler, ``facts``: what code of the user's asked of the world while it was compiled.
     """
 
     place: tuple[int, int, int]
     unit: int
     wanted: Wanted
     codes: list[CodeType]
+    facts: Facts
 
 
 def _load_or_compile(path, fingerprint, text, show=None, as_source=False):
@@ -194,20 +159,26 @@ def _load_or_compile(path, fingerprint, text, show=None, as_source=False):
     if rest is not None:
         units = forms[used - 1].unit + 1 if used else 0
         rest = [form._replace(place=(offset + form.place[0], *form.place[1:]), unit=units) for form in rest]
-        _keep(path, fingerprint, text.filename, [tuple(form) for form in [*forms[:used], *rest]])
+        kept_code.keep(path, fingerprint, (text.filename, [tuple(form) for form in [*forms[:used], *rest]]))
 
 
 def _run_kept(forms, filename):
     """Run kept code, form by form, until one was made for other definitions than there are now. How many were run."""
     expectations, unit, namespace = Expectations(lambda: _loads.number), None, None
+    trace = current_trace()
     for number, form in enumerate(forms):
-        if not expectations.hold(form.wanted):
+        if form.facts:
+            install_questions()
+        if not (expectations.hold(form.wanted) and dependencies_hold(form.facts)):
             return number
         if form.unit != unit:
             unit, namespace = form.unit, new_namespace(filename)
-        for code in form.codes:
-            note_code(code)
-            exec(code, namespace)
+        if trace is not None:  # of a file that is compiled, and loads this one for that
+            trace.include(form.facts)
+        with untraced():
+            for code in form.codes:
+                note_code(code)
+                exec(code, namespace)
     return len(forms)
 
 
@@ -224,8 +195,16 @@ def load_text(text, filename, stored=False, show=None, line=1, column=1, as_sour
         import linecache  # it imports the tokenizer
 
         linecache.cache.setdefault(filename, (len(text), None, text.splitlines(True), filename))
-    end, forms = object(), []
     notes = Notes(lambda: _loads.number) if stored else None
+    if stored:
+        install_questions()
+    with tracing() if stored else contextlib.nullcontext() as trace:
+        return _load_forms(reader, unit, notes, trace, show)
+
+
+def _load_forms(reader, unit, notes, trace, show):
+    """Load the forms that ``reader`` gives. Result: as of `load_text`, whose parts the arguments are."""
+    end, forms, filename, stored = object(), [], unit.filename, unit.stored
     while True:
         start = reader.offset
         form = reader.read(eof_error=False, eof_value=end)
@@ -233,6 +212,8 @@ def load_text(text, filename, stored=False, show=None, line=1, column=1, as_sour
             return None if reader.positions.left_out else forms  # so that it is told the next time, too
         if is_hy_requirement(form):
             continue
+        if trace is not None:
+            trace.settle()  # after #.
         codes, wanted = [], notes.before(form, PACKAGE.value) if forms is not None and stored else {}
         try:
             values = ()
@@ -240,11 +221,17 @@ def load_text(text, filename, stored=False, show=None, line=1, column=1, as_sour
             for part in unit.toplevel_parts(form):
                 code = _compile(unit, part)
                 codes.append(code)
-                values = all_values(unit.run(code))
+                if trace is not None:
+                    trace.settle()
+                with untraced():
+                    values = all_values(unit.run(code))
             if not unit.stored:
                 forms = None
+            if trace is not None and trace.reason is not None and forms is not None:
+                kept_code.refuse(filename, (filename, *reader.place(start)), trace.reason)
+                forms = None
             if forms is not None:
-                forms.append(_KeptForm((start, *reader.place(start)), 0, wanted, codes))
+                forms.append(_KeptForm((start, *reader.place(start)), 0, wanted, codes, trace.take() if trace is not None else {}))
             if show is not None:
                 show(values)
         except BaseException as problem:
@@ -256,6 +243,13 @@ def load_text(text, filename, stored=False, show=None, line=1, column=1, as_sour
                 if getattr(problem, "read_in", None) is None:
                     problem.read_in = PACKAGE.value
             raise
+
+
+def install_questions():
+    """Let traces know what code may ask of Lisp (`lisp_questions`)."""
+    from . import lisp_questions  # where something is compiled, or code was kept that asks
+
+    lisp_questions.install()
 
 
 def _compile(unit, form):
@@ -311,8 +305,9 @@ def _run_hy(path):
     """Run a file of Hy as ``hy FILE`` does: with its name in ``sys.argv``, and the modules in its folder can be imported."""
     import runpy
 
-    import hy  # noqa: F401  teaches `runpy` to run .hy files
+    from ... import kept_hy  # Hy teaches `runpy` to run .hy files
 
+    kept_hy.watch()
     words, folder = sys.argv, str(path.parent.resolve())
     sys.argv = [str(path)]
     sys.path.insert(0, folder)
@@ -327,16 +322,15 @@ def _run_hy(path):
 def _kept(path, fingerprint, filename):
     """What is kept for ``path``: a list of `_KeptForm` as tuples, or ``None``. filename: what the code is told that it stands in."""
     try:
-        data = kept_bytes(path, lambda place: unsealed(place, FIRST_LINE, fingerprint))
-        made_in, forms = marshal.loads(data)
+        made_in, forms = kept_code.find(path, fingerprint)
         if made_in != filename:
-            forms = [(place, unit, wanted, [_moved(code, filename) for code in codes]) for place, unit, wanted, codes in forms]
-            _keep(path, fingerprint, filename, forms)
+            forms = [
+                (place, unit, wanted, [_moved(code, filename) for code in codes], facts) for place, unit, wanted, codes, facts in forms
+            ]
+            kept_code.keep(path, fingerprint, (filename, forms))
         return forms
     except Unusable as problem:
         _not_used[str(path)] = problem
-    except (OSError, ValueError, EOFError, TypeError) as problem:
-        _not_used[str(path)] = Unusable("unreadable", f"no code is kept for {path}: {problem}")
     return None
 
 
@@ -357,10 +351,6 @@ def kept_codes(path):
 def why_not_kept(path):
     """Why the kept code of the file ``path`` was not used when it was loaded last, an `Unusable`; ``None`` if it was used."""
     return _not_used.get(str(Path(path).absolute()))
-
-
-def _keep(path, fingerprint, filename, forms):
-    keep(path, lambda: sealed(FIRST_LINE, fingerprint, marshal.dumps((filename, forms))))
 
 
 def folder_of_load():

@@ -388,6 +388,11 @@ loaded: dict = per_image({})
 """Name of each system that was loaded → its fingerprint."""
 
 
+def loaded_files():
+    """The files of systems that were loaded."""
+    return list(_loaded)
+
+
 def _load_component(path, chain, force):
     status = path.stat() if path.exists() else None
     key = (status.st_mtime_ns, status.st_size, chain) if status else None

@@ -29,6 +29,7 @@ from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
 from ..objects.structures import StructureObject
 from cramhy_runtime.ground.numbers import FIXNUM_LIMIT
 from cramhy_runtime.ground.packages import Package, is_symbol, sym
+from cramhy_runtime.storage.dependency_tracing import run
 from cramhy_runtime.ground.ports import PORTS
 from ..packages.package_errors import check_symbol
 from .specifier_shapes import bad_operator, bad_specifier, check_specifier, is_operator
@@ -406,7 +407,7 @@ def expand_type(specifier):
         if expander is None:
             return specifier
         form = specifier if isinstance(specifier, Cons) else lisp_list(specifier)
-        specifier = one(expander(form, None))
+        specifier = one(run(expander, form, None))
 
 
 def is_known_type(specifier):

@@ -1,0 +1,59 @@
+"""A fingerprint of what compiles: cramhy, its macros, and Python. Code that others have compiled is not used."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import importlib.util
+import os
+import sys
+from pathlib import Path
+
+from cramhy_runtime.storage.checksummed_code import Unusable, sealed, unsealed
+from cramhy_runtime.storage.kept_files import keep, kept_path
+
+_STAMP_LINE = b"# cramhy stamp 1\n"
+
+
+@functools.cache
+def stamp():
+    """The fingerprint, 64 characters. It is the same wherever cramhy stands, so that the wheel can bring kept files along.
+
+    What is read for it is kept, too.
+    """
+    from cramhy_runtime.storage.digests import sha256  # a prompt that loads nothing does without it
+
+    files = [(folder.name, entry) for folder in _compiling_folders() for entry in sorted(os.scandir(folder), key=lambda entry: entry.name)]
+    files = [(folder, entry) for folder, entry in files if entry.name.endswith((".py", ".pyc", ".hy", ".lisp"))]  # .pyc: in a tab
+    python = f"{sys.implementation.cache_tag} {importlib.util.MAGIC_NUMBER.hex()}"
+    states = [(entry.path, entry.stat()) for _, entry in files]
+    text = "".join([python, *(f"{path} {status.st_mtime_ns} {status.st_size} " for path, status in states)])
+    state = sha256(text.encode(errors="surrogatepass")).hexdigest()
+    place = Path(__file__).with_name("stamp")
+    with contextlib.suppress(Unusable, OSError):
+        return unsealed(kept_path(place), _STAMP_LINE, state).decode()
+    digest = sha256(python.encode())
+    for folder, entry in files:
+        data = Path(entry.path).read_bytes()
+        digest.update(f"{folder}/{entry.name} {len(data)} ".encode(errors="surrogatepass") + data)
+    made = digest.hexdigest()
+    keep(place, lambda: sealed(_STAMP_LINE, state, made.encode()))
+    return made
+
+
+def _compiling_folders():
+    """The folders with what compiles, in an order that depends on their names only."""
+    languages = Path(__file__).parent
+    lisp, libraries, ground = languages / "commonlisp", languages.parent / "libraries", languages.parent / "ground"
+    inside = [
+        Path(entry)
+        for room in (lisp, lisp / "compiler", lisp / "faces", libraries, ground)
+        for entry in os.scandir(room)
+        if entry.is_dir() and entry.name != "__pycache__"
+    ]
+    folders = [lisp, ground, languages / "operators", languages / "hy", *sorted(inside, key=lambda folder: folder.parts)]
+    language = importlib.util.find_spec("cramhy")
+    return folders + [Path(folder) for folder in (language and language.submodule_search_locations or ())]
+
+
+__all__ = ["stamp"]
