@@ -31,10 +31,13 @@ def session(options, closings, opened=True):
     from cramhy_runtime.session import time_setting
     from cramhy_runtime.session.boot import when_booted
     from cramhy_runtime.session.session import packages_above
+    from cramhy_runtime.storage import kept_code
     from .options import DEFAULT_TIMES
 
     packages_above["COURSE"] = _define_course
     backtrace.show(options.backtrace)
+    if options.verbose:
+        kept_code.show_refusals(lambda sentence: print(f"; {sentence}", file=sys.stderr, flush=True))
     check_for_session(options.backend)
     made = Session(
         time=time_setting.decide(options.time, DEFAULT_TIMES[options.command], robot=bool(getattr(options, "ros", None))),

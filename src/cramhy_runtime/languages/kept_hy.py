@@ -131,7 +131,7 @@ def _label(path, source):
 
 def _holds(facts):
     if any(kind not in dependencies.KINDS for kind, _ in facts) and "cramhy_runtime.languages.commonlisp.systems.loader" in sys.modules:
-        sys.modules["cramhy_runtime.languages.commonlisp.systems.loader"].install_questions()
+        sys.modules["cramhy_runtime.languages.commonlisp.systems.loader"].know_answers()
     return dependencies.holds(facts)
 
 

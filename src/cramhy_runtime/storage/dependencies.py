@@ -14,10 +14,15 @@ from __future__ import annotations
 import os
 import stat
 import time
-from collections.abc import Callable
-from typing import Any, NamedTuple
 
-Facts = dict[tuple[str, Any], Any]
+TYPE_CHECKING = False
+if TYPE_CHECKING:  # as type checkers see it; `typing` itself takes 2 ms to import
+    from collections.abc import Callable
+    from typing import Any
+
+    Facts = dict[tuple[str, Any], Any]
+else:
+    Facts = dict
 
 RACY = 2_000_000_000
 """Nanoseconds: the coarsest clock that file systems have for the last change of a file (FAT)."""
@@ -28,13 +33,17 @@ class Unanswerable(Exception):
     """The question has no answer that could be compared later. The text says why: "FILE is no file", "the value is too large"."""
 
 
-class Kind(NamedTuple):
-    """A kind of question. now: the answer, by the key. told: what is asked for, in words. holds: whether an answer is still right, by key
-    and answer; where there is none, it is compared with the one of now."""
+class Kind:
+    """A kind of question.
 
-    now: Callable[[Any], Any]
-    told: Callable[[Any], str]
-    holds: Callable[[Any, Any], bool] | None = None
+    now: the answer, by the key. told: what is asked for, in words. holds: whether an answer is still right, by key and answer; where there
+    is none, it is compared with the one of now.
+    """
+
+    __slots__ = ("now", "told", "holds")
+
+    def __init__(self, now: Callable[[Any], Any], told: Callable[[Any], str], holds: Callable[[Any, Any], bool] | None = None):
+        self.now, self.told, self.holds = now, told, holds
 
 
 def holds(facts: Facts) -> bool:

@@ -22,14 +22,17 @@ import functools
 import os
 import sys
 import time
-from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from types import CodeType, FrameType
-from typing import Any
 
 from . import dependencies
 from .dependencies import Facts, Unanswerable
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:  # as type checkers see it; `typing` itself takes 2 ms to import
+    from collections.abc import Callable, Iterator
+    from types import CodeType, FrameType
+    from typing import Any
 
 _BEGAN = time.time_ns()
 _TICK = 20_000_000
@@ -48,7 +51,7 @@ class Trace:
         self.audited = audited
         self.watches = False
         self.ran = False
-        """Whether code of the user's has run."""
+        """Whether code of the user's has run that is in a module of Python or of Hy."""
         self.place: tuple[int, int] | None = None
         """Line and column of the form that is compiled."""
         self._answers = False
@@ -98,6 +101,7 @@ class Trace:
         is compiled, which is no dependency of itself."""
         if not self.ran:
             return
+        self.ran = False
         for module in list(sys.modules.values()):
             file = getattr(module, "__file__", None)
             if not isinstance(file, str) or not file.endswith((".py", ".hy")):
@@ -133,7 +137,7 @@ class Trace:
         if id(code) not in self._codes:
             self._codes[id(code)] = code
             if not is_library(code.co_filename):
-                self.ran = True
+                self.ran = self.ran or code.co_filename.endswith((".py", ".hy"))
                 for observe in OBSERVERS:
                     observe(self, code, names)
 

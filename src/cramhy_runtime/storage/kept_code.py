@@ -15,21 +15,23 @@ from __future__ import annotations
 
 import marshal
 import os
-from collections.abc import Callable
-from typing import Any, NamedTuple
-
 from .checksummed_code import Unusable, sealed, unsealed
 from .kept_files import keep as keep_file
 from .kept_files import kept_bytes
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:  # as type checkers see it; `typing` itself takes 2 ms to import
+    from collections.abc import Callable
+    from typing import Any
+
 FIRST_LINE = b"# cramhy kept code 4\n"
 
 
-class NotKept(NamedTuple):
+class NotKept:
     """Why the code of a file is not kept. place: (file, line, column) of the form that asks for what cannot be compared."""
 
-    reason: str
-    place: tuple[str, int, int]
+    def __init__(self, reason: str, place: tuple[str, int, int]):
+        self.reason, self.place = reason, place
 
     def __str__(self) -> str:
         file, line, column = self.place

@@ -168,7 +168,7 @@ def _run_kept(forms, filename):
     trace = current_trace()
     for number, form in enumerate(forms):
         if form.facts:
-            install_questions()
+            know_answers()
         if not (expectations.hold(form.wanted) and dependencies_hold(form.facts)):
             return number
         if form.unit != unit:
@@ -197,7 +197,9 @@ def load_text(text, filename, stored=False, show=None, line=1, column=1, as_sour
         linecache.cache.setdefault(filename, (len(text), None, text.splitlines(True), filename))
     notes = Notes(lambda: _loads.number) if stored else None
     if stored:
-        install_questions()
+        from . import lisp_questions
+
+        lisp_questions.install()
     with tracing() if stored else contextlib.nullcontext() as trace:
         return _load_forms(reader, unit, notes, trace, show)
 
@@ -222,6 +224,7 @@ def _load_forms(reader, unit, notes, trace, show):
                 code = _compile(unit, part)
                 codes.append(code)
                 if trace is not None:
+                    trace.include_modules(filename)
                     trace.settle()
                 with untraced():
                     values = all_values(unit.run(code))
@@ -245,11 +248,9 @@ def _load_forms(reader, unit, notes, trace, show):
             raise
 
 
-def install_questions():
-    """Let traces know what code may ask of Lisp (`lisp_questions`)."""
-    from . import lisp_questions  # where something is compiled, or code was kept that asks
-
-    lisp_questions.install()
+def know_answers():
+    """Let `storage.dependencies` judge what a compilation asked of Lisp."""
+    from . import lisp_answers  # noqa: F401  only where code was kept that asked
 
 
 def _compile(unit, form):

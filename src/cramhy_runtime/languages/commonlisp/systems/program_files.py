@@ -12,6 +12,7 @@ import os
 from pathlib import Path
 
 from cramhy_runtime import storage
+from cramhy_runtime.storage import kept_code
 from cramhy_runtime.storage.checksummed_code import Unusable, sealed, unsealed
 from ..compiler.constants import NotStorable
 from cramhy_runtime.ground.function_codes import note_code
@@ -87,9 +88,12 @@ def load(designator, *, verbose=UNSUPPLIED, print=UNSUPPLIED, if_does_not_exist=
     else:
         codec = None if external_format is None else format_named(external_format).codec
         load_file(found, show=show, encoding=codec, as_source=True)
-        unusable = why_not_kept(found)
-        if _flag(verbose, LOAD_VERBOSE) is not None and unusable is not None and unusable.kind in ("distrusted", "damaged"):
-            say(f";; compiled again: {unusable}")
+        if _flag(verbose, LOAD_VERBOSE) is not None:
+            unusable, refused = why_not_kept(found), kept_code.not_kept(found)
+            if unusable is not None and unusable.kind in ("distrusted", "damaged"):
+                say(f";; compiled again: {unusable}")
+            if refused is not None:
+                say(f";; {refused}")
     return True
 
 

@@ -116,7 +116,7 @@ CASES = {
             '(eval-when (:compile-toplevel :load-toplevel :execute) (py:call "sys.path.insert" 0 (directory-namestring *load-truename*)))\n',
         ),
         {"helper.py": "def answer():\n    return 22\n"},
-        {"helper.py": "def answer():\n    return 11\n"},
+        {"helper.py": "def answer():\n    return 10 + 1\n"},
     ),
     "the folder in which it is run": Case(
         "run ../main.lisp",

@@ -1,0 +1,122 @@
+"""Code that is kept follows all that it depends on: the second run answers as a fresh compilation does, and is not compiled for nothing."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from systems import takes_long
+from world_cases import CASES
+
+from cramhy_runtime import kernel
+from cramhy_runtime.languages.commonlisp.systems import loader
+from cramhy_runtime.repl.session import Session
+from cramhy_runtime.session import Image
+from cramhy_runtime.storage import kept_code
+
+IN_PROCESS = [name for name, case in CASES.items() if case.command.endswith("main.lisp")]
+IN_PROCESSES = [name for name in CASES if name not in IN_PROCESS]
+NOT_KEPT = {
+    "the clock": "it looks at the clock",
+    "chance": "it depends on chance",
+    "a counter of a macro": "compiling it changes the value of COMMON-LISP-USER::*COUNT*",
+    "a list to which macros add": "compiling it changes the value of COMMON-LISP-USER::*ALL*",
+    "another process": "it starts another process",
+    "the clock in a Hy macro": "it looks at the clock",
+}
+
+
+def write(folder, files):
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if text is None:
+            path.unlink()
+            continue
+        path.write_text(text)
+        if path.suffix == ".py":  # one that is younger than this process may be another one than was imported
+            os.utime(path, (1e9 + len(text), 1e9 + len(text)))
+
+
+def forget(folder):
+    for kept in list(folder.rglob("__pycache__")):
+        shutil.rmtree(kept)
+
+
+@pytest.fixture
+def said(tmp_path, monkeypatch, capsys):
+    """What the program of a case prints, in an image that knows nothing of before."""
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
+
+    def said(case, cwd="one", variables=()):
+        with Image(), monkeypatch.context() as patch:
+            (tmp_path / "one").mkdir(exist_ok=True)
+            patch.chdir(tmp_path / cwd)
+            patch.setattr(sys, "path", list(sys.path))
+            patch.delitem(sys.modules, "helper", raising=False)
+            for name, value in dict(variables).items():
+                patch.setenv(name, value)
+            session = Session(time="virtual", turtlesim=False, seed=1)
+            session.evaluate_text(f'(load "{tmp_path / "main.lisp"}")')
+            sys.modules.pop("helper", None)
+            return capsys.readouterr().out
+
+    yield said
+    kernel.stop()
+
+
+def unused(folder):
+    """Why the kept code of the last file of a case was not used."""
+    return loader.why_not_kept(folder / ("b.lisp" if (folder / "b.lisp").exists() else "main.lisp"))
+
+
+@pytest.mark.parametrize("name", IN_PROCESS)
+def test_the_second_run_answers_as_a_fresh_compilation(said, tmp_path, name):
+    case = CASES[name]
+    write(tmp_path, case.files)
+    there = "two" if case.cwd == "two" else "one"
+    first = said(case)
+    again = said(case)
+    if name in NOT_KEPT:
+        file = tmp_path / "main.lisp"
+        assert kept_code.not_kept(file).reason == NOT_KEPT[name]
+    else:
+        assert (again, unused(tmp_path)) == (first, None), "it is compiled again though nothing has changed"
+    write(tmp_path, case.change)
+    second = said(case, there, case.variables)
+    forget(tmp_path)
+    fresh = said(case, there, case.variables)
+    if case.moves:
+        assert second != first != fresh
+    else:
+        assert second == fresh
+        assert name in NOT_KEPT or first != fresh, "the case shows nothing"
+
+
+@takes_long
+@pytest.mark.parametrize("name", IN_PROCESSES)
+def test_the_second_process_answers_as_a_fresh_compilation(tmp_path, name):
+    case = CASES[name]
+    write(tmp_path, case.files)
+
+    def said(variables=()):
+        word, *words = case.command.split()
+        bin_ = Path(sys.executable).parent
+        argv = {"run": [bin_ / "cramhy", "run"], "test": [bin_ / "cramhy", "test"], "hy": [bin_ / "hy"], "python": [sys.executable]}
+        argv["pytest"] = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"]
+        variables = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"} | dict(variables)
+        done = subprocess.run([*map(str, argv[word]), *words], cwd=tmp_path, env=variables, capture_output=True, text=True, timeout=100)
+        return re.sub(r"in [0-9.]+ ?s", "", done.stdout)
+
+    first = said()
+    write(tmp_path, case.change)
+    second = said(case.variables)
+    forget(tmp_path)
+    fresh = said(case.variables)
+    assert first != second and second
+    assert case.moves or second == fresh
