@@ -135,6 +135,38 @@ CASES = {
         "(defmacro text (n) (princ-to-string n))\n(defun f () (text 5))\n(let ((*print-base* 10)) (print (f)))",
         closed=True,
     ),
+    "a symbol that is there": pair(
+        "(defpackage :kc-names (:use :cl))",
+        "(defpackage :kc-names (:use :cl) (:export #:extra))",
+        '(defmacro there () (if (find-symbol "EXTRA" :kc-names) :there :missing))\n(defun f () (there))\n(print (f))',
+        closed=True,
+    ),
+    "the size of a file": alone(
+        '(defmacro size () (py:call "os.path.getsize" (namestring (merge-pathnames "d.txt" *load-truename*))))\n(defun f () (size))\n'
+        "(print (f))",
+        {"d.txt": "123"},
+        {"d.txt": "1"},
+        closed=True,
+    ),
+    "a function that is called by its name": pair(
+        "(defun helper () 1)",
+        "(defun helper () 2)",
+        '(defmacro m () (funcall (intern "HELPER" :cl-user)))\n(defun f () (m))\n(print (f))',
+        closed=True,
+    ),
+    "a table over which a macro closes": pair(
+        "(let ((table (make-hash-table))) (setf (gethash :a table) 1) (defmacro entry (x) (gethash x table)))",
+        "(let ((table (make-hash-table))) (setf (gethash :a table) 2) (defmacro entry (x) (gethash x table)))",
+        "(defun f () (entry :a))\n(print (f))",
+        closed=True,
+    ),
+    "a file that is loaded while another is compiled": alone(
+        '(defmacro loading () (load (merge-pathnames "part.lisp" *load-truename*)) *part*)\n(defvar *part* 0)\n(defun f () (loading))\n'
+        "(print (f))",
+        {"part.lisp": "(setf *part* 22)"},
+        {"part.lisp": "(setf *part* 11)"},
+        closed=True,
+    ),
     "a data file of a system under test": Case(
         "test k.asd",
         {
@@ -188,6 +220,22 @@ CASES = {
         "pytest test_it.hy",
         {"test_it.hy": "(require m [answer])\n(defn test-it [] (assert (= (answer) 11)))\n", "m.hy": "(defmacro answer [] 11)\n"},
         {"m.hy": "(defmacro answer [] 22)\n"},
+    ),
+    "a folder that a Hy macro lists": Case(
+        "run main.hy",
+        {"main.hy": HY + '(defmacro many [] (import os) (len (os.listdir "parts")))\n(print (many))\n', "parts/a.txt": "1"},
+        {"parts/b.txt": "1"},
+        closed=True,
+    ),
+    "a module of Hy macros that stands before another": Case(
+        "python main.py",
+        {
+            "main.py": "import sys; sys.path.insert(0, 'first')\nimport hy, cramhy, user\n",
+            "user.hy": HY + "(require m [answer])\n(print (answer))\n",
+            "m.hy": "(defmacro answer [] 11)\n",
+        },
+        {"first/m.hy": "(defmacro answer [] 22)\n"},
+        closed=True,
     ),
     "the clock in a Hy macro": Case(
         "run main.hy",

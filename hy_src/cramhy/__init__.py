@@ -23,17 +23,17 @@ from cramhy_runtime.languages.hy.plan_macros import functions
 from cramhy_runtime.languages.hy.required_macros import RequiredMacros
 
 # they are there when the language is
-from cramhy_runtime.languages import kept_hy
+from cramhy_runtime.languages import kept_hy as kept_code  # the name that compiled code calls, also of older versions
 from cramhy_runtime.languages.hy import calls, errors, malformed, module_names, quick_requires
 from cramhy_runtime.session.time_setting import time  # noqa: F401  cramhy.time; a star does not import it, since it would hide Python's module
 
 
 live_page.offer()  # (turtlesim:view)
-kept_hy.watch()
+kept_code.watch()
 quick_requires.install()
 symbols = calls.Symbols()
 branching = calls.Branching()
-"""With `calls`, and `kept_hy`: what the code calls that the macros of plain Hy expand into."""
+"""With `calls`, and `kept_code`: what the code calls that the macros of plain Hy expand into."""
 
 
 def _time_form(kind):

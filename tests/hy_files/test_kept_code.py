@@ -116,7 +116,7 @@ def test_code_that_no_macro_of_ours_has_seen_is_kept_as_python_keeps_it(write, p
     write("other.py", "print('Python')\n")
     said = "Hy alone\nPython\n"
     assert [python("-c", "import cramhy, plan, other").stdout for _ in range(2)] == [said, said]
-    assert b"kept_hy" not in bytecode(tmp_path).read_bytes() + bytecode(tmp_path, "other").read_bytes()
+    assert b"kept_code" not in bytecode(tmp_path).read_bytes() + bytecode(tmp_path, "other").read_bytes()
 
 
 @pytest.mark.parametrize("language", ["hy", "python"])
@@ -134,4 +134,4 @@ def test_the_traceback_of_kept_code_has_no_frame_of_ours(write, python, tmp_path
 def test_the_tests_of_this_file_know_where_bytecode_is(write, python, tmp_path):
     write("plan.hy", PLAN)
     python("-c", "import hy, plan")
-    assert b"kept_hy" in Path(bytecode(tmp_path)).read_bytes()
+    assert b"kept_code" in Path(bytecode(tmp_path)).read_bytes()

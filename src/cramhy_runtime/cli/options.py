@@ -119,9 +119,7 @@ def _session_options(command):
         default=None,
         help="show the calls that led to an error. It counts before the variable CRAMHY_BACKTRACE (none)",
     )
-    options.add_argument(
-        "--verbose", action="store_true", help="say which file is compiled anew each time, and why: its macros ask for the time (say nothing)"
-    )
+    options.add_argument("--verbose", action="store_true", help="say which file is compiled anew each time, and why (nothing)")
     options.add_argument(
         "--eval", action="append", default=[], dest="forms", metavar="FORM", help="a form to evaluate after loading; may be repeated (none)"
     )

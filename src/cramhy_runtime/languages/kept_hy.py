@@ -35,9 +35,12 @@ from cramhy_runtime.storage.dependency_tracing import Trace, is_library, tracing
 from .compiler_stamp import stamp
 
 HEADER = 16  # bytes before the code in a file of bytecode
-_CALL = "__import__('cramhy').kept_hy.run(globals(), {filename!r}, {code!r})"
+_CALL = "__import__('cramhy').kept_code.run(globals(), {filename!r}, {code!r})"
 _BEGINS_WITH_US = re.compile(rb'\A(?:#!.*\n)?(?:\s|;.*\n|"[^"]*"|\(import (?:cramhy|hy)\))*\(require cramhy\b')
 """A text whose first form requires cramhy: nothing of it was compiled before that."""
+
+_HY = os.path.dirname(os.path.abspath(hy.__file__)) + os.sep
+_OURS = os.path.join(os.path.abspath(os.path.join(__file__, "..", "..", "..")), "cramhy")
 
 _filenames: set[str] = set()
 """The files that our macros have seen since Python began."""
@@ -196,11 +199,13 @@ def unguarded(code: CodeType) -> CodeType:
     return marshal.loads(kept)
 
 
-def run(namespace: dict[str, Any], filename: str, code: bytes) -> None:
-    """Run the code of the file ``filename`` in a module's ``namespace``: what is kept, or what the compiler makes of the file now.
+def run(namespace: dict[str, Any], *told: Any) -> None:
+    """Run the code of a file in a module's ``namespace``: what is kept, or what the compiler makes of the file now.
 
-    code: what was made of a file that is no longer there.
+    told: at its end, the name of the file, and the code that was made of it if it is no longer there. Older versions of cramhy have written
+    calls with more before that.
     """
+    *_, filename, code = told
     exec(_code_of_file(namespace, filename, code), namespace)
 
 
@@ -247,7 +252,15 @@ class _Expansion(hy.macros.MacroExceptions):
         local = self.compiler.local_state_stack if self.compiler is not None else ()
         tables = [*(state["macros"] for state in local), getattr(self.module, "_hy_macros", {})]
         found = next((table[name] for table in tables if dict.__contains__(table, name)), None)
-        return found is not None and not is_library(found.__code__.co_filename)
+        if found is None:
+            return False
+        file = getattr(getattr(found, "__code__", None), "co_filename", "")
+        trace = dependency_tracing.current()
+        if (
+            trace is not None and "site-packages" in file and not file.startswith((_HY, _OURS))
+        ):  # of a library, which may be another version
+            trace.ask("status", file)
+        return not is_library(file)
 
 
 def _place_of(tree):
@@ -260,10 +273,19 @@ _eval_of_hy, _reader_macro_of_hy = hy.compiler.HyASTCompiler.eval, hy.macros.rea
 def _eval(self, model):
     """The value of ``model``, which stands in ``eval-and-compile`` or the like, or defines a macro."""
     trace = dependency_tracing.current()
-    if trace is not None and not trace.watches and trace.reason is None:
+    if trace is None or _defines_macro(model):
+        return _eval_of_hy(self, model)
+    if not trace.watches and trace.reason is None:
         trace.place = _place_of(model)
     with dependency_tracing.watched():
         return _eval_of_hy(self, model)
+
+
+def _defines_macro(model):
+    """Whether ``model`` is what Hy makes of a ``defmacro``: it makes a function and calls nothing of the user's."""
+    last = model[-1] if isinstance(model, hy.models.Expression) and len(model) == 2 else None
+    head = last[0] if isinstance(last, hy.models.Expression) and len(last) == 2 else None
+    return isinstance(head, hy.models.Expression) and len(head) == 2 and [*map(str, head[0])] == [".", "hy", "macros", "macro"]
 
 
 def _reader_macro(name, function):

@@ -60,7 +60,7 @@ def broken(facts: Facts) -> tuple[str, Any] | None:
         try:
             if not (kind.holds(question[1], answer) if kind.holds is not None else kind.now(question[1]) == answer):
                 return question
-        except Unanswerable:
+        except Exception:  # `Unanswerable`, or an object of the user's
             return question
     return None
 
@@ -112,6 +112,30 @@ def _file_holds(path: str, answer: Any) -> bool:
     return now[0] == "file" and now[4] == checksum
 
 
+def file_state(path: str | os.PathLike[str]) -> Any:
+    """What tells later whether a file has changed; ``None`` if there is none. Only a file that has just changed is read for that."""
+    looked_at = time.time_ns()
+    try:
+        status = os.stat(path)
+    except OSError:
+        return None
+    young = stat.S_ISREG(status.st_mode) and abs(looked_at - status.st_mtime_ns) <= RACY
+    return status.st_size, status.st_mtime_ns, status.st_ino, _file(os.fspath(path)) if young else None
+
+
+def unchanged(path: str | os.PathLike[str], state: Any) -> bool:
+    """Whether the file is as it was when `file_state` gave ``state``."""
+    if state is None:
+        return False
+    try:
+        status = os.stat(path)
+    except OSError:
+        return False
+    if (status.st_size, status.st_mtime_ns, status.st_ino) != state[:3]:
+        return False
+    return state[3] is None or _file_holds(os.fspath(path), state[3])
+
+
 def _status(path: str) -> Any:
     """What the file system says of ``path``: whether it is there, what it is, and for a file its size and the time of its last change."""
     try:
@@ -140,13 +164,22 @@ def _environment(name: str | None) -> Any:
     return sorted(os.environ.items()) if name is None else os.environ.get(name)
 
 
+def _module(name: str) -> str | None:
+    """The file in which Python finds the module of that name: another one may stand before it now."""
+    from importlib.machinery import PathFinder
+
+    spec = PathFinder.find_spec(name)
+    return spec.origin if spec is not None else None
+
+
 KINDS: dict[str, Kind] = {
     "file": Kind(_file, lambda path: f"the file {path}", _file_holds),
     "existence": Kind(_existence, lambda path: f"whether {path} is there"),
     "status": Kind(_status, lambda path: f"the size or the age of {path}"),
     "folder": Kind(_folder, lambda path: f"the names in the folder {path}"),
     "environment": Kind(_environment, lambda name: f"the variable {name} of the environment" if name else "the environment"),
+    "module": Kind(_module, lambda name: f"where the module {name} is"),
     "working folder": Kind(lambda _: os.getcwd(), lambda _: "the working folder"),
 }
 
-__all__ = ["KINDS", "Facts", "Kind", "Unanswerable", "broken", "holds", "told"]
+__all__ = ["KINDS", "Facts", "Kind", "Unanswerable", "broken", "file_state", "holds", "told", "unchanged"]

@@ -68,6 +68,8 @@ class Trace:
                 self._fresh.append(question)
             except Unanswerable as problem:
                 self.refuse(str(problem))
+            except Exception as problem:  # of an object of the user's
+                self.refuse(f"{dependencies.told(question)} cannot be compared: {problem}")
             finally:
                 self._answers = False
 
@@ -115,6 +117,8 @@ class Trace:
             if known[0] != _checksum(file) if known is not None else may_have_changed(file):
                 self.refuse(f"{file} may have changed after it was loaded")
             self.ask("file", file)
+            if "." not in module.__name__ and module.__name__ != "__main__":
+                self.ask("module", module.__name__)
 
     def settle(self) -> None:
         """The compiler is done with a form, which was not run yet: what it has asked for must have the same answers still."""
@@ -288,7 +292,7 @@ _REASONS: dict[tuple[str | None, str], str] = {
     **{
         (module, name): _PROCESS
         for module in ("posix", "nt")
-        for name in "getpid getppid uname times getloadavg cpu_count getlogin getuid geteuid getgid umask pipe fork forkpty".split()
+        for name in "getpid getppid uname times getloadavg cpu_count getlogin getuid geteuid getgid".split()
     },
     **{(module, name): "working folder" for module in ("posix", "nt") for name in ("getcwd", "getcwdb")},
     **{(module, name): "it looks at a file with os." + name for module in ("posix", "nt") for name in ("stat", "lstat", "access")},

@@ -35,7 +35,7 @@ class NotKept:
 
     def __str__(self) -> str:
         file, line, column = self.place
-        return f"the code of {file} is not kept, since it is compiled anew each time: {self.reason} (line {line}, column {column})"
+        return f"{file} is compiled anew each time: {self.reason} (line {line}, column {column})"
 
 
 class _State:

@@ -1,6 +1,6 @@
 """What Lisp's world answers to what a compilation asked of it: the kinds of questions that Lisp adds to `storage.dependencies`.
 
-An answer is a digest, so the file of kept code stays small. Kept code that has asked needs this module before it is used; who asks what is in
+An answer is a digest, so the file of kept code stays small. Kept code that has asked needs this module before it is used. Who asks is in
 `lisp_questions`, which only a compilation needs.
 """
 

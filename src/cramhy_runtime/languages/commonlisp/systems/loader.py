@@ -231,7 +231,8 @@ def _load_forms(reader, unit, notes, trace, show):
             if not unit.stored:
                 forms = None
             if trace is not None and trace.reason is not None and forms is not None:
-                kept_code.refuse(filename, (filename, *reader.place(start)), trace.reason)
+                line, column = (reader.positions.get(id(form)) or reader.place(start))[:2]
+                kept_code.refuse(filename, (filename, line, column), trace.reason)
                 forms = None
             if forms is not None:
                 forms.append(_KeptForm((start, *reader.place(start)), 0, wanted, codes, trace.take() if trace is not None else {}))

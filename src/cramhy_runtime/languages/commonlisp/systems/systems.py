@@ -24,6 +24,7 @@ from ..evaluation.evaluator import PACKAGE, evaluate
 from ..files.files import lisp_path
 from cramhy_runtime.ground.packages import Package, find_package, near_names, register, string_designator, sym
 from . import loader, missing_messages
+from cramhy_runtime.storage.dependencies import file_state, unchanged
 from cramhy_runtime.ros import search_folders
 from cramhy_runtime.ros.definition_files import package_name
 from cramhy_runtime.ros.search_folders import crawls, look_again, crawling_once
@@ -257,15 +258,15 @@ def known_systems():
 def load_asd(path, force=False):
     """Read a ``.asd`` file unless that was done and it has not changed: define its systems, evaluate its other forms."""
     path = Path(path).absolute()
-    status = path.stat()
-    if path in _reading or not force and _read.get(path) == (status.st_mtime_ns, status.st_size):
+    state = file_state(path)
+    if path in _reading or not force and unchanged(path, _read.get(path)):
         return
     _reading.append(path)
     try:
         _read_definitions(path)
     finally:
         _reading.remove(path)
-    _read[path] = (status.st_mtime_ns, status.st_size)
+    _read[path] = state
 
 
 def _read_definitions(path):
@@ -394,14 +395,13 @@ def loaded_files():
 
 
 def _load_component(path, chain, force):
-    status = path.stat() if path.exists() else None
-    key = (status.st_mtime_ns, status.st_size, chain) if status else None
-    kept = _loaded.get(path)
-    if kept is not None and kept[0] == key and not force:
-        return kept[1]
+    known = _loaded.get(path)
+    if known is not None and known[0] == chain and unchanged(path, known[1]) and not force:
+        return known[2]
     _loaded.pop(path, None)
+    state = file_state(path)
     fingerprint = loader.load_file(path, chain)
-    _loaded[path] = (key, fingerprint)
+    _loaded[path] = (chain, state, fingerprint)
     return fingerprint
 
 
