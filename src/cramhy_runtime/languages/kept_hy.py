@@ -129,7 +129,9 @@ def _place(path):
 def _label(path, source):
     from cramhy_runtime.storage.digests import sha256
 
-    return sha256(f"{stamp()} {hy.__version__} {sys.flags.optimize} {path} ".encode(errors="surrogatepass") + source).hexdigest()
+    with untraced():
+        compilers = stamp()
+    return sha256(f"{compilers} {hy.__version__} {sys.flags.optimize} {path} ".encode(errors="surrogatepass") + source).hexdigest()
 
 
 def _holds(facts):

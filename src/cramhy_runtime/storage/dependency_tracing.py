@@ -321,6 +321,7 @@ def _reason_of(function: Any, caller: CodeType) -> str | None:
 
 
 _EVENTS_OF_FILES = {"os.listdir": "folder", "os.scandir": "folder"}
+_EVENTS_OF_IMPORTS = frozenset(("open", "os.listdir", "os.scandir"))
 _REFUSED_EVENTS = {
     **dict.fromkeys(
         ("subprocess.Popen", "os.system", "os.exec", "os.posix_spawn", "os.spawn", "os.fork", "os.forkpty", "pty.spawn"),
@@ -346,6 +347,8 @@ def _heard(event: str, arguments: tuple[Any, ...]) -> None:
     trace = _current.get()
     if trace is None or trace._answers or not (trace.watches or trace.audited):
         return
+    if event in _EVENTS_OF_IMPORTS and sys._getframe(1).f_code.co_filename.startswith("<frozen importlib"):
+        return  # of modules, `include_modules` tells
     if event == "open":
         path, mode, flags = arguments
         if isinstance(path, int) or _is_kept_code(path):

@@ -16,6 +16,7 @@ from __future__ import annotations
 import marshal
 import os
 from .checksummed_code import Unusable, sealed, unsealed
+from .dependency_tracing import untraced
 from .kept_files import keep as keep_file
 from .kept_files import kept_bytes
 
@@ -48,7 +49,9 @@ class _State:
 def find(path: os.PathLike[str], label: str) -> Any:
     """The content that was kept for ``path`` under that label. Errors: `Unusable`, which says why there is none."""
     try:
-        return marshal.loads(kept_bytes(path, lambda place: unsealed(place, FIRST_LINE, label)))
+        with untraced():  # what is found has a record of its own
+            data = kept_bytes(path, lambda place: unsealed(place, FIRST_LINE, label))
+        return marshal.loads(data)
     except (OSError, ValueError, EOFError, TypeError) as problem:
         raise Unusable("unreadable", f"no code is kept for {path}: {problem}") from None
 
@@ -56,7 +59,8 @@ def find(path: os.PathLike[str], label: str) -> Any:
 def keep(path: os.PathLike[str], label: str, content: Any) -> None:
     """Keep ``content`` for ``path``, unless Python shall write none, or cannot."""
     _State.refused.pop(os.fspath(path), None)
-    keep_file(path, lambda: sealed(FIRST_LINE, label, marshal.dumps(content)))
+    with untraced():
+        keep_file(path, lambda: sealed(FIRST_LINE, label, marshal.dumps(content)))
 
 
 def refuse(path: os.PathLike[str], place: tuple[str, int, int], reason: str) -> None:
