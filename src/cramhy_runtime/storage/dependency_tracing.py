@@ -339,11 +339,14 @@ _REFUSED_EVENTS = {
 _CHANGES = frozenset(
     ("os.remove", "os.rename", "os.mkdir", "os.rmdir", "os.link", "os.symlink", "os.truncate", "os.chmod", "os.chown", "os.utime")
 )
+_HEARD = _EVENTS_OF_IMPORTS | _REFUSED_EVENTS.keys() | _CHANGES
 _WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC
 
 
 def _heard(event: str, arguments: tuple[Any, ...]) -> None:
     """What Python's audit events tell."""
+    if event not in _HEARD:  # there are many, and this is called for each from the first compilation on
+        return
     trace = _current.get()
     if trace is None or trace._answers or not (trace.watches or trace.audited):
         return

@@ -64,6 +64,11 @@ def forget_class(symbol):
         touch_classes()
 
 
+def defined_class(symbol):
+    """The class of that name that a program has defined or asked for, or ``None``. Nothing is looked for."""
+    return _classes.get(symbol)
+
+
 def symbol_class(symbol):
     """The class that ``symbol`` names, or ``None``."""
     found = _classes.get(symbol)

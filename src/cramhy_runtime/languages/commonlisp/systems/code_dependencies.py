@@ -267,9 +267,22 @@ def globals_of(code: types.CodeType) -> list[tuple[str, frozenset[str]]]:
     return list(found.items())
 
 
+_digests: dict[int, tuple[object, str, list[tuple[Symbol, tuple[Any, ...]]]]] = {}
+"""Number of a function → it, the digest of its code, and the state of the symbols that were looked at for that."""
+
+
 def code_digest(function: object) -> str:
     """A digest of the code of ``function`` and of the functions that it calls; empty if there is none."""
-    return "" if function is None or isinstance(function, UndefinedFunction) else _digest([function])[0]
+    if function is None or isinstance(function, UndefinedFunction):
+        return ""
+    known = _digests.get(id(function))
+    if known is not None and all(_same(_now(each), then) for each, then in known[2]):
+        return known[1]
+    if len(_digests) > 2000:
+        _digests.clear()
+    digest, seen = _digest([function])
+    _digests[id(function)] = function, digest, seen
+    return digest
 
 
 def _digest(facts: list[Any], symbol: Symbol | None = None) -> tuple[str, list[tuple[Symbol, tuple[Any, ...]]]]:

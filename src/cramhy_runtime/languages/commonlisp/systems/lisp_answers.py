@@ -118,6 +118,9 @@ def _properties(name: Name) -> str:
     return "" if symbol is None or symbol.plist is None else value_digest(symbol.plist)
 
 
+_meanings = Meanings()
+
+
 def _function(name: Name) -> str:
     """What the name does when it is called, as a function or as a macro, with what its closure holds."""
     symbol = _symbol(name)
@@ -127,9 +130,7 @@ def _function(name: Name) -> str:
     for function in (getattr(symbol.macro, "source", None), symbol.function, symbol.setf_function):
         if isinstance(function, types.FunctionType):
             data += [cell.cell_contents for cell in function.__closure__ or () if _holds_data(cell)]
-    return (
-        f"{Meanings().of(symbol)} {code_digest(symbol.function)} {code_digest(symbol.setf_function)} {value_digest(data) if data else ''}"
-    )
+    return f"{_meanings.of(symbol)} {code_digest(symbol.function)} {code_digest(symbol.setf_function)} {value_digest(data) if data else ''}"
 
 
 def _class(name: Name) -> str:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import functools
 import types
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 from cramhy_runtime.ground.data import Cons, Symbol
@@ -19,7 +19,7 @@ from cramhy_runtime.ground.packages import Package, sym
 from cramhy_runtime.storage import dependency_tracing
 from cramhy_runtime.storage.dependency_tracing import Trace, questions
 
-from ..objects.classes import symbol_class
+from ..objects.classes import defined_class
 from ..streams.streams import Stream
 from . import lisp_answers  # noqa: F401  which makes the kinds of questions known
 from .code_dependencies import globals_of
@@ -101,35 +101,46 @@ _ASK: dict[str, Callable[[Trace, Any], None]] = {
 }
 
 
-def _variables(code: types.CodeType, names: dict[str, Any]) -> Iterator[tuple[str, Symbol]]:
-    for name, used in globals_of(code):
-        symbol = names.get(name)
-        if isinstance(symbol, Symbol) and symbol.package is not None and not symbol.constant:
-            if "value" in used:
-                yield "variable", symbol
-            if "function" in used or "setf_function" in used:
-                yield "function", symbol
-            if symbol_class(symbol) is not None and not symbol.package.built_in:
-                yield "class", symbol
-
-
 _LISP = "cramhy_runtime.languages.commonlisp"
 _PRINTS = tuple(f"{_LISP}.{part}." for part in ("printer", "format", "reader", "files", "pathnames", "streams"))
 """The modules whose functions look at how Lisp reads and prints."""
+
+_uses: dict[int, tuple[types.CodeType, bool, list[tuple[Symbol, frozenset[str]]]]] = {}
+"""Number of a code object → it, whether it reads or prints, and the symbols that it uses, with the attributes of them. The hash of a code
+object would take longer than what is looked up."""
+
+
+def _uses_of(code: types.CodeType, names: dict[str, Any]) -> tuple[types.CodeType, bool, list[tuple[Symbol, frozenset[str]]]]:
+    known = _uses.get(id(code))
+    if known is None:
+        prints, symbols = False, []
+        for name, attributes in globals_of(code):
+            value = names.get(name)
+            if not isinstance(value, Symbol):
+                prints = prints or (getattr(value, "__module__", None) or "").startswith(_PRINTS)
+            elif value.package is not None and not value.constant and not (value.package.built_in and "value" not in attributes):
+                symbols.append((value, attributes))
+        if len(_uses) > 5000:
+            _uses.clear()
+        known = _uses[id(code)] = code, prints, symbols
+    return known
 
 
 def _observe(trace: Trace, code: types.CodeType, names: dict[str, Any]) -> None:
     """A function in compiled Lisp runs: it reads variables and calls functions."""
     if names.get("__name__") != "cramhy_code":
         return
-    if any((getattr(names.get(name), "__module__", None) or "").startswith(_PRINTS) for name, _ in globals_of(code)):
+    _, prints, symbols = _uses_of(code, names)
+    if prints:
         trace.ask("settings", "")
-    for kind, symbol in _variables(code, names):
-        if symbol.package.built_in and kind == "function":
-            continue
-        if kind == "variable" and isinstance(symbol.value, Stream):
-            continue
-        _ask_symbol(kind, trace, symbol)
+    for symbol, attributes in symbols:
+        if "value" in attributes and not isinstance(symbol.value, Stream):
+            _ask_symbol("variable", trace, symbol)
+        if not symbol.package.built_in:
+            if "function" in attributes or "setf_function" in attributes:
+                _ask_symbol("function", trace, symbol)
+            if defined_class(symbol) is not None:
+                _ask_symbol("class", trace, symbol)
 
 
 @functools.cache
