@@ -168,6 +168,8 @@ QUESTIONS: dict[int, Callable[[Trace, Any], None]] = {}
 """The number of a code object → what notes its question, given the trace and the arguments by name. Filled by `questions`."""
 OBSERVERS: list[Callable[[Trace, CodeType, dict[str, Any]], None]] = []
 """Called for each function of the user's that runs for the compiler, once for a form: with the trace, its code and its globals."""
+CALLS: list[Callable[[Trace, tuple[Any, ...]], None]] = []
+"""Called with the trace and the arguments of each call that `run` makes."""
 _asking: list[CodeType] = []  # numbers are keys, so they stay
 
 
@@ -210,6 +212,8 @@ def run(function: Callable[..., Any], *arguments: Any) -> Any:
     trace = _current.get()
     if trace is None or trace.watches or trace.reason is not None or _is_ours(function):
         return function(*arguments)
+    for note in CALLS:
+        note(trace, arguments)
     with _watched(trace):
         return function(*arguments)
 
@@ -462,6 +466,7 @@ def may_have_changed(path: str) -> bool:
 
 
 __all__ = [
+    "CALLS",
     "OBSERVERS",
     "QUESTIONS",
     "Trace",

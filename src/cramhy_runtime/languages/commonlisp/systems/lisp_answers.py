@@ -16,6 +16,7 @@ from cramhy_runtime.storage.dependencies import KINDS, Kind, Unanswerable
 
 from ..objects.classes import symbol_class
 from ..streams.streams import Stream
+from ..types.types import type_expander
 from .code_dependencies import Meanings, code_digest
 
 _MOST = 50_000
@@ -127,7 +128,9 @@ def _function(name: Name) -> str:
     if symbol is None:
         return ""
     data: list[object] = []
-    for function in (getattr(symbol.macro, "source", None), symbol.function, symbol.setf_function):
+    notes = symbol.compiler_data or {}
+    expanders = symbol.macro, notes.get("compiler-macro"), notes.get("setf-expander"), type_expander(symbol)
+    for function in (*(getattr(each, "source", each) for each in expanders), symbol.function, symbol.setf_function):
         if isinstance(function, types.FunctionType):
             data += [cell.cell_contents for cell in function.__closure__ or () if _holds_data(cell)]
     return f"{_meanings.of(symbol)} {code_digest(symbol.function)} {code_digest(symbol.setf_function)} {value_digest(data) if data else ''}"

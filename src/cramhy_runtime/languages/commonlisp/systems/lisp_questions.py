@@ -15,10 +15,12 @@ from collections.abc import Callable
 from typing import Any
 
 from cramhy_runtime.ground.data import Cons, Symbol
+from cramhy_runtime.ground.functions import apply, funcall, function_of
 from cramhy_runtime.ground.packages import Package, sym
 from cramhy_runtime.storage import dependency_tracing
 from cramhy_runtime.storage.dependency_tracing import Trace, questions
 
+from ..compiler.support import called_function
 from ..objects.classes import defined_class
 from ..streams.streams import Stream
 from . import lisp_answers  # noqa: F401  which makes the kinds of questions known
@@ -126,6 +128,13 @@ def _uses_of(code: types.CodeType, names: dict[str, Any]) -> tuple[types.CodeTyp
     return known
 
 
+def _expands(trace: Trace, arguments: tuple[Any, ...]) -> None:
+    """A macro, a compiler macro, the expander of a place or of a type is called, with the form: it may close over a table."""
+    form = arguments[0] if arguments else None
+    if isinstance(form, Cons):
+        _ask_symbol("function", trace, form.car)
+
+
 def _observe(trace: Trace, code: types.CodeType, names: dict[str, Any]) -> None:
     """A function in compiled Lisp runs: it reads variables and calls functions."""
     if names.get("__name__") != "cramhy_code":
@@ -150,7 +159,10 @@ def install() -> None:
         package, _, short = name.rpartition(":")
         symbol = sym(f"{package.rstrip(':')}::{short}") if package else sym(name)
         questions(symbol.function, note)
+    for function in (function_of, called_function, funcall, apply):  # a symbol may stand for a function
+        questions(function, _of_symbol("function", function.__code__.co_varnames[0]))
     dependency_tracing.OBSERVERS.append(_observe)
+    dependency_tracing.CALLS.append(_expands)
 
 
 __all__ = ["install"]
