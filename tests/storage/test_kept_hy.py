@@ -14,7 +14,7 @@ import pytest
 from hy.importer import HyLoader
 
 from cramhy_runtime.languages import kept_hy
-from cramhy_runtime.storage import kept_code
+from cramhy_runtime.storage import dependency_tracing, kept_code
 from cramhy_runtime.storage.checksummed_code import Unusable
 from cramhy_runtime.storage.kept_files import kept_path
 
@@ -27,6 +27,7 @@ def write(tmp_path, monkeypatch):
     """Write a file that is older than this process, and younger than those written before."""
     kept_hy.watch()
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
+    monkeypatch.setattr(dependency_tracing, "_BEGAN", 1 << 62)  # whoever edits a module of tests meanwhile does not matter
     monkeypatch.syspath_prepend(tmp_path)
     tmp_path.chmod(0o755)
 
@@ -159,7 +160,8 @@ def test_what_cannot_be_compared_is_compiled_each_time_and_the_place_is_told(wri
 def test_a_module_that_has_changed_since_it_was_loaded_is_no_base_for_kept_code(write, tmp_path, monkeypatch):
     write("kc_helper.py", "ANSWER = 11\n")
     write("kc_user.hy", "(defmacro m [] (import kc_helper) kc_helper.ANSWER)\n(setv found (m))\n")
-    (tmp_path / "kc_helper.py").write_text("ANSWER = 12\n")  # after this process began
+    monkeypatch.setattr(dependency_tracing, "may_have_changed", lambda path: path.endswith("kc_helper.py"))
+    (tmp_path / "kc_helper.py").write_text("ANSWER = 12\n")
     assert found(tmp_path) == 12
     assert kept_code.not_kept(tmp_path / "kc_user.hy").reason == f"{tmp_path / 'kc_helper.py'} may have changed after it was loaded"
 
@@ -232,3 +234,10 @@ def test_bytecode_of_the_cramhy_before_this_one_runs(write, tmp_path):
     namespace = {"__name__": "kc_user"}
     cramhy.kept_code.run(namespace, "a stamp", str(tmp_path / "kc_user.hy"), marshal.dumps(compile("found = 11", "kc_user.hy", "exec")))
     assert namespace["found"] == 22
+
+
+def test_a_file_that_is_younger_than_this_process_may_have_changed(tmp_path):
+    (tmp_path / "x.py").write_text("")
+    assert dependency_tracing.may_have_changed(str(tmp_path / "x.py"))
+    os.utime(tmp_path / "x.py", (1e9, 1e9))
+    assert not dependency_tracing.may_have_changed(str(tmp_path / "x.py"))

@@ -17,7 +17,7 @@ from cramhy_runtime import kernel
 from cramhy_runtime.languages.commonlisp.systems import loader
 from cramhy_runtime.repl.session import Session
 from cramhy_runtime.session import Image
-from cramhy_runtime.storage import kept_code
+from cramhy_runtime.storage import dependencies, dependency_tracing, kept_code
 
 IN_PROCESS = [name for name, case in CASES.items() if case.command.endswith("main.lisp")]
 IN_PROCESSES = [name for name in CASES if name not in IN_PROCESS]
@@ -26,6 +26,7 @@ NOT_KEPT = {
     "chance": "it depends on chance",
     "a counter of a macro": "compiling it changes the value of COMMON-LISP-USER::*COUNT*",
     "a list to which macros add": "compiling it changes the value of COMMON-LISP-USER::*ALL*",
+    "a file that is loaded while another is compiled": "compiling it changes the value of COMMON-LISP-USER::*PART*",
     "another process": "it starts another process",
     "the clock in a Hy macro": "it looks at the clock",
 }
@@ -39,7 +40,7 @@ def write(folder, files):
             path.unlink()
             continue
         path.write_text(text)
-        if path.suffix == ".py":  # one that is younger than this process may be another one than was imported
+        if path.suffix == ".py":  # Python itself looks at the second of the change
             os.utime(path, (1e9 + len(text), 1e9 + len(text)))
 
 
@@ -52,6 +53,7 @@ def forget(folder):
 def said(tmp_path, monkeypatch, capsys):
     """What the program of a case prints, in an image that knows nothing of before."""
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
+    monkeypatch.setattr(dependency_tracing, "_BEGAN", 1 << 62)  # whoever edits a module of tests meanwhile does not matter
 
     def said(case, cwd="one", variables=()):
         with Image(), monkeypatch.context() as patch:
@@ -120,3 +122,53 @@ def test_the_second_process_answers_as_a_fresh_compilation(tmp_path, name):
     fresh = said(case.variables)
     assert first != second and second
     assert case.moves or second == fresh
+
+
+REASONS = {
+    "(get-universal-time)": "it looks at the clock",
+    "(nth-value 5 (get-decoded-time))": "it looks at the clock",
+    "(get-internal-run-time)": "it looks at the clock",
+    '(py:call "time.monotonic")': "it looks at the clock",
+    "(random 10)": "it depends on chance",
+    "(progn (princ-to-string *random-state*) 1)": "it depends on chance",
+    '(py:call "os.getpid")': "it looks at the process or the machine",
+    "(progn (gentemp) 1)": "it depends on how many symbols were made before",
+    "*gensym-counter*": "it depends on how many symbols were made before",
+    "(length (push 1 (get 'f :seen)))": "compiling it changes the properties of COMMON-LISP-USER::F",
+    '(with-open-file (s "/dev/zero" :element-type \'(unsigned-byte 8)) (read-byte s))': "/dev/zero is not a file that keeps what is in it",
+}
+
+
+@pytest.mark.parametrize("asks", REASONS)
+@pytest.mark.parametrize("way", ["(m)", "#.(ask)"], ids=["macro", "reader"])
+def test_what_cannot_be_compared_is_compiled_each_time_and_load_says_why(said, tmp_path, capsys, asks, way):
+    place, text = tmp_path / "x.lisp", f"(defun ask () {asks})\n(defmacro m () (ask))\n\n  (defun f () {way})\n"
+    place.write_text(text)
+    with Image():
+        session = Session(time="virtual", turtlesim=False, seed=1)
+        for _ in range(2):
+            session.evaluate_text(f'(load "{place}" :verbose t)')
+            lines = capsys.readouterr().out.splitlines()
+            line = f";; {place} is compiled anew each time: {REASONS[asks]} (line 4, column "
+            assert lines[-1].startswith(line), lines
+
+
+def test_two_changes_of_a_file_in_one_instant_are_told_apart(tmp_path):
+    path = tmp_path / "d.txt"
+    path.write_text("11")
+    question = {("file", str(path)): dependencies.KINDS["file"].now(str(path))}
+    state, status = dependencies.file_state(path), path.stat()
+    assert dependencies.holds(question) and dependencies.unchanged(path, state)
+    with path.open("r+") as file:
+        file.write("22")
+    os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
+    assert not dependencies.holds(question) and not dependencies.unchanged(path, state)
+
+
+def test_an_old_file_is_not_read_again(tmp_path, monkeypatch):
+    path = tmp_path / "d.txt"
+    path.write_text("11")
+    os.utime(path, (1e9, 1e9))
+    question, state = {("file", str(path)): dependencies.KINDS["file"].now(str(path))}, dependencies.file_state(path)
+    monkeypatch.setattr("builtins.open", None)
+    assert dependencies.holds(question) and dependencies.unchanged(path, state)
