@@ -172,3 +172,13 @@ def test_an_old_file_is_not_read_again(tmp_path, monkeypatch):
     question, state = {("file", str(path)): dependencies.KINDS["file"].now(str(path))}, dependencies.file_state(path)
     monkeypatch.setattr("builtins.open", None)
     assert dependencies.holds(question) and dependencies.unchanged(path, state)
+
+
+def test_a_local_macro_asks_nothing_so_that_the_course_loads_as_quickly_as_before(said, tmp_path):
+    path, text = tmp_path / "main.lisp", "(defun f () (macrolet ((two (x) `(list ,x 2))) (two 1)))\n(print (f))\n"
+    write(tmp_path, {"main.lisp": text})
+    assert said(CASES["the clock"]) == "\n(1 2) "
+    with Image():
+        Session(time="virtual", turtlesim=False)
+        forms = loader._kept(path, loader._fingerprint(path, text, "source "), str(path))
+    assert [loader._KeptForm(*form).facts for form in forms] == [{}, {}]

@@ -168,8 +168,8 @@ QUESTIONS: dict[int, Callable[[Trace, Any], None]] = {}
 """The number of a code object → what notes its question, given the trace and the arguments by name. Filled by `questions`."""
 OBSERVERS: list[Callable[[Trace, CodeType, dict[str, Any]], None]] = []
 """Called for each function of the user's that runs for the compiler, once for a form: with the trace, its code and its globals."""
-CALLS: list[Callable[[Trace, tuple[Any, ...]], None]] = []
-"""Called with the trace and the arguments of each call that `run` makes."""
+CALLS: list[Callable[[Trace, Any, tuple[Any, ...]], None]] = []
+"""Called with the trace, the function and the arguments of each call that `run` makes."""
 _asking: list[CodeType] = []  # numbers are keys, so they stay
 
 
@@ -213,7 +213,7 @@ def run(function: Callable[..., Any], *arguments: Any) -> Any:
     if trace is None or trace.watches or trace.reason is not None or _is_ours(function):
         return function(*arguments)
     for note in CALLS:
-        note(trace, arguments)
+        note(trace, function, arguments)
     with _watched(trace):
         return function(*arguments)
 

@@ -122,15 +122,19 @@ def _properties(name: Name) -> str:
 _meanings = Meanings()
 
 
+def expanders(symbol: Symbol) -> tuple[Any, ...]:
+    """What the compiler calls for the name: its macro, compiler macro, setf expander and the expander of its type, each or ``None``."""
+    notes = symbol.compiler_data or {}
+    return symbol.macro, notes.get("compiler-macro"), notes.get("setf-expander"), type_expander(symbol)
+
+
 def _function(name: Name) -> str:
     """What the name does when it is called, as a function or as a macro, with what its closure holds."""
     symbol = _symbol(name)
     if symbol is None:
         return ""
     data: list[object] = []
-    notes = symbol.compiler_data or {}
-    expanders = symbol.macro, notes.get("compiler-macro"), notes.get("setf-expander"), type_expander(symbol)
-    for function in (*(getattr(each, "source", each) for each in expanders), symbol.function, symbol.setf_function):
+    for function in (*(getattr(each, "source", each) for each in expanders(symbol)), symbol.function, symbol.setf_function):
         if isinstance(function, types.FunctionType):
             data += [cell.cell_contents for cell in function.__closure__ or () if _holds_data(cell)]
     return f"{_meanings.of(symbol)} {code_digest(symbol.function)} {code_digest(symbol.setf_function)} {value_digest(data) if data else ''}"
@@ -194,4 +198,4 @@ _KINDS = {
 }
 KINDS.update(_KINDS)
 
-__all__ = ["value_digest"]
+__all__ = ["expanders", "value_digest"]

@@ -23,7 +23,7 @@ from cramhy_runtime.storage.dependency_tracing import Trace, questions
 from ..compiler.support import called_function
 from ..objects.classes import defined_class
 from ..streams.streams import Stream
-from . import lisp_answers  # noqa: F401  which makes the kinds of questions known
+from . import lisp_answers
 from .code_dependencies import globals_of
 
 
@@ -128,11 +128,22 @@ def _uses_of(code: types.CodeType, names: dict[str, Any]) -> tuple[types.CodeTyp
     return known
 
 
-def _expands(trace: Trace, arguments: tuple[Any, ...]) -> None:
-    """A macro, a compiler macro, the expander of a place or of a type is called, with the form: it may close over a table."""
+def _expands(trace: Trace, function: Any, arguments: tuple[Any, ...]) -> None:
+    """A macro, a compiler macro, the expander of a place or of a type is called, with the form: it may close over a table.
+
+    That of a ``macrolet`` is part of the text.
+    """
     form = arguments[0] if arguments else None
-    if isinstance(form, Cons):
-        _ask_symbol("function", trace, form.car)
+    symbol = form.car if isinstance(form, Cons) else None
+    if isinstance(symbol, Symbol) and any(function is each for each in lisp_answers.expanders(symbol)):
+        _ask_symbol("function", trace, symbol)
+
+
+def _of_designator(trace: Trace, arguments: Any) -> None:
+    """A symbol may stand for a function, which is called."""
+    symbol = next(iter(arguments.values()))
+    if isinstance(symbol, Symbol) and symbol.package is not None and not symbol.package.built_in:
+        _ask_symbol("function", trace, symbol)
 
 
 def _observe(trace: Trace, code: types.CodeType, names: dict[str, Any]) -> None:
@@ -159,8 +170,8 @@ def install() -> None:
         package, _, short = name.rpartition(":")
         symbol = sym(f"{package.rstrip(':')}::{short}") if package else sym(name)
         questions(symbol.function, note)
-    for function in (function_of, called_function, funcall, apply):  # a symbol may stand for a function
-        questions(function, _of_symbol("function", function.__code__.co_varnames[0]))
+    for function in (function_of, called_function, funcall, apply):
+        questions(function, _of_designator)
     dependency_tracing.OBSERVERS.append(_observe)
     dependency_tracing.CALLS.append(_expands)
 
