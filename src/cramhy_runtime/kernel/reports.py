@@ -6,6 +6,7 @@ it. Until then the `PlainReporter` describes them in Python's terms.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 from types import FrameType
@@ -109,6 +110,16 @@ def where(frame):
     return ""
 
 
+def place(frame):
+    """As `where`, but code in Python counts as the user's too, whatever the installed reporter describes; "another place" if there is none."""
+    while frame is not None:
+        file = frame.f_code.co_filename
+        if not (of_the_library(file) or file == contextlib.__file__) and (text := describe_frame(frame) or PLAIN.describe_frame(frame)):
+            return text
+        frame = frame.f_back
+    return "another place"
+
+
 def waiting_list(kernel):
     """Lines for all tasks that wait, the oldest first: the name, what it waits for, and where."""
     return list_of(kernel, [task for task in kernel.tasks if task.state in (PARKED, BLOCKED)])
@@ -152,6 +163,33 @@ def abandoned_text(kernel, tasks, why=""):
         f"The cleanup of {whose} was given up.{f' {why}' if why else ''} The work that it should stop may still be going on:\n"
         f"{list_of(kernel, tasks)}"
     )
+
+
+def swallowing_text(task, place):
+    """The message that TASK, at PLACE, swallows every request to end it."""
+    return (
+        f"The task {task.name}, at {place}, swallows every request to end it.\n"
+        "Catch Exception, not BaseException or everything, or raise again what you have caught, and do not leave a `finally` by return, "
+        "break or continue."
+    )
+
+
+class Place:
+    """What `where` and reporters read of a frame, without its variables. code: of its function. instruction: the frame's ``f_lasti``."""
+
+    __slots__ = ("f_code", "f_lasti")
+    f_back = None
+
+    def __init__(self, code, instruction):
+        self.f_code, self.f_lasti = code, instruction
+
+    @property
+    def f_lineno(self):
+        """The line of the source at which the frame was."""
+        for start, end, line in self.f_code.co_lines():
+            if line is not None and start <= self.f_lasti < end:
+                return line
+        return self.f_code.co_firstlineno
 
 
 def deadlock_text(kernel):

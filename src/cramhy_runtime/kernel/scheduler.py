@@ -577,7 +577,7 @@ class Kernel(Endings, Outside, Timing):
         return bool(self._queue or self._inbox)
 
     def _reach_limit(self) -> None:
-        self._alarm(TimeLimit(reports.time_limit_text(self, self.time_limit)), True)
+        self._alarm(TimeLimit(reports.time_limit_text(self, self.time_limit)), True, stays=True)
         self._limit = self.clock.now() + self.time_limit  # what is left to do in cleanup gets as long again
 
     def _call(self, fn: Callback) -> None:
