@@ -111,7 +111,7 @@ def where(frame):
 
 
 def place(frame):
-    """As `where`, but code in Python counts as the user's too, whatever the installed reporter describes; "another place" if there is none."""
+    """As `where`, but code in Python counts as the user's too, whatever the reporter describes; "another place" if there is none."""
     while frame is not None:
         file = frame.f_code.co_filename
         if not (of_the_library(file) or file == contextlib.__file__) and (text := describe_frame(frame) or PLAIN.describe_frame(frame)):
@@ -165,13 +165,15 @@ def abandoned_text(kernel, tasks, why=""):
     )
 
 
+DO_NOT_SWALLOW = (
+    "Catch Exception, not BaseException or everything, or raise again what you have caught, and do not leave a `finally` by return, "
+    "break or continue."
+)
+
+
 def swallowing_text(task, place):
     """The message that TASK, at PLACE, swallows every request to end it."""
-    return (
-        f"The task {task.name}, at {place}, swallows every request to end it.\n"
-        "Catch Exception, not BaseException or everything, or raise again what you have caught, and do not leave a `finally` by return, "
-        "break or continue."
-    )
+    return f"The task {task.name}, at {place}, swallows every request to end it.\n{DO_NOT_SWALLOW}"
 
 
 class Place:

@@ -258,9 +258,7 @@ class Task(Generic[T]):
 
     def _look_again(self) -> None:
         waiting = self.cancel_request is not None and not self.cancelled_delivered
-        self.attention = bool(
-            waiting or self.parts or self.delivered is not None or self.alarms or self.interjections or self.abandoned
-        )
+        self.attention = bool(waiting or self.parts or self.delivered is not None or self.alarms or self.interjections or self.abandoned)
 
     def unwinds(self, part: Part) -> None:
         """Protect the cleanup in ``part`` of the task's own stack, until `unwound`. The task itself calls it, then raises the exception.

@@ -302,8 +302,6 @@ def ticking(note, limit=5.0):
             yield cpl.now()
 
 
-
-
 @notes("first 1", "A TIMEOUT block was never left: the task ended. 2")
 def generator_that_nobody_closes(note):
     ticks = ticking(note)

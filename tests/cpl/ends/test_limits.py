@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import decimal
 import fractions
+import re
 
 import numpy
 import pytest
@@ -11,6 +12,7 @@ from systems import BACKENDS
 
 from cramhy_runtime import cpl, kernel
 
+from . import scenarios
 from .scenarios import swallowing
 
 NUMBER = "give a number of seconds, or float('inf') for no limit."
@@ -37,6 +39,14 @@ def test_not_a_number_is_a_value_error(limit, seconds):
     assert str(problem.value) == (
         f"cpl.{limit.__name__}(nan): this is not a number. Give a number of seconds, or float('inf') for no limit."
     )
+
+
+@pytest.mark.parametrize("seconds, kind", [("3", TypeError), (True, TypeError), (float("nan"), ValueError)])
+def test_the_other_limits_of_a_plan_are_as_careful(seconds, kind):
+    with pytest.raises(kind, match=r"^time_limit="):
+        cpl.run(lambda: None, time_limit=seconds)
+    with pytest.raises(kind, match=r"^cpl.cleanup_time_limit\("):
+        cpl.cleanup_time_limit(seconds)
 
 
 @pytest.mark.parametrize(
@@ -111,3 +121,52 @@ def test_the_main_task_that_swallows_its_block_for_long_goes_on_and_is_told_of(b
         cpl.sleep(1)
     told = capsys.readouterr().err
     assert told.count("swallows every request to end it.\nCatch Exception, not BaseException or everything, or raise again") == 1
+
+
+def texts(plan):
+    with pytest.raises(Exception) as problem:
+        cpl.run(plan, lambda what: None)
+    return re.sub(r"tests/cpl/ends/|/[^ ]*/", "", re.sub(r":\d+", "", str(problem.value)))
+
+
+FILE = "scenarios.py in "
+REMEDY = (
+    " Leave blocks in the reverse order in which they were entered, in the task that entered them. If a generator waits in a block, use it "
+    "up, or close it (contextlib.closing), before you leave what is around it."
+)
+
+
+@pytest.mark.parametrize(
+    "plan, text",
+    [
+        (
+            scenarios.generator_in_a_block_that_is_left,
+            "A PAR block was left before the TIMEOUT block that was entered after it. The PAR block was entered at "
+            f"{FILE}generator_in_a_block_that_is_left, and the TIMEOUT block at {FILE}ticking." + REMEDY,
+        ),
+        (
+            scenarios.generator_whose_time_is_over_elsewhere,
+            "A TIMEOUT block was to end, but the generator that entered it does not run. It was entered at "
+            f"{FILE}ticking, and its task is at {FILE}generator_whose_time_is_over_elsewhere." + REMEDY,
+        ),
+        (
+            scenarios.block_that_is_left_in_another_task,
+            "A TIMEOUT block was left in another task than the one that entered it. It was entered at "
+            f"{FILE}block_that_is_left_in_another_task, in [TOP-LEVEL]-N, and left at {FILE}<lambda>, in [PAR-CHILD-#1/1]-N." + REMEDY,
+        ),
+        (
+            scenarios.generator_that_nobody_closes,
+            f"A TIMEOUT block was never left: the task ended. It was entered at {FILE}ticking, and the task that ended is [TOP-LEVEL]-N."
+            + REMEDY,
+        ),
+        (
+            scenarios.branch_that_swallows_for_ever,
+            f"The task swallows every request to end it, at {FILE}stubborn. It was left where it is, and its other cleanup did not run. "
+            "Catch Exception, not BaseException or everything, or raise again what you have caught, and do not leave a `finally` by "
+            "return, break or continue.",
+        ),
+    ],
+    ids=lambda value: getattr(value, "__name__", ""),
+)
+def test_the_errors_say_where_and_what_to_do(plan, text):
+    assert re.sub(r"\]-\d+", "]-N", texts(plan)) == text

@@ -33,8 +33,8 @@ GENERATOR = inspect.CO_GENERATOR
 PASSED = ("__enter__", "enter_context")  # functions that enter a block for the function that calls them
 _CONTEXTLIB = contextlib.__file__
 REMEDY = (
-    "Leave blocks in the reverse order in which they were entered, in the task that entered them. If a generator waits in a block, use it up, "
-    "or close it (contextlib.closing), before you leave what is around it."
+    "Leave blocks in the reverse order in which they were entered, in the task that entered them. If a generator waits in a block, use it "
+    "up, or close it (contextlib.closing), before you leave what is around it."
 )
 
 

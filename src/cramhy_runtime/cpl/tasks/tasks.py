@@ -33,6 +33,7 @@ from cramhy_runtime.ground.source_places import locate
 from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.looking_on import only_looked_at
 from ..current import current_task
+from cramhy_runtime.kernel.reports import DO_NOT_SWALLOW
 from .block_order import close_rest
 from .ending import LIMIT, end_tasks, end_waits, limit_cleanup
 from ..failures.failure_types import PlanFailure, envelope, opened
@@ -332,9 +333,8 @@ class AbstractTask(Generic[T]):
             envelope(
                 types.SimpleError(
                     "~a",
-                    f"The task swallows every request to end it, at {place}. It was left where it is, and its other "
-                    "cleanup did not run. Catch Exception, not BaseException or everything, or raise again what you have caught, and do not "
-                    "leave a `finally` by return, break or continue.",
+                    f"The task swallows every request to end it, at {place}. It was left where it is, and its other cleanup did not run. "
+                    f"{DO_NOT_SWALLOW}",
                 )
             ),
         )

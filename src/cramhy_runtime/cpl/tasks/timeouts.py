@@ -15,13 +15,12 @@ which a generator that waits inside of a block can bring about, is an error with
 from __future__ import annotations
 
 import sys
-from decimal import Decimal
-from numbers import Real
 
-from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Self
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Self
 
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.active import ACTIVE
+from cramhy_runtime.kernel.timers import seconds as in_seconds
 
 from cramhy_runtime.ground.conditions import error
 from ..failures.python_exceptions import raise_in_python
@@ -224,7 +223,7 @@ def timeout(seconds: float) -> Timeout:
     means no limit, and zero and less that the body ends where it first waits. NaN is a ValueError, and what is not a number a TypeError.
     Outside of a plan it is an error.
     """
-    return Timeout(_seconds("timeout", seconds), True)
+    return Timeout(in_seconds(seconds, "cpl.timeout({})"), True)
 
 
 def move_on_after(seconds: float) -> MovingOn:
@@ -233,15 +232,4 @@ def move_on_after(seconds: float) -> MovingOn:
     ``limit.expired`` says whether the time was over. As for `timeout`, infinity means no limit, zero and less an end at the first wait.
     NaN is a ValueError, and what is not a number a TypeError. Outside of a plan it is an error.
     """
-    return Timeout(_seconds("move_on_after", seconds), False)  # type: ignore[return-value]
-
-
-def _seconds(function: str, seconds: Any) -> float:
-    if seconds.__class__ is float and seconds == seconds or seconds.__class__ is int:
-        return seconds  # type: ignore[no-any-return]
-    if isinstance(seconds, bool) or not isinstance(seconds, (Real, Decimal)):
-        raise TypeError(f"cpl.{function}({seconds!r}): give a number of seconds, or float('inf') for no limit.")
-    number = float(seconds)
-    if number != number:
-        raise ValueError(f"cpl.{function}({number}): this is not a number. Give a number of seconds, or float('inf') for no limit.")
-    return number
+    return Timeout(in_seconds(seconds, "cpl.move_on_after({})"), False)  # type: ignore[return-value]
