@@ -219,6 +219,30 @@ def looks_like_tests(path):
         return False
 
 
+NAMED_LIKE_TESTS = late_pattern(r"^tests?$|^tests?[-_]|[-_]tests?$")
+
+
+def named_like_tests(path):
+    """Whether a file of Lisp has a name that says that there are tests in it: ``tests``, ``test-drive``, ``drive-tests``."""
+    path = Path(path)
+    return path.suffix in (".lisp", ".hy") and NAMED_LIKE_TESTS.search(path.stem) is not None
+
+
+def tests_of_file(path):
+    """As `load_tests`. No test is an error, except in a helper: a file of a system in which other files define tests."""
+    path = Path(path).absolute()
+    tests = load_tests(path)
+    if not tests:
+        system = system_of_file(path)
+        if system is None or not defined_tests([component.pathname for component in systems.files_of(system)]):
+            others = " Tests in plain Hy run with pytest." if path.suffix == ".hy" else ""
+            error(
+                SimpleError("~a", f"There are no tests of lisp-unit or FiveAM in {path.name}.{others}"),
+                hint="If the file is a helper of tests, give it a name that does not begin or end with `test` or `tests`.",
+            )
+    return tests
+
+
 def system_of_file(path):
     """The system of which the file is a part, as the ``.asd`` files in its folder and the three above say; ``None`` if it is in none."""
     path = Path(path).absolute()
