@@ -36,8 +36,7 @@ FLOORS = [
     ["view", "repl", "swank", "jupyter", "lsp", "grading"],
     ["course"],
     ["browser"],
-    ["cli", "pytest_hy"],
-    ["pytest_plugin", "coverage_plugin", "__init__"],
+    ["cli", "pytest_plugin", "coverage_plugin", "__init__"],
 ]
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 

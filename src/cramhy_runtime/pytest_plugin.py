@@ -6,7 +6,8 @@ The fixture ``virtual_time`` gives a test a kernel of its own, on either back en
 imports a Lisp system, asks for one of the fixtures, or a Lisp file of tests is collected:
 one named ``test-*``, ``*-test`` or ``*-tests``, or one in a folder ``tests`` that defines tests of lisp-unit or FiveAM. It is loaded with
 the system of which it is a part. A ``.asd`` file is collected when it is named on the command line. A file ``test_*.hy`` that stays Hy
-is collected as pytest's own modules are (``pytest_hy.py``). A file with such a name and without tests is an error of collection.
+is collected as pytest's own modules are (``languages/hy/collected_tests.py``). A file with such a name and without tests is an error of
+collection.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ from pathlib import Path
 
 import pytest
 
-from . import pytest_hy
+from .languages.hy import collected_tests
+from .languages.which_language import goes_on_in_lisp
 
 
 class _SystemsOnDemand(importlib.abc.MetaPathFinder):
@@ -52,8 +54,8 @@ class _HyStaysHy(importlib.abc.MetaPathFinder):
         spec = importlib.machinery.PathFinder.find_spec(name, path)
         if spec is None or not str(spec.origin).endswith(".hy"):
             return None
-        if pytest_hy.rewrites(name, spec.origin, self.config):
-            spec.loader = pytest_hy.RewritingLoader(name, spec.origin)
+        if collected_tests.rewrites(name, spec.origin, self.config):
+            spec.loader = collected_tests.RewritingLoader(name, spec.origin)
             spec.loader.config = self.config
             spec.cached = None
         return spec
@@ -72,7 +74,7 @@ def pytest_addoption(parser):
 def pytest_configure(config):
     if config.getoption("--cramhy-time"):
         os.environ["CRAMHY_TIME"] = config.getoption("--cramhy-time")
-    config.args[:] = pytest_hy.lisp_names_of_arguments(config.args)
+    config.args[:] = collected_tests.lisp_names_of_arguments(config.args)
     sys.meta_path.insert(0, _HyStaysHy(config))
     sys.meta_path.append(_SystemsOnDemand())
 
@@ -122,12 +124,12 @@ def pytest_collect_file(file_path, parent):
     if file_path.suffix not in (".lisp", ".hy", ".asd"):
         return None
     named = parent.session.isinitpath(file_path)
-    if file_path.suffix == ".hy" and not pytest_hy.is_common_lisp(file_path):
-        if not named and not pytest_hy.named_like_tests(file_path, parent.config):
+    if file_path.suffix == ".hy" and not goes_on_in_lisp(file_path):
+        if not named and not collected_tests.named_like_tests(file_path, parent.config):
             return None
         import hy  # noqa: F401  teaches Python to import it
 
-        return pytest_hy.HyModule.from_parent(parent, path=file_path)
+        return collected_tests.HyModule.from_parent(parent, path=file_path)
     if not named:
         from cramhy_runtime.languages.commonlisp.systems import unit_tests
 
@@ -137,7 +139,7 @@ def pytest_collect_file(file_path, parent):
 
 
 def pytest_pycollect_makeitem(collector, name, obj):
-    return pytest_hy.make_item(collector, name, obj)
+    return collected_tests.make_item(collector, name, obj)
 
 
 @pytest.hookimpl(wrapper=True)

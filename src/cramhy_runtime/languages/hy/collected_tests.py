@@ -5,7 +5,7 @@ Tests are looked for in the module when it has been imported, and not in its tex
 ``test``. So each test has a second name in its module or class, the one that the user wrote, and pytest sees only that one. A file that is
 named like one of tests, and has none, is an error of collection.
 
-pytest rewrites the assertions of test files, of ``conftest.py`` and of registered helpers on Python's syntax tree. `RewritingLoader` does
+pytest rewrites the assertions of test files and of registered helpers on Python's syntax tree. `RewritingLoader` does
 so with the tree that Hy makes. Such code is compiled in each run and never kept, so it cannot be taken for plain code, or be old.
 """
 
@@ -36,15 +36,6 @@ def named_like_tests(path: Path, config: Any) -> bool:
 
 def _as_python(path: PurePath) -> PurePath:
     return path.with_name(path.stem.replace("-", "_") + ".py")
-
-
-def is_common_lisp(path: Path) -> bool:
-    """Whether a ``.hy`` file goes on in Common Lisp. Its tests are those of Lisp's libraries."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError):
-        return False
-    return re.search(r"^\s*\((in-package|defpackage)\b", text, re.M) is not None
 
 
 def lisp_name(name: str) -> str:
