@@ -12,6 +12,8 @@ from systems import BACKENDS
 
 from cramhy_runtime import cpl, kernel
 
+from cramhy_runtime.cpl.tasks.delegated_work import Errand
+
 from . import scenarios
 from .scenarios import swallowing
 
@@ -121,6 +123,40 @@ def test_the_main_task_that_swallows_its_block_for_long_goes_on_and_is_told_of(b
         cpl.sleep(1)
     told = capsys.readouterr().err
     assert told.count("swallows every request to end it.\nCatch Exception, not BaseException or everything, or raise again") == 1
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_piece_of_work_for_others_that_swallows_its_end_gets_it_again(backend):
+    errand, outcomes = Errand(), []
+
+    def body():
+        swallowing()
+        outcomes.append(cpl.now())
+        cpl.sleep(100)
+
+    with cpl.plan(backend=backend), cpl.par() as branches:
+        branches.start(lambda: outcomes.append((errand.run(body), cpl.now())))
+        cpl.sleep(1)
+        errand.end()
+    assert outcomes == [1, ((cpl.EVAPORATED, ()), 1)]
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_generator_that_the_garbage_collector_closes_elsewhere_is_an_error_of_its_task(backend):
+    kept = []
+
+    def opens():
+        kept.append(scenarios.ticking(None))
+        next(kept[0])
+        cpl.sleep(100)
+
+    def drops():
+        cpl.sleep(2)
+        kept.clear()
+        cpl.sleep(1)
+
+    with pytest.raises(Exception, match="A TIMEOUT block was left in another task than the one that entered it."):
+        cpl.run(lambda: cpl.par(opens, drops), backend=backend)
 
 
 def texts(plan):

@@ -11,6 +11,7 @@ from systems import BACKENDS
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.kernel.clocks import make_clock
 
+from . import closed_scenarios  # noqa: F401  they join SCENARIOS
 from .scenarios import SCENARIOS
 
 IN_PYTHON = list(SCENARIOS)

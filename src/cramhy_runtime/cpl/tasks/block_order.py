@@ -78,13 +78,14 @@ def is_left_in_order(block: Block, exception: BaseException | None) -> bool:
             )
         return False
     if running is None or running.current is not me:
-        _left_elsewhere(block)
+        _left_elsewhere(block, exception)
+        return False
     if me.local.blocks[-1] is not block:
         _close_inner(block, exception)
     return True
 
 
-def _left_elsewhere(block: Block) -> None:
+def _left_elsewhere(block: Block, exception: BaseException | None) -> None:
     me = block.kernel_task
     block.discard()
     other = kernel.active()
@@ -93,8 +94,10 @@ def _left_elsewhere(block: Block) -> None:
         f"It was entered at {_entered(block)}, in {me.name}, and left at {reports.place(sys._getframe(3))}"
         f"{'' if other is None else f', in {other.current.name}'}.",
     )
-    if other is not None:
-        me.interject(lambda: _error(*texts))  # the garbage collector, which may close a generator anywhere, lets no exception out
+    if other is None:
+        return
+    me.interject(lambda: _error(*texts))
+    if not isinstance(exception, GeneratorExit):  # else it may be the garbage collector that closes it, which lets no exception out
         _error(*texts)
 
 
