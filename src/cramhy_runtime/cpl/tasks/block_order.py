@@ -12,7 +12,6 @@ A generator that makes a context manager (``contextlib.contextmanager``) does no
 from __future__ import annotations
 
 import contextlib
-import inspect
 import sys
 
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
     from .tasks import AbstractTask
     from .timeouts import Block
 
-GENERATOR = inspect.CO_GENERATOR
+GENERATOR = 0x20  # inspect.CO_GENERATOR, of a module that a prompt starts without
 PASSED = ("__enter__", "enter_context")  # functions that enter a block for the function that calls them
 _CONTEXTLIB = contextlib.__file__
 REMEDY = (
