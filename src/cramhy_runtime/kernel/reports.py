@@ -9,8 +9,8 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
-from types import FrameType
-from .typing_names import Protocol
+from types import CodeType, FrameType
+from .typing_names import Any, Protocol
 
 from .tasks import BLOCKED, PARKED
 
@@ -96,7 +96,7 @@ def unhandled(task: Named, exception: BaseException) -> None:
     installed.reporter.unhandled(task, exception)
 
 
-def where(frame):
+def where(frame: Any) -> str:
     """FRAME, or the innermost frame around it that is the user's, as text; "" if there is none."""
     while frame is not None:
         if not frame.f_code.co_filename.startswith(_HERE):
@@ -110,7 +110,7 @@ def where(frame):
     return ""
 
 
-def place(frame):
+def place(frame: Any) -> str:
     """As `where`, but code in Python counts as the user's too, whatever the reporter describes; "another place" if there is none."""
     while frame is not None:
         file = frame.f_code.co_filename
@@ -139,7 +139,7 @@ def list_of(kernel, tasks):
     return "\n".join(lines)
 
 
-def tell(text):
+def tell(text: str) -> None:
     """Print TEXT on the process's error output. If that is closed, do nothing."""
     try:
         print(f"cramhy: {text}", file=sys.stderr, flush=True)
@@ -171,7 +171,7 @@ DO_NOT_SWALLOW = (
 )
 
 
-def swallowing_text(task, place):
+def swallowing_text(task: Named, place: str) -> str:
     """The message that TASK, at PLACE, swallows every request to end it."""
     return f"The task {task.name}, at {place}, swallows every request to end it.\n{DO_NOT_SWALLOW}"
 
@@ -182,11 +182,11 @@ class Place:
     __slots__ = ("f_code", "f_lasti")
     f_back = None
 
-    def __init__(self, code, instruction):
+    def __init__(self, code: CodeType, instruction: int):
         self.f_code, self.f_lasti = code, instruction
 
     @property
-    def f_lineno(self):
+    def f_lineno(self) -> int:
         """The line of the source at which the frame was."""
         for start, end, line in self.f_code.co_lines():
             if line is not None and start <= self.f_lasti < end:

@@ -30,7 +30,7 @@ def seconds(given: object, call: str) -> float:
     A NaN is a ValueError, and what is not a real number a TypeError, a truth value too. CALL is how it was given, for the text: ``f({})``.
     """
     if given.__class__ is float and given == given or given.__class__ is int:
-        return given  # type: ignore[return-value]
+        return given
     from decimal import Decimal  # 3 ms, for those who give neither of these
     from numbers import Real
 

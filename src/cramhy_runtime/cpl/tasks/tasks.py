@@ -277,7 +277,7 @@ class AbstractTask(Generic[T]):
         return f"the plan {self.name}"
 
     def _live(self, bindings: Any) -> None:
-        me = self.kernel_task
+        me: kernel.Task[object] = self.kernel_task  # type: ignore[assignment]  # it is there before its function is called
         me.owner = self
         if bindings is not None:
             me.dynamic = bindings
@@ -312,7 +312,7 @@ class AbstractTask(Generic[T]):
 
         They are those of a failure, unless there is another failure, or the whole task was asked to end.
         """
-        me = self.kernel_task
+        me: kernel.Task[object] = self.kernel_task  # type: ignore[assignment]
         problem = close_rest(self, me.local.blocks)
         if problem is None or status is FAILED or status is EVAPORATED and me.cancel_request is not None:
             return status, result

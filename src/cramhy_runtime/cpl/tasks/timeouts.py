@@ -19,7 +19,6 @@ import sys
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Self
 
 from cramhy_runtime import kernel
-from cramhy_runtime.kernel.active import ACTIVE
 from cramhy_runtime.kernel.timers import seconds as in_seconds
 
 from cramhy_runtime.ground.conditions import error
@@ -32,7 +31,7 @@ from .pausing import obey
 
 
 if TYPE_CHECKING:
-    from types import FrameType
+    from types import CodeType, FrameType
 
     from .tasks import AbstractTask
 
@@ -55,6 +54,8 @@ class Block:
         self.task: AbstractTask[object] = None  # type: ignore[assignment]  # both are there from when it is entered
         self.kernel_task: kernel.Task[object] = None  # type: ignore[assignment]
         self.asked = self.delivered = self.struck = self.over = self.ended_before = False
+        self.exception: BaseException  # while it unwinds
+        self.place: tuple[CodeType, int]  # where it was entered: the code, the instruction
         self.level: tuple[bool, int] = (False, 0)  # what was unwinding already when it was entered
         self.generator: FrameType | None = None
 
@@ -67,7 +68,7 @@ class Block:
         if self.kernel_task is not None:
             error(f"A {self.form} block was entered twice. Make a new one for each `with`.")
         self.task = inside_plan(self.form)
-        self.kernel_task = me = ACTIVE.value.current
+        self.kernel_task = me = kernel.current()
         local = me.local
         try:
             blocks = local.blocks
@@ -131,7 +132,7 @@ class Block:
         self.generator = None
         if self.struck:
             me.unwound(self)
-            self.exception = None
+            del self.exception
         for block in blocks:
             if block.asked:
                 block.remind()
@@ -177,7 +178,7 @@ class Timeout(Block):
         self.begin(sys._getframe(1))
         seconds = self.seconds
         if seconds < INFINITY:
-            running = ACTIVE.value
+            running = self.kernel_task.kernel
             self.timer = running.call_at(running.clock.now() + (seconds if seconds > 0 else 0), self.end)
         return self
 
@@ -188,7 +189,7 @@ class Timeout(Block):
         timer = self.timer
         if timer is not None:
             # A body that swallowed the end, or computed all the time, or was shielded, is late as well.
-            late = exception is None and (self.asked or timer.time <= ACTIVE.value.clock.now())
+            late = exception is None and (self.asked or timer.time <= self.kernel_task.kernel.clock.now())
             timer.cancel()
             self.expired = ended or late or self.struck
         self.leave()
