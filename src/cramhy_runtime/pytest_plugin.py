@@ -4,9 +4,10 @@ Lisp systems can be imported as Python modules from the first test on. Every tes
 no test waits on the wall clock and none hears of another's tasks; the turtlesim starts with the first ROS node, as in the REPL.
 The fixture ``virtual_time`` gives a test a kernel of its own, on either back end (docs/testing.md). Nothing is loaded before a test
 imports a Lisp system, asks for one of the fixtures, or a Lisp file of tests is collected:
-one named ``test*``, ``*-test`` or ``*-tests`` or in a folder ``tests``, that defines tests of lisp-unit or FiveAM. It is loaded with
+one named ``test-*``, ``*-test`` or ``*-tests``, or one in a folder ``tests`` that defines tests of lisp-unit or FiveAM. It is loaded with
 the system of which it is a part. A ``.asd`` file is collected when it is named on the command line. A file ``test_*.hy`` that stays Hy
-is collected as pytest's own modules are: its functions ``(defn test-... [])`` are tests.
+is collected as pytest's own modules are (``languages/hy/collected_tests.py``). A file with such a name and without tests is an error of
+collection.
 """
 
 from __future__ import annotations
@@ -15,11 +16,13 @@ import importlib.abc
 import importlib.machinery
 import importlib.util
 import os
-import re
 import sys
 from pathlib import Path
 
 import pytest
+
+from .languages.hy import collected_tests
+from .languages.which_language import goes_on_in_lisp
 
 
 class _SystemsOnDemand(importlib.abc.MetaPathFinder):
@@ -40,7 +43,10 @@ class _SystemsOnDemand(importlib.abc.MetaPathFinder):
 
 
 class _HyStaysHy(importlib.abc.MetaPathFinder):
-    """Finds modules in Hy before pytest does, which rewrites the assertions of a test file, or of a plugin, as Python."""
+    """Finds modules in Hy before pytest does, which would read a test file, or a plugin, as Python to rewrite its assertions."""
+
+    def __init__(self, config):
+        self.config = config
 
     def find_spec(self, name, path=None, target=None):
         if "hy" not in sys.modules:
@@ -52,6 +58,10 @@ class _HyStaysHy(importlib.abc.MetaPathFinder):
             from cramhy_runtime.languages import kept_hy
 
             kept_hy.watch()
+        if collected_tests.rewrites(name, spec.origin, self.config):
+            spec.loader = collected_tests.RewritingLoader(name, spec.origin)
+            spec.loader.config = self.config
+            spec.cached = None
         return spec
 
 
@@ -68,7 +78,8 @@ def pytest_addoption(parser):
 def pytest_configure(config):
     if config.getoption("--cramhy-time"):
         os.environ["CRAMHY_TIME"] = config.getoption("--cramhy-time")
-    sys.meta_path.insert(0, _HyStaysHy())
+    config.args[:] = collected_tests.lisp_names_of_arguments(config.args)
+    sys.meta_path.insert(0, _HyStaysHy(config))
     sys.meta_path.append(_SystemsOnDemand())
 
 
@@ -116,17 +127,24 @@ def _fresh_kernel(request):
 def pytest_collect_file(file_path, parent):
     if file_path.suffix not in (".lisp", ".hy", ".asd"):
         return None
-    if _has_tests_in_hy(file_path):
+    named = parent.session.isinitpath(file_path)
+    if file_path.suffix == ".hy" and not goes_on_in_lisp(file_path):
+        if not named and not collected_tests.named_like_tests(file_path, parent.config):
+            return None
         from cramhy_runtime.languages import kept_hy  # with Hy, which teaches Python to import it
 
         kept_hy.watch()
-        return pytest.Module.from_parent(parent, path=file_path)
-    if not parent.session.isinitpath(file_path):
+        return collected_tests.HyModule.from_parent(parent, path=file_path)
+    if not named:
         from cramhy_runtime.languages.commonlisp.systems import unit_tests
 
-        if not unit_tests.looks_like_tests(file_path):
+        if not (unit_tests.looks_like_tests(file_path) or unit_tests.named_like_tests(file_path)):
             return None
     return LispFile.from_parent(parent, path=file_path)
+
+
+def pytest_pycollect_makeitem(collector, name, obj):
+    return collected_tests.make_item(collector, name, obj)
 
 
 @pytest.hookimpl(wrapper=True)
@@ -141,17 +159,6 @@ def pytest_make_collect_report(collector):
     return (yield)
 
 
-def _has_tests_in_hy(path):
-    """Whether a file has test functions of pytest, in plain Hy."""
-    if path.suffix != ".hy" or not path.name.startswith("test_"):
-        return False
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError):
-        return False
-    return re.search(r"^\(defn (\[.*\] )?test[-_]", text, re.M) is not None and not re.search(r"^\((in-package|defpackage)\b", text, re.M)
-
-
 class LispFile(pytest.File):
     """A file with tests of lisp-unit or FiveAM, or the definition of a system that has some."""
 
@@ -163,7 +170,7 @@ class LispFile(pytest.File):
 
         fresh_start()
         try:
-            tests = unit_tests.load_asd_tests(self.path) if self.path.suffix == ".asd" else unit_tests.load_tests(self.path)
+            tests = unit_tests.load_asd_tests(self.path) if self.path.suffix == ".asd" else unit_tests.tests_of_file(self.path)
         except (Exception, Condition) as problem:
             raise self.CollectError(_explained(problem)) from None
         finally:

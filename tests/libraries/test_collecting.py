@@ -312,3 +312,48 @@ def test_a_file_that_cannot_be_written_is_told_after_the_results(command):
     status, printed, problem = command("good/test-all.lisp", "--junit", "no/such/folder/results.xml")
     assert status == 1 and "1 passed in" in printed
     assert problem.startswith("cramhy: FILE-ERROR\n  Cannot write the results of the tests into no/such/folder/results.xml: No such file")
+
+
+# ------------------------------------------------------------------------------------------- every test runs, or it is told
+
+NONE = "There are no tests of lisp-unit or FiveAM in {}, though it is named like a file of tests."
+MACRO = """(defpackage :by-macro (:use :cl :lisp-unit))
+(in-package :by-macro)
+(defmacro deftest (name &body body) `(define-test ,name ,@body))
+  (deftest of-a-macro (assert-equal 1 2))
+"""
+
+
+def test_pytest_finds_tests_of_macros_and_tells_of_lisp_files_without_any(project):
+    (project / "odd").mkdir()
+    for name in ("empty-test.lisp", "test-empty.lisp", "tests.lisp"):
+        (project / "odd" / name).write_text("(defpackage :nothing (:use :cl))\n(in-package :nothing)\n(defun helper () 1)\n")
+    (project / "odd" / "macro-tests.lisp").write_text(MACRO.replace("define-test ,", "lisp-unit::define-test ,"))
+    (project / "odd" / "helper.lisp").write_text("(this is never read")
+    done = run_pytest("odd/macro-tests.lisp")
+    assert done.returncode == 1 and "1 failed" in done.stdout, done.stdout
+    done = run_pytest("odd")
+    assert done.returncode == 2 and "3 errors" in done.stdout and "passed" not in done.stdout, done.stdout
+    for name in ("empty-test.lisp", "test-empty.lisp", "tests.lisp"):
+        assert NONE.format(name) in done.stdout
+
+
+def test_a_helper_of_a_system_that_has_tests_may_be_named_like_tests(project):
+    asd = (project / "proj.asd").read_text()
+    (project / "tests" / "test-helper.lisp").write_text("(defpackage :helps (:use :cl))\n")
+    (project / "proj.asd").write_text(asd.replace('(:file "unit")', '(:file "test-helper") (:file "unit")'))
+    assert '"test-helper"' in (project / "proj.asd").read_text()
+    done = run_pytest("tests")
+    assert done.returncode == 1 and "3 failed, 2 passed, 1 skipped" in done.stdout, done.stdout
+
+
+def test_cramhy_test_never_says_passed_when_nothing_ran(command, project):
+    (project / "good" / "empty-test.lisp").write_text("(defpackage :nothing (:use :cl))\n")
+    status, printed, problem = command("good")
+    assert status == 1 and "passed" not in printed and NONE.format("empty-test.lisp") in problem
+    (project / "plain").mkdir()
+    (project / "plain" / "test_plain.hy").write_text("(defn test-plain [] (assert False))\n")
+    status, printed, problem = command("plain")
+    assert status == 1 and "passed" not in printed
+    assert printed.startswith("Not run here, since it is in plain Hy: test_plain.hy. Run pytest.\n")
+    assert "There are no tests of lisp-unit or FiveAM in plain." in problem

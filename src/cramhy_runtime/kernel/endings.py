@@ -18,7 +18,7 @@ from _thread import get_ident
 from . import reports, signals
 from .budget import budget
 from .errors import Abandoned, Deadlock, Interrupted, KernelError, Terminated, TerminatedAtOnce
-from .tasks import BLOCKED, RUNNABLE, Alarm
+from .tasks import BLOCKED, HOPELESS, RUNNABLE, Alarm
 from .typing_names import TYPE_CHECKING, NoReturn
 
 if TYPE_CHECKING:
@@ -179,12 +179,12 @@ class Endings:
             if below:
                 cleaning.add(task)
 
-    def _alarm(self, exception: BaseException, pierces_shield: bool) -> None:
-        """Raise EXCEPTION in the main task, before other tasks run."""
+    def _alarm(self, exception: BaseException, pierces_shield: bool, stays: bool = False) -> None:
+        """Raise EXCEPTION in the main task, before other tasks run. STAYS as in `Alarm`."""
         main = self.main
         if main.alarms is None:
             main.alarms = []
-        main.alarms.append(Alarm(exception, pierces_shield))
+        main.alarms.append(Alarm(exception, pierces_shield, stays))
         main.attention = True
         if main.shielded and not pierces_shield:
             return
@@ -196,8 +196,33 @@ class Endings:
             self._queue.remove(main)
             self._urgent = main
 
+    def give_up_task(self, task: Task[object]) -> None:
+        """Abandon TASK, which swallows every request to end it. The task itself calls it, at a park point."""
+        if task.swallowed == HOPELESS:
+            reports.tell(reports.swallowing_text(task, reports.place(sys._getframe())))
+        if task is not self.main:
+            task.abandon()
+
+    def give_up_part(self, task: Task[object]) -> None:
+        """Leave TASK for dead, because a part of it swallows every request to end that part. The main task is only told of."""
+        if task is not self.main:
+            self.leave_for_dead(task)
+        elif task.swallowed == HOPELESS:
+            reports.tell(reports.swallowing_text(task, reports.place(sys._getframe())))
+
     def leave_for_dead(self, task: Task[object]) -> NoReturn:
-        """Count TASK, which swallows every request to end, as dead, and never give it the baton again."""
+        """Count TASK, which swallows every request to end, as dead, and never give it the baton again. The task itself calls it.
+
+        First the owner's ``given_up`` is called, which may wait, and is not disturbed.
+        """
+        given_up = getattr(task.owner, "given_up", None)
+        if given_up is not None and not self._stopping:
+            task.abandoned = task.attention = False
+            task.shielded += 1
+            try:
+                given_up(task, reports.place(sys._getframe()))
+            except BaseException as broken:  # no code of this task hears of it
+                self._report(task, broken)
         carrier = task.carrier
         task._exception = Abandoned()
         self._bury(task)

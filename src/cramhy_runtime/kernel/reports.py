@@ -6,10 +6,11 @@ it. Until then the `PlainReporter` describes them in Python's terms.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
-from types import FrameType
-from .typing_names import Protocol
+from types import CodeType, FrameType
+from .typing_names import Any, Protocol
 
 from .tasks import BLOCKED, PARKED
 
@@ -95,7 +96,7 @@ def unhandled(task: Named, exception: BaseException) -> None:
     installed.reporter.unhandled(task, exception)
 
 
-def where(frame):
+def where(frame: Any) -> str:
     """FRAME, or the innermost frame around it that is the user's, as text; "" if there is none."""
     while frame is not None:
         if not frame.f_code.co_filename.startswith(_HERE):
@@ -107,6 +108,16 @@ def where(frame):
                 return text
         frame = frame.f_back
     return ""
+
+
+def place(frame: Any) -> str:
+    """As `where`, but code in Python counts as the user's too, whatever the reporter describes; "another place" if there is none."""
+    while frame is not None:
+        file = frame.f_code.co_filename
+        if not (of_the_library(file) or file == contextlib.__file__) and (text := describe_frame(frame) or PLAIN.describe_frame(frame)):
+            return text
+        frame = frame.f_back
+    return "another place"
 
 
 def waiting_list(kernel):
@@ -128,7 +139,7 @@ def list_of(kernel, tasks):
     return "\n".join(lines)
 
 
-def tell(text):
+def tell(text: str) -> None:
     """Print TEXT on the process's error output. If that is closed, do nothing."""
     try:
         print(f"cramhy: {text}", file=sys.stderr, flush=True)
@@ -152,6 +163,35 @@ def abandoned_text(kernel, tasks, why=""):
         f"The cleanup of {whose} was given up.{f' {why}' if why else ''} The work that it should stop may still be going on:\n"
         f"{list_of(kernel, tasks)}"
     )
+
+
+DO_NOT_SWALLOW = (
+    "Catch Exception, not BaseException or everything, or raise again what you have caught, and do not leave a `finally` by return, "
+    "break or continue."
+)
+
+
+def swallowing_text(task: Named, place: str) -> str:
+    """The message that TASK, at PLACE, swallows every request to end it."""
+    return f"The task {task.name}, at {place}, swallows every request to end it.\n{DO_NOT_SWALLOW}"
+
+
+class Place:
+    """What `where` and reporters read of a frame, without its variables. code: of its function. instruction: the frame's ``f_lasti``."""
+
+    __slots__ = ("f_code", "f_lasti")
+    f_back = None
+
+    def __init__(self, code: CodeType, instruction: int):
+        self.f_code, self.f_lasti = code, instruction
+
+    @property
+    def f_lineno(self) -> int:
+        """The line of the source at which the frame was."""
+        for start, end, line in self.f_code.co_lines():
+            if line is not None and start <= self.f_lasti < end:
+                return line
+        return self.f_code.co_firstlineno
 
 
 def deadlock_text(kernel):

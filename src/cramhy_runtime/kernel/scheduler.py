@@ -29,7 +29,7 @@ from .endings import CLEANUP_LIMIT, PATIENCE, Endings
 from .errors import Cancelled, Deadlock, Interrupted, KernelError, NoStack, Terminated, TimeLimit
 from .inbox import Outside
 from .tasks import BLOCKED, DEAD, PARKED, RUNNABLE, RUNNING, SETTLING, SchedulerTask, Task, shield
-from .timers import TimerHeap, Timing
+from .timers import TimerHeap, Timing, seconds
 from .typing_names import TYPE_CHECKING, NoReturn, TypeVar, TypeVarTuple
 
 if TYPE_CHECKING:
@@ -73,8 +73,7 @@ class Kernel(Endings, Outside, Timing):
     ):
         self.clock = make_clock(clock)
         self.backend = make_backend(backend)
-        self.time_limit = time_limit
-        self._limit = time_limit
+        self.time_limit = self._limit = None if time_limit is None else seconds(time_limit, "time_limit={}")
         self.seed: Seed | None = seed
         self._choose = None if seed is None else seed if callable(seed) else lots(seed)
         self._queue: deque[Task[object]] = deque()
@@ -577,7 +576,7 @@ class Kernel(Endings, Outside, Timing):
         return bool(self._queue or self._inbox)
 
     def _reach_limit(self) -> None:
-        self._alarm(TimeLimit(reports.time_limit_text(self, self.time_limit)), True)
+        self._alarm(TimeLimit(reports.time_limit_text(self, self.time_limit)), True, stays=True)
         self._limit = self.clock.now() + self.time_limit  # what is left to do in cleanup gets as long again
 
     def _call(self, fn: Callback) -> None:

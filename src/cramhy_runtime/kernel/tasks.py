@@ -4,9 +4,10 @@ CRAM's `task` object is in the room `cpl`, with its status fluent and its messag
 that runs on a stack of its own, a place in the tree (every task has one parent), a request to end that is delivered once, and
 a result or an exception for the task that joins it.
 
-Laws kept here: a request to end is delivered exactly once, at a park point or checkpoint, and another request does not disturb
-the cleanup that runs after that. A task that is cancelled before it ran never runs. An exception is never lost: if no code
-handles it, the user is told (`kernel.unhandled`).
+Laws kept here: a request to end is delivered at a park point or checkpoint. While its exception unwinds the stack, cleanup runs, and
+no request disturbs it, however long it waits. If code swallows the exception, the request is delivered again at the next such point, as
+trio does it. The same holds for a request to end a part of the stack (`Part`). A task that is cancelled before it ran never runs. An
+exception is never lost: if no code handles it, the user is told (`kernel.unhandled`).
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from types import SimpleNamespace
 
 from .budget import budget
 from .errors import Abandoned, Cancelled, KernelError
-from .typing_names import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar, subscripted
+from .typing_names import TYPE_CHECKING, Any, Generic, NoReturn, Protocol, TypeVar, subscripted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,7 +35,7 @@ SETTLING = "settling"
 BLOCKED = "blocked"  # outside of the kernel, in `run_blocking`
 DEAD = "dead"
 
-HOPELESS = 100  # times that a task may swallow what ends it before it gets no more; after as many `Abandoned` it is left for dead
+HOPELESS = 1000  # times in a row that a task may swallow what ends it, or a part of it, before it is given up
 
 T = TypeVar("T", covariant=True, default=Any)
 
@@ -42,15 +43,16 @@ T = TypeVar("T", covariant=True, default=Any)
 class Task(Generic[T]):
     """A task, made by `spawn`. Read `name`, `parent`, `state`, `dead`, `result`, `exception`; use `cancel` and `join`.
 
-    T is the type of its function's result. `owner` is for the floor above: its own object for which this task runs. `local` is a
-    namespace for other data of the task.
+    T is the type of its function's result. `owner` is for the floor above: its own object for which this task runs. If that has a method
+    ``given_up``, it is called with the task and a place, a text, on the task's own stack, before the task is left for dead because it
+    swallows what ends it. `local` is a namespace for other data of the task.
     """
 
     __slots__ = (
         "kernel", "id", "_name", "parent", "owner", "_local", "dynamic", "handlers", "result", "cancelled_delivered",
         "state", "why", "carrier", "attention", "woken", "ticket", "timed", "preempted", "shielded", "alarms", "abandoned",
         "fn", "args", "context", "joiners", "cancel_request", "interjections", "delivered",
-        "swallowed", "_exception", "claimed", "when_refused", "cleanup",
+        "swallowed", "_exception", "claimed", "when_refused", "cleanup", "parts",
         "__weakref__",
     )  # fmt: skip
     __class_getitem__ = subscripted
@@ -92,6 +94,7 @@ class Task(Generic[T]):
         self.claimed = False
         # called with the exception, in the scheduler, if the system gives no stack for it
         self.when_refused: Callable[[BaseException], object] | None = None
+        self.parts: list[Part] | None = None  # of its stack, that unwind at present, the innermost last
 
     @property
     def name(self) -> str:
@@ -223,13 +226,20 @@ class Task(Generic[T]):
                 if alarm.pierces_shield or not self.shielded:
                     self.alarms.remove(alarm)
                     self._look_again()
-                    raise alarm.exception() if callable(alarm.exception) else alarm.exception
+                    exception = alarm.exception() if callable(alarm.exception) else alarm.exception
+                    if alarm.stays and self.owner is not None:
+                        self._goes_on_until_unwound(exception)
+                    raise exception
+        if self.parts and not self.shielded:
+            self._look_for_swallowed_parts()
         if self.cancel_request is not None and not self.cancelled_delivered and not self.shielded:
             self.delivered = exception = self._cancellation()
             self.cancelled_delivered = self.attention = True  # for code that swallows it
             raise exception
-        if self.delivered is not None and not self.shielded and self.swallowed < HOPELESS and not _on_its_way(self.delivered):
+        if self.delivered is not None and not (self.shielded or self.parts or _on_its_way(self.delivered)):
             self.swallowed += 1
+            if self.swallowed >= HOPELESS:
+                self.kernel.give_up_task(self)
             raise self.delivered
         if self.interjections and not self.shielded:
             functions, self.interjections = self.interjections, None
@@ -248,24 +258,51 @@ class Task(Generic[T]):
 
     def _look_again(self) -> None:
         waiting = self.cancel_request is not None and not self.cancelled_delivered
-        self.attention = waiting or self.delivered is not None or bool(self.alarms) or bool(self.interjections) or self.abandoned
+        self.attention = bool(waiting or self.parts or self.delivered is not None or self.alarms or self.interjections or self.abandoned)
 
-    def unwinds(self) -> None:
-        """Protect the cleanup in a part of the task's own stack that it is ending, until `unwound`. The task itself calls it.
+    def unwinds(self, part: Part) -> None:
+        """Protect the cleanup in ``part`` of the task's own stack, until `unwound`. The task itself calls it, then raises the exception.
 
-        A request to end the task that comes meanwhile is delivered after that.
+        A request to end the task that comes meanwhile is delivered after that. ``part.again()`` is called at the next park point or
+        checkpoint after the exception was swallowed.
         """
-        self.cancelled_delivered = True
+        if self.parts is None:
+            self.parts = []
+        part.ended_before = self.cancelled_delivered
+        self.parts.append(part)
+        self.cancelled_delivered = self.attention = True
 
-    def unwound(self) -> None:
-        """End the protection of `unwinds`: the part of the stack is gone, and the task lives on."""
-        self.cancelled_delivered = False
+    def unwound(self, part: Part) -> None:
+        """End the protection of `unwinds`: ``part`` is gone, and the task lives on."""
+        if self.parts and part in self.parts:
+            self.cancelled_delivered = part.ended_before
+            del self.parts[self.parts.index(part) :]
+            if self.delivered is None:
+                self.swallowed = 0
         self._look_again()
+
+    def _look_for_swallowed_parts(self) -> None:
+        while self.parts and not _on_its_way(self.parts[-1].exception):
+            part = self.parts.pop()
+            self.cancelled_delivered = part.ended_before
+            self.swallowed += 1
+            if self.swallowed >= HOPELESS:
+                self.kernel.give_up_part(self)
+            part.again()
+        self._look_again()
+
+    def _goes_on_until_unwound(self, exception: BaseException) -> None:
+        """Deliver EXCEPTION, an alarm, as a request to end the task is delivered: again, if it is swallowed."""
+        self.cancel_request = self.cancel_request or (exception,)
+        self.delivered = exception
+        self.cancelled_delivered = self.attention = True
 
     def spare(self) -> None:
         """Forget the request to end the task, though it is alive: only the plan that the main task ran has ended."""
-        self.cancel_request = self.delivered = None
-        self.unwound()
+        self.cancel_request = self.delivered = self.parts = None
+        self.cancelled_delivered = False
+        self.swallowed = 0
+        self._look_again()
 
     def _cancellation(self) -> BaseException:
         (reason,) = self.cancel_request
@@ -295,14 +332,28 @@ def _on_its_way(exception: BaseException) -> bool:
     return handled is not None
 
 
+class Part(Protocol):
+    """A part of a task's stack that unwinds, because its ``exception`` was raised in it. See `Task.unwinds`."""
+
+    exception: BaseException
+    ended_before: bool  # whether something around the part was unwinding already
+
+    def again(self) -> None:
+        """Called when the exception was swallowed: have the part ended again, by `Task.interject`."""
+
+
 class Alarm:
-    """An exception to raise in a task besides a cancellation: an interrupt, a deadlock, the time limit, the end of a wait."""
+    """An exception to raise in a task besides a cancellation: an interrupt, a deadlock, the time limit, the end of a wait.
 
-    __slots__ = ("exception", "pierces_shield")
+    stays: in a task with an owner, a plan, it is raised again if it is swallowed, until `Task.spare`.
+    """
 
-    def __init__(self, exception: BaseException | Callable[[], BaseException], pierces_shield: bool):
+    __slots__ = ("exception", "pierces_shield", "stays")
+
+    def __init__(self, exception: BaseException | Callable[[], BaseException], pierces_shield: bool, stays: bool = False):
         self.exception = exception
         self.pierces_shield = pierces_shield
+        self.stays = stays
 
 
 class SchedulerTask(Task[object]):

@@ -24,6 +24,24 @@ SWEEP_FROM = 64  # stale entries below this number are not worth a sweep
 MAX_LAG = 1.0  # s; a periodic timer that is later than this (the process slept) leaves firings out
 
 
+def seconds(given: object, call: str) -> float:
+    """GIVEN, a number of seconds, as a number that the clock can add. Infinity means no limit.
+
+    A NaN is a ValueError, and what is not a real number a TypeError, a truth value too. CALL is how it was given, for the text: ``f({})``.
+    """
+    if given.__class__ is float and given == given or given.__class__ is int:
+        return given
+    from decimal import Decimal  # 3 ms, for those who give neither of these
+    from numbers import Real
+
+    if isinstance(given, bool) or not isinstance(given, (Real, Decimal)):
+        raise TypeError(f"{call.format(repr(given))}: give a number of seconds, or float('inf') for no limit.")
+    number = float(given)
+    if number != number:
+        raise ValueError(f"{call.format(number)}: this is not a number. Give a number of seconds, or float('inf') for no limit.")
+    return number
+
+
 class Timer:
     """A callback that fires once, or again and again until `cancel`. `call_at` and `call_every` make it."""
 

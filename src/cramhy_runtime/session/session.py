@@ -236,6 +236,8 @@ class Session:
         try:
             wanted = None if only is None else {name.rpartition(":")[2].upper() for name in only}
             tests = [each for each in self._tests(path) if wanted is None or each.name.upper() in wanted]
+            if wanted and (missing := sorted(wanted - {each.name.upper() for each in tests})):
+                conditions.error("~a", f"There is no test called {' or '.join(missing)} in {path}. No test was run.")
             results = [test_reports.Result(*result) for result in unit_tests.run_all(tests)]
             system = (
                 None if results or Path(path).suffix in (".lisp", ".hy") or Path(path).is_dir() else systems.find_system(Path(path).stem)
@@ -260,8 +262,7 @@ class Session:
         if not Path(path).is_dir() and self._is_missing_file(path):
             self._no_file(path)
         if Path(path).is_dir():
-            files = sorted(file for file in Path(path).rglob("*") if unit_tests.looks_like_tests(file))
-            return [test for file in files for test in unit_tests.load_tests(file)]
+            return unit_tests.tests_of_folder(path)
         if path.endswith((".lisp", ".hy")):
             return unit_tests.load_tests(path)
         if path.endswith(".asd"):

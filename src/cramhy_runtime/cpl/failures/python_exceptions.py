@@ -52,7 +52,8 @@ def raise_in_python(condition: BaseException) -> NoReturn:
         raise problem
     finally:
         active = kernel.active()
-        if active is None or active.current.delivered is None:  # else the kernel looks at the contexts for what ends the task
+        me = None if active is None else active.current
+        if me is None or not (me.delivered or me.parts):  # else the kernel looks at the contexts for what ends the task
             problem.__context__ = context  # not what Python finds in the air when this is called in an __exit__ method
         del problem, condition
 

@@ -15,6 +15,7 @@ why a form failed, and its siblings were evaporated for it.
 
 from __future__ import annotations
 
+import sys
 from functools import partial
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, ParamSpec, Self, TypeVar
 
@@ -22,6 +23,7 @@ from cramhy_runtime import kernel
 
 from cramhy_runtime.ground.condition_types import Condition
 from cramhy_runtime.ground.conditions import error
+from ..tasks.block_order import is_left_in_order
 from ..tasks.timeouts import Block
 from ..failures.python_exceptions import raise_in_python
 from ..tasks.branches import Branches
@@ -79,9 +81,13 @@ class BranchBlock(Block):
         return list(self.branches.tasks)
 
     def __enter__(self) -> Self:
-        super().__enter__()
+        self.begin(sys._getframe(1))
         self.branches = _Watched(self)
         return self
+
+    def discard(self) -> None:
+        self.branches.end()
+        super().discard()
 
     def start(self, function: Callable[P, T], /, *arguments: P.args, **keywords: P.kwargs) -> Task[T]:
         """Start ``function(*arguments, **keywords)`` as a branch and return its task. The branch runs when the current task waits.
@@ -108,6 +114,8 @@ class BranchBlock(Block):
         return task
 
     def __exit__(self, kind: object, exception: BaseException | None, traceback: object) -> bool | None:
+        if not is_left_in_order(self, exception):
+            return False
         ended = self.ended_by(exception)
         branches = self.branches
         problem: BaseException | None = None

@@ -19,6 +19,7 @@ from cramhy_runtime import kernel
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import NO_VALUES
 from ..tree import finished_plans
+from ..failures.failure_types import opened
 from ..failures.python_exceptions import for_python, raise_in_python
 from ..current import current_task
 from ..tasks.ending import close_plan
@@ -85,6 +86,9 @@ def plan(
             except BaseException as exception:
                 problem = exception
                 status, result = task.outcome(exception)
+            if getattr(me.local, "blocks", None):
+                status, result = task.close_blocks(status, result)
+                problem = problem if status is not FAILED or problem is not None else opened(result)
             _end(list(task.children))
         finally:
             task._die(status, result)

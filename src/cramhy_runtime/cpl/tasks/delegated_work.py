@@ -43,7 +43,7 @@ class Errand(Block):
         """
         if self.asked:
             return EVAPORATED, NO_VALUES
-        self.__enter__()
+        self.begin(None)
         task, me = self.task, self.kernel_task
         path, node, outer, handlers = task.path, task.node, me.dynamic, me.handlers
         self.children = tuple(task.children) if task.children else ()
@@ -85,12 +85,12 @@ class Errand(Block):
         if self.over or self.delivered or level(me) != self.level:
             return
         self._end_children()
+        if self.limit is not None:
+            self.limit.end()  # of an end that the body swallowed
         task.cleanup_limit = self.limit = limit_cleanup(task)
-        self.delivered = True
-        me.unwinds()
         if task.status is SUSPENDED:
             task.change_status(RUNNING)
-        raise BlockEnded(self)
+        self.strike()
 
     def leave(self) -> None:
         if self.limit is not None:

@@ -19,6 +19,7 @@ from cramhy_runtime.kernel.images import Cell
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.reports import where
 from cramhy_runtime.kernel.tasks import PARKED, shield
+from cramhy_runtime.kernel.timers import seconds as in_seconds
 
 from cramhy_runtime.ground.condition_types import SimpleWarning
 from cramhy_runtime.ground.conditions import warn
@@ -173,9 +174,9 @@ def cleanup_time_limit(seconds: float | None) -> binding:
     """``with cleanup_time_limit(5.0):`` limits the cleanup of plans that start in the block, in seconds of the kernel's clock.
 
     It binds ``*cleanup-time-limit*``. ``None`` means that there is no limit. When the time is over, waits in the cleanup are ended, with
-    a warning.
+    a warning. A NaN is a ValueError, and what is not a number a TypeError.
     """
-    return binding(CLEANUP_TIME_LIMIT, seconds)
+    return binding(CLEANUP_TIME_LIMIT, None if seconds is None else in_seconds(seconds, "cpl.cleanup_time_limit({})"))
 
 
 # ------------------------------------------------------------------------------------------------------------ the whole plan

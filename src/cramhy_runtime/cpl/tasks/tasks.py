@@ -33,6 +33,8 @@ from cramhy_runtime.ground.source_places import locate
 from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.looking_on import only_looked_at
 from ..current import current_task
+from cramhy_runtime.kernel.reports import DO_NOT_SWALLOW
+from .block_order import close_rest
 from .ending import LIMIT, end_tasks, end_waits, limit_cleanup
 from ..failures.failure_types import PlanFailure, envelope, opened
 from ..failures.handling import signal_failure
@@ -275,7 +277,7 @@ class AbstractTask(Generic[T]):
         return f"the plan {self.name}"
 
     def _live(self, bindings: Any) -> None:
-        me = self.kernel_task
+        me: kernel.Task[object] = self.kernel_task  # type: ignore[assignment]  # it is there before its function is called
         me.owner = self
         if bindings is not None:
             me.dynamic = bindings
@@ -288,12 +290,10 @@ class AbstractTask(Generic[T]):
             if self.held:
                 obey(self)
             status = SUCCEEDED
-        except kernel.WaitEnded as exception:
-            status, result = self.outcome(exception)
-        except kernel.Cancelled:
-            status, result = EVAPORATED, NO_VALUES
         except BaseException as exception:
             status, result = self.outcome(exception)
+        if me._local is not None and getattr(me._local, "blocks", None):
+            status, result = self.close_blocks(status, result)
         if self.children:
             try:
                 end_tasks(list(self.children), "Parent succeeded." if status is SUCCEEDED else "Parent aborted.")
@@ -306,6 +306,38 @@ class AbstractTask(Generic[T]):
         if self.unclaimed:
             self.tell_unclaimed(self.unclaimed)
         self._die(status, result)
+
+    def close_blocks(self, status: Keyword, result: Any) -> tuple[Keyword, Any]:
+        """Close the ``with`` blocks that the task, which ends, left open (``block_order.py``). Returns its status and result.
+
+        They are those of a failure, unless there is another failure, or the whole task was asked to end.
+        """
+        me: kernel.Task[object] = self.kernel_task  # type: ignore[assignment]
+        problem = close_rest(self, me.local.blocks)
+        if problem is None or status is FAILED or status is EVAPORATED and me.cancel_request is not None:
+            return status, result
+        return FAILED, envelope(problem)
+
+    def given_up(self, kernel_task: kernel.Task[object], place: str) -> None:
+        """End the task as a failed one, because it swallows every request to end it or a block in it. The kernel calls it on its stack.
+
+        place: where it does so, a text. Its branches end first (law 1). Its cleanup does not run: it is left where it is.
+        """
+        if kernel_task is not self.kernel_task or self.dead:
+            return
+        end_tasks(list(self.children), "Parent aborted.")
+        self.end_threads(self.threads)
+        close_rest(self, getattr(kernel_task.local, "blocks", []))
+        self._die(
+            FAILED,
+            envelope(
+                types.SimpleError(
+                    "~a",
+                    f"The task swallows every request to end it, at {place}. It was left where it is, and its other cleanup did not run. "
+                    f"{DO_NOT_SWALLOW}",
+                )
+            ),
+        )
 
     def tell_unclaimed(self, tasks: Iterable[AbstractTask[object]]) -> None:
         """Tell the user of failed ``tasks`` that the body made, if the body never asked for their results (law 3)."""

@@ -21,6 +21,7 @@ from cramhy_runtime.ground.conditions import SimpleError, error
 from cramhy_runtime.ground.data import list_from
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import sym
+from ...which_language import goes_on_in_lisp
 from ..streams.stream_functions import get_output_stream_string, make_string_output_stream
 from ..streams.streams import STANDARD_OUTPUT
 from . import loader, systems
@@ -217,6 +218,42 @@ def looks_like_tests(path):
         return DEFINES_TESTS.search(path.read_text(encoding="utf-8")) is not None
     except (OSError, UnicodeDecodeError):
         return False
+
+
+NAMED_LIKE_TESTS = late_pattern(r"^tests?$|^tests?[-_]|[-_]tests?$")
+
+
+def named_like_tests(path):
+    """Whether a file of Lisp has a name that says that there are tests in it: ``tests``, ``test-drive``, ``drive-tests``."""
+    path = Path(path)
+    return path.suffix in (".lisp", ".hy") and NAMED_LIKE_TESTS.search(path.stem) is not None
+
+
+def tests_of_file(path):
+    """As `load_tests`. No test is an error, except in a helper: a file of a system in which other files define tests."""
+    path = Path(path).absolute()
+    tests = load_tests(path)
+    if not tests:
+        system = system_of_file(path)
+        if system is None or not defined_tests([component.pathname for component in systems.files_of(system)]):
+            error(
+                SimpleError("~a", f"There are no tests of lisp-unit or FiveAM in {path.name}, though it is named like a file of tests."),
+                hint="If the file is a helper of tests, give it a name that does not begin or end with `test` or `tests`.",
+            )
+    return tests
+
+
+def tests_of_folder(folder):
+    """The tests in the files of tests below ``folder``. A file that is named like one of tests and has none is an error.
+
+    Files of tests in plain Hy, which pytest runs, are named on ``*standard-output*``.
+    """
+    files = sorted(file for file in Path(folder).rglob("*") if looks_like_tests(file) or named_like_tests(file))
+    plain = [file for file in files if file.suffix == ".hy" and not goes_on_in_lisp(file)]
+    if plain:
+        names = ", ".join(file.name for file in plain)
+        STANDARD_OUTPUT.value.write(f"Not run here, since {'it is' if len(plain) == 1 else 'they are'} in plain Hy: {names}. Run pytest.\n")
+    return [test for file in files if file not in plain for test in tests_of_file(file)]
 
 
 def system_of_file(path):
