@@ -53,6 +53,8 @@ EXCEPT = {
     ("cli/servers.py", "save"): "pictures.save",
     ("chronicle/chronicler.py", "move"): "a thing in a robot's world",
     ("swank/calls/compiling.py", "mkdtemp"): "a folder for what Emacs compiles, which goes with the connection",
+    ("swank/sockets.py", "link"): "the name of a socket, which has no content",
+    ("swank/sockets.py", "rename"): "as above",
     ("robot_world/pictures/stills.py", "save"): "into memory, from which storage writes it",
     ("languages/commonlisp/faces/robot_world/picture_calls.py", "save"): "Movie.save, which writes by way of storage",
     ("jupyter/pictures.py", "save"): "into memory, for a notebook",

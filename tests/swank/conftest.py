@@ -8,7 +8,7 @@ from cramhy_runtime import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.languages.commonlisp.streams import streams as lisp_streams
 from cramhy_runtime.session.session import Session
-from cramhy_runtime.swank import package, streams
+from cramhy_runtime.swank import package, server, streams
 
 from .client import Emacs
 
@@ -30,3 +30,26 @@ def session():
 def emacs(session):
     """An `Emacs` that is connected."""
     return Emacs(session)
+
+
+@pytest.fixture
+def home(tmp_path, monkeypatch):
+    """A home of its own, without a secret."""
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("USERPROFILE", str(tmp_path))
+    return tmp_path
+
+
+@pytest.fixture
+def serve(session, home):
+    """``serve(...)``: a server of the session; ``serve.logged`` has what the user is told."""
+
+    def serve(*arguments, **options):
+        found = server.serve(session, serve.logged.append, *arguments, **options)
+        opened.append(found)
+        return found
+
+    serve.logged, opened = [], []
+    yield serve
+    for each in opened:
+        each.close()
