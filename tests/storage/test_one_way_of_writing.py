@@ -53,6 +53,7 @@ EXCEPT = {
     ("cli/servers.py", "save"): "pictures.save",
     ("chronicle/chronicler.py", "move"): "a thing in a robot's world",
     ("swank/calls/compiling.py", "mkdtemp"): "a folder for what Emacs compiles, which goes with the connection",
+    ("repl/answer_streams.py", "TemporaryFile"): "what a form prints, until its answer is sent",
     ("swank/sockets.py", "link"): "the name of a socket, which has no content",
     ("swank/sockets.py", "rename"): "as above",
     ("robot_world/pictures/stills.py", "save"): "into memory, from which storage writes it",

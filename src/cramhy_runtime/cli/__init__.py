@@ -279,14 +279,15 @@ def _browser(options):
 def _eval(options):
     from cramhy_runtime.languages.commonlisp.streams import streams
     from cramhy_runtime.ground.conditions import Condition
-    from cramhy_runtime.repl import json_lines
+    from cramhy_runtime.repl import answer_streams, json_lines
     from cramhy_runtime.repl.console import report
     from cramhy_runtime.repl.session import Interruption, condition_of
 
     if not _checked(options):
         return 2
     streams.STANDARD_OUTPUT.value = streams.CONSOLE_ERROR  # standard output is for the answers
-    with ExitStack() as closings:
+    out = sys.stdout
+    with answer_streams.turned_aside() as descriptors, ExitStack() as closings:
         try:
             made = session(options, closings)
         except Interruption:
@@ -294,7 +295,7 @@ def _eval(options):
         except (Exception, Condition) as problem:
             report(condition_of(problem))
             return 1
-        json_lines.serve(made)
+        json_lines.serve(made, out=out, descriptors=descriptors)
 
 
 def _run(options):

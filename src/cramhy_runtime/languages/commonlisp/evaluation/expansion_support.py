@@ -60,7 +60,8 @@ def case_failure(value, operator, possibilities):
 def ask_for_value(value, operator, possibilities):
     """Signal that no clause fits, with a restart STORE-VALUE; returns the value to try next."""
     return conditions.restart_case(
-        [(sym("STORE-VALUE"), lambda new: new, "Supply a new value.", conditions.ask_value)], lambda: error(CaseFailure(value, operator, possibilities))
+        [(sym("STORE-VALUE"), lambda new: new, "Supply a new value.", conditions.ask_value)],
+        lambda: error(CaseFailure(value, operator, possibilities)),
     )
 
 
