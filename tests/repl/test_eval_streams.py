@@ -28,7 +28,7 @@ WAYS = {
     "subprocess": ('(py:call "subprocess.run" (py:list (list "echo" "1")))', "1\n"),
     "subprocess into sys.stdout": ("(py:exec \"import subprocess, sys; subprocess.run(['echo', '1'], stdout=sys.stdout)\")", "1\n"),
     "signs that are not ASCII": ('(py:call "os.system" "echo ü→")', "ü→\n"),
-    "bytes that are no text": ("(py:eval \"__import__('os').write(1, b'\\xff')\")", "\ufffd"),
+    "bytes that are no text": ("(py:eval \"__import__('os').write(1, bytes([255]))\")", "\ufffd"),
     "all in their order": (
         '(progn (princ 1) (py:print 2) (py:call "os.system" "echo 3; echo 4 1>&2") (princ 5) (py:call "os.system" "printf 6") (fresh-line)'
         " (princ 7))",

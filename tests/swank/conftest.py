@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 
 from cramhy_runtime import kernel
@@ -19,7 +21,9 @@ def session():
     made = Session(time="virtual", turtlesim=False)
     package.stand_in()
     saved = [(variable, variable.value) for variable in (*streams.VARIABLES, lisp_streams.STANDARD_INPUT, lisp_streams.TERMINAL_IO)]
+    files = sys.stdin, sys.stdout, sys.stderr
     yield made
+    sys.stdin, sys.stdout, sys.stderr = files
     for variable, value in saved:
         variable.value = value
     conditions.install_router(None)

@@ -86,6 +86,7 @@ def run(made, connection_file):
     def stop():
         io_loop.add_callback_from_signal(io_loop.stop)
 
+    served.end = stop
     parent = os.getppid()
     poller = ioloop.PeriodicCallback(lambda: stop() if os.getppid() != parent else None, LOOK)
     poller.start()
@@ -95,4 +96,4 @@ def run(made, connection_file):
         kernel.yield_()  # what woke us is raised here
     finally:
         plans.count_outside(-1)
-    return 0
+    return served.leaving if isinstance(served.leaving, int) else int(served.leaving is not None)

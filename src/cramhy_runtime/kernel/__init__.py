@@ -48,6 +48,7 @@ from .active import (
     checkpoint,
     choice_point,
     current,
+    holds_baton,
     interrupt,
     interrupt_over,
     now,
@@ -86,8 +87,8 @@ from .waiting import Waiting
 __all__ = [
     "Abandoned", "CLEANUP_LIMIT", "Cancelled", "Deadlock", "Interrupted", "Kernel", "KernelError", "Task", "Terminated", "TimeLimit",
     "Timer", "VirtualClock", "WaitEnded", "Waiting", "WallClock", "active", "allow_deep_recursion", "aside", "at_hand", "call_at",
-    "call_every", "checkpoint", "choice_point", "cleanup", "cleanup_here", "current", "describe_frame", "install_reporter", "interrupt",
-    "interrupt_over", "limit_by", "now", "outside_source", "pace", "park", "post", "refill", "run_blocking", "set_clock", "settle",
-    "shield", "sleep", "slice_over", "spawn", "start", "stop", "time_held", "time_limited", "time_wanted", "unhandled", "unpark",
-    "woken_by", "yield_",
+    "call_every", "checkpoint", "choice_point", "cleanup", "cleanup_here", "current", "describe_frame", "holds_baton",
+    "install_reporter", "interrupt", "interrupt_over", "limit_by", "now", "outside_source", "pace", "park", "post", "refill",
+    "run_blocking", "set_clock", "settle", "shield", "sleep", "slice_over", "spawn", "start", "stop", "time_held", "time_limited",
+    "time_wanted", "unhandled", "unpark", "woken_by", "yield_",
 ]  # fmt: skip
