@@ -28,7 +28,7 @@ QUESTIONS = [
     "(handler-bind ((error (lambda (c) c (invoke-restart-interactively 'use-value)))) (symbol-value 'unbound-here))",
     "(handler-bind ((type-error (lambda (c) c (invoke-restart-interactively 'store-value)))) (let ((x 1)) (check-type x string) x))",
     "(handler-bind ((type-error (lambda (c) c (invoke-restart-interactively 'store-value)))) (let ((x 1)) (ccase x (2 :two))))",
-    "(handler-bind ((error (lambda (c) c (invoke-restart-interactively 'continue)))) (let ((x 1)) (assert (= x 2) (x)) x))",
+    "(handler-bind ((simple-error (lambda (c) c (invoke-restart-interactively 'continue)))) (let ((x 1)) (assert (= x 2) (x)) x))",
 ]
 
 

@@ -17,7 +17,7 @@ PRINTED = {
     "sys.stdout": "(py:exec \"import sys; sys.stdout.write('1' + chr(10))\")",
     "several lines": "(py:exec \"import sys; sys.stdout.writelines(['1', chr(10)])\")",
     "sys.stderr": "(py:exec \"import sys; sys.stderr.write('1' + chr(10))\")",
-    "bytes": "(py:exec \"import sys; sys.stdout.buffer.write(bytes([49, 10]))\")",
+    "bytes": '(py:exec "import sys; sys.stdout.buffer.write(bytes([49, 10]))")',
     "print to a file": '(py:exec "import sys; print(1, file=sys.stderr)")',
     "in a branch of a plan": "(cpl:top-level (cpl:par (py:print 1)))",
 }

@@ -17,6 +17,9 @@ from contextlib import ExitStack, contextmanager
 from . import start_modules
 from .process_environment import check_for_session, ends_if_missing, in_any_surroundings
 
+INTERACTIVE = ("repl", "learn", "swank", "jupyter", "eval")
+"""The commands whose users may interrupt a form."""
+
 
 @ends_if_missing
 def session(options, closings, opened=True):
@@ -33,6 +36,10 @@ def session(options, closings, opened=True):
     from cramhy_runtime.session.session import packages_above
     from .options import DEFAULT_TIMES
 
+    if options.command in INTERACTIVE:
+        from cramhy_runtime.kernel import patient_calls
+
+        patient_calls.install()
     packages_above["COURSE"] = _define_course
     backtrace.show(options.backtrace)
     check_for_session(options.backend)

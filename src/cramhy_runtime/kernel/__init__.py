@@ -21,8 +21,9 @@ timer, and the virtual clock jumps there. The wall clock is the same with a pace
 Where the parts are:
 
 * `scheduler`  the baton, the queue, the next task; `endings` interrupts, stopping, unhandled failures; `uncaught` exceptions that
-  end the program; `signals` of the system; `inbox` other threads and calls that block; `standard_input` typed lines; `terminals` keys
-  and modes; `asyncio_thread` a thread of the system that serves clients, and its share of the processor
+  end the program; `signals` of the system; `inbox` other threads and calls that block; `patient_calls` Python's own that wait;
+  `standard_input` typed lines; `terminals` keys and modes; `asyncio_thread` a thread of the system that serves clients, and its share
+  of the processor
 * `tasks`      a task, its end, the request to end; `cleanup` the cleanup of a task that ends
 * `timers`, `clocks`, `throttle` (of virtual time for spectators), `budget` (the count of checkpoints), `reports` (for people), `errors`
 * `waiting`    tasks that wait for a change, made of the functions below
