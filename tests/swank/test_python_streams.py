@@ -46,6 +46,17 @@ def test_what_python_asks_is_asked_in_emacs(capsys, session, way):
     assert capsys.readouterr() == ("", "")
 
 
+@pytest.mark.parametrize(
+    "form", ['(swank:eval-and-grab-output "(progn (py:print 1) 2)")', '(swank:eval-and-grab-output "(progn (princ 1) (terpri) 2)")']
+)
+def test_a_key_that_collects_what_a_form_prints_collects_what_python_prints(session, form):
+    assert Emacs(session).call(form) == ["1\n", "2"]
+
+
+def test_lisp_collects_what_python_prints_in_a_form_of_emacs(session):
+    assert Emacs(session).repl("(length (with-output-to-string (*standard-output*) (py:print 123)))") == "4\n"
+
+
 def lisp(text):
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 

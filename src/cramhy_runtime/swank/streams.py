@@ -15,7 +15,7 @@ from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.streams.python_files import InputFile, OutputFile
 from cramhy_runtime.session.requests import request_of
 
-FILES = ("stdout", "stderr", "stdin")
+FILES = {"stdout": streams.STANDARD_OUTPUT, "stderr": streams.ERROR_OUTPUT, "stdin": streams.STANDARD_INPUT}
 VARIABLES = (streams.STANDARD_OUTPUT, streams.ERROR_OUTPUT, streams.TRACE_OUTPUT)
 
 
@@ -96,11 +96,19 @@ class RoutedFile:
 
 
 class RoutedOutputFile(RoutedFile):
-    """``sys.stdout`` or ``sys.stderr``."""
+    """``sys.stdout`` or ``sys.stderr``. variable: the one of Lisp whose stream it follows where a form of Emacs has bound it."""
+
+    def __init__(self, output, before, variable):
+        super().__init__(output, before)
+        self.variable = variable
 
     def _file(self):
         connection = self.connection()
-        return self.before if connection is None else OutputFile(connection.write)
+        if connection is None:
+            return self.before
+        bound = self.variable.value if kernel.holds_baton() else None
+        collects = isinstance(bound, streams.OutputStream) and not isinstance(bound, (RoutedOutput, streams.ConsoleOutput))
+        return OutputFile(bound.write if collects else connection.write)
 
     def write(self, text):
         return self._file().write(text)
@@ -138,8 +146,8 @@ def route(server, alone):
     for name in FILES:
         file = getattr(sys, name)
         if file is not None and not is_routed(file):
-            kind = RoutedInputFile if name == "stdin" else RoutedOutputFile
-            setattr(sys, name, kind(RoutedOutput(server, None, alone), file))
+            output = RoutedOutput(server, None, alone)
+            setattr(sys, name, RoutedInputFile(output, file) if name == "stdin" else RoutedOutputFile(output, file, FILES[name]))
 
 
 def is_routed(file):
