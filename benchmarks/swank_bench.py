@@ -83,6 +83,8 @@ class Swank:
         self.socket = socket.create_connection(("127.0.0.1", port))
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.file = self.socket.makefile("rb")
+        secret = (Path(folder) / ".slime-secret").read_bytes().rstrip()
+        self.socket.sendall(b"%06x" % len(secret) + secret)
 
     def call(self, form):
         text = f'(:emacs-rex {form} "COMMON-LISP-USER" t 1)'.encode()

@@ -225,3 +225,38 @@ def test_values_that_are_shown_as_html(cells):
     assert "<svg" in cells.run("*speed*").html and not cells.run("(+ 1 1)").of("display_data")
     cells.run("%watch off")
     assert "<svg" not in cells.run("*speed*").html
+
+
+@pytest.mark.parametrize(
+    ("code", "typed", "value"),
+    [
+        ('%%hy\n(input "x? ")', ["this"], "this"),
+        ('%%hy\n(import sys)\n(.write sys.stdout "x? ")\n(.rstrip (.readline sys.stdin))', ["this"], "this"),
+        ('(py:input "x? ")', ["this"], "this"),
+        ('(if (y-or-n-p "x? ") "this" "that")', ["perhaps", "y"], "this"),
+        ('%%hy\n(import getpass)\n(getpass.getpass "x? ")', ["this"], "this"),
+    ],
+    ids=["input", "readline", "input from Lisp", "y-or-n-p", "getpass"],
+)
+def test_a_cell_that_asks(cells, code, typed, value):
+    answer = cells.run(code, typed=typed)
+    assert answer.text.startswith(f'"{value}"')
+    assert "x? " in answer.printed + "".join(asked["prompt"] for asked in answer.of("input_request"))
+    assert all(asked["password"] == ("getpass" in code) for asked in answer.of("input_request"))
+
+
+@pytest.mark.parametrize("code", ['%%hy\n(input "x? ")', '(y-or-n-p "x? ")', "(py:input)", "(read-line)"])
+def test_a_cell_that_asks_where_nobody_can_answer_fails(cells, code):
+    assert cells.run(code).reply["ename"] in ("END-OF-FILE", "PYTHON:EOF-ERROR")
+
+
+@pytest.mark.parametrize(
+    "code", ['%%hy\n(import time)\n(print "begun")\n(time.sleep 1000)', '(progn (print "begun") (py:call "time.sleep" 1000))']
+)
+def test_a_cell_that_sleeps_in_python_is_interrupted(cells, code):
+    def stop(kind, content):
+        if kind == "stream" and "begun" in content["text"]:
+            cells.manager.interrupt_kernel()
+
+    assert cells.run(code, on_message=stop).reply["ename"] == "Interrupted"
+    assert cells.run("%%lisp\n(+ 1 1)").text == "2"

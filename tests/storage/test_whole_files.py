@@ -8,6 +8,7 @@ import stat
 import subprocess
 import sys
 import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from systems import posix
@@ -72,6 +73,33 @@ def test_a_file_that_is_replaced_keeps_its_permissions(tmp_path, umask, mode):
         assert part.stat().st_mode & 0o777 & ~mode == 0  # a secret is one while it is written, too
         file.write(b"new")
     assert (tmp_path / "x").stat().st_mode & 0o777 == mode
+
+
+@pytest.mark.parametrize("there", ["a file", pytest.param("a link", marks=posix), pytest.param("a link to nothing", marks=posix)])
+def test_a_new_file_does_not_replace_what_is_there(tmp_path, there):
+    (tmp_path / "other").write_text("old")
+    if there == "a file":
+        (tmp_path / "x").write_text("old")
+    else:
+        (tmp_path / "x").symlink_to(tmp_path / ("other" if there == "a link" else "nothing"))
+    with pytest.raises(FileExistsError) as told:
+        storage.write_new(tmp_path / "x", b"new", 0o600)
+    assert told.value.filename == str(tmp_path / "x")
+    assert sorted(os.listdir(tmp_path)) == ["other", "x"] and (tmp_path / "other").read_text() == "old"
+
+
+def test_of_those_that_make_a_new_file_at_once_one_succeeds_and_no_reader_sees_half_of_it(tmp_path):
+    def write(number):
+        try:
+            storage.write_new(tmp_path / "x", b"%d" % number * 100_000, 0o600)
+        except FileExistsError:
+            number = None
+        return number, len((tmp_path / "x").read_bytes())
+
+    with ThreadPoolExecutor(8) as pool:
+        found = list(pool.map(write, range(8)))
+    assert [number for number, _ in found].count(None) == 7 and {size for _, size in found} == {100_000}
+    assert os.listdir(tmp_path) == ["x"]
 
 
 @root

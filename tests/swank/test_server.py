@@ -3,78 +3,15 @@
 from __future__ import annotations
 
 import os
-import socket
-import stat
 
 import pytest
-from systems import linux, posix
+from systems import posix
 
 from cramhy_runtime import kernel
-from cramhy_runtime.swank import package, server, slime_version, wire
+from cramhy_runtime.swank import package, server, slime_version
 from cramhy_runtime.swank.wire import Name
 
-
-@pytest.fixture
-def home(tmp_path, monkeypatch):
-    """A home of its own, without a secret."""
-    monkeypatch.setenv("HOME", str(tmp_path))
-    monkeypatch.setenv("USERPROFILE", str(tmp_path))
-    return tmp_path
-
-
-@pytest.fixture
-def serve(session, home):
-    """``serve(...)``: a server of the session; ``serve.logged`` has what the user is told."""
-
-    def serve(*arguments, **options):
-        found = server.serve(session, serve.logged.append, *arguments, **options)
-        opened.append(found)
-        return found
-
-    serve.logged, opened = [], []
-    yield serve
-    for each in opened:
-        each.close()
-
-
-class Client:
-    """A client at the other end of a socket. It waits outside of the kernel, so the session goes on meanwhile."""
-
-    def __init__(self, address):
-        at_path = isinstance(address, str)
-        self.socket = socket.socket(socket.AF_UNIX if at_path else socket.AF_INET, socket.SOCK_STREAM)
-        self.socket.settimeout(20)
-        self.socket.connect(address if at_path else ("127.0.0.1", address))
-
-    def send(self, text):
-        self.socket.sendall(wire.frame(text))
-
-    def _read(self, count):
-        data = b""
-        while len(data) < count:
-            try:
-                more = self.socket.recv(count - len(data))
-            except ConnectionError:
-                more = b""
-            if not more:
-                return None
-            data += more
-        return data
-
-    def _message(self):
-        head = self._read(6)
-        return None if head is None else wire.read(wire.text_of(self._read(wire.length_of(head))))
-
-    def hear(self):
-        """The next message; ``None`` when the server has ended the connection."""
-        return kernel.run_blocking(self._message)
-
-    def call(self, form):
-        self.send(f"(:emacs-rex {form} nil t 1)")
-        while (message := self.hear()) is not None:
-            if message[0] == ":return":
-                return message[1]
-        return None
+from .socket_client import Client, PlainClient, said
 
 
 def test_forms_over_a_socket(serve):
@@ -94,13 +31,11 @@ def test_the_port_is_written_into_a_file(serve, tmp_path):
 
 
 @posix
-def test_a_unix_socket_is_its_users_alone(serve, tmp_path):
-    path = str(tmp_path / "socket")
-    found = serve(path)
-    assert stat.S_IMODE(os.stat(path).st_mode) == 0o700 and found.port is None
-    assert Client(path).call("(swank:ping)") == [":ok", "pong"]
-    found.close()
-    assert not os.path.exists(path)
+def test_a_link_in_the_place_of_the_port_file_is_replaced_and_not_followed(serve, tmp_path):
+    (tmp_path / "precious").write_text("precious")
+    (tmp_path / "port").symlink_to(tmp_path / "precious")
+    found = serve(port_file=str(tmp_path / "port"))
+    assert (tmp_path / "precious").read_text() == "precious" and (tmp_path / "port").read_text() == f"{found.port}\n"
 
 
 def test_a_port_that_is_taken(serve):
@@ -125,62 +60,6 @@ def test_the_end_of_the_session_ends_the_connection(serve, session):
     assert client.call("(swank:ping)") == [":ok", "pong"]
     kernel.stop()
     assert client._message() is None
-
-
-# ---------------------------------------------------------------------------------------------------------------------- secret
-
-
-@pytest.fixture
-def secret(home):
-    path = home / ".slime-secret"
-    path.write_text("open sesame\nmore\n")
-    path.chmod(0o600)
-    return path
-
-
-def test_the_first_message_is_the_secret(serve, secret):
-    client = Client(serve().port)
-    client.send("open sesame")
-    assert client.call("(swank:ping)") == [":ok", "pong"]
-
-
-@pytest.mark.parametrize("said", ["close sesame", "", "open sesame\n", "(:emacs-rex (swank:ping) nil t 1)", "x" * 5000])
-def test_a_client_without_the_secret_is_sent_away(serve, secret, said):
-    client = Client(serve().port)
-    client.send(said)
-    assert client.hear() is None
-    assert serve.logged == ["A client was sent away: its first message is not the secret that stands in ~/.slime-secret."]
-
-
-@posix
-def test_a_secret_that_others_may_read_is_refused(serve, secret):
-    secret.chmod(0o644)
-    with pytest.raises(server.ServerError) as refused:
-        serve()
-    assert str(refused.value) == (
-        "~/.slime-secret holds the secret for Emacs, and others may read or write it. Type: chmod 600 ~/.slime-secret, and see that it is yours."
-    )
-
-
-@linux
-def test_a_client_of_another_user_is_sent_away(serve, monkeypatch):
-    monkeypatch.setattr(server, "_of_another_user", lambda peer, port: True)
-    client = Client(serve().port)
-    assert client.hear() is None
-    assert serve.logged == ["A client of another user was sent away. A secret in ~/.slime-secret lets those in who know it."]
-
-
-@linux
-def test_linux_tells_whose_a_client_is(serve, monkeypatch):
-    found = serve()
-    client = Client(found.port)
-    assert client.call("(swank:ping)") == [":ok", "pong"]
-    peer = client.socket.getsockname()
-    assert not server._of_another_user(peer, found.port)
-    if os.getuid() != 0:
-        monkeypatch.setattr(os, "getuid", lambda: 4321)
-        assert server._of_another_user(peer, found.port)
-    assert not server._of_another_user(("127.0.0.1", 1), found.port)
 
 
 # ----------------------------------------------------------------------------------------------------------------------- hostile
@@ -361,13 +240,6 @@ class Process:
         return self.process.returncode, out, err
 
 
-class PlainClient(Client):
-    """A client in a process that has no kernel to wait for."""
-
-    def hear(self):
-        return self._message()
-
-
 @posix
 @pytest.mark.parametrize("ending", ["quit-lisp", "SIGTERM", "SIGINT"])
 def test_a_session_for_emacs_alone(tmp_path, ending):
@@ -376,7 +248,7 @@ def test_a_session_for_emacs_alone(tmp_path, ending):
     process = Process(tmp_path, "swank", "--port", "0", "--port-file", "port", "--time", "virtual", "--no-turtlesim")
     port = process.port()
     assert (tmp_path / "port").read_text() == f"{port}\n"
-    client = PlainClient(port)
+    client = PlainClient(port, said(tmp_path))
     assert client.call('(swank:interactive-eval "(progn (sleep 500) 7)")') == [":ok", "=> 7 (3 bits, #x7, #o7, #b111)"]
     client.send('(:emacs-rex (swank-repl:listener-eval "(unwind-protect (read-line) (princ :cleaned))") nil :repl-thread 2)')
     while client.hear()[0] != ":read-string":
@@ -395,7 +267,7 @@ def test_a_session_for_emacs_alone(tmp_path, ending):
 
 def test_emacs_beside_a_prompt_in_virtual_time(tmp_path):
     process = Process(tmp_path, "repl", "--swank", "--time", "virtual", "--no-turtlesim")
-    client = PlainClient(process.port())
+    client = PlainClient(process.port(), said(tmp_path))
     assert client.call('(swank:interactive-eval "(progn (sleep 500) (setf from-emacs 7))")')[0] == ":ok"
     process.process.stdin.write("(list from-emacs (car 5))\n0\n(progn (sleep 100) 8)\n")
     process.process.stdin.flush()

@@ -17,6 +17,9 @@ from contextlib import ExitStack, contextmanager
 from . import start_modules
 from .process_environment import check_for_session, ends_if_missing, in_any_surroundings
 
+INTERACTIVE = ("repl", "learn", "swank", "jupyter", "eval")
+"""The commands whose users may interrupt a form."""
+
 
 @ends_if_missing
 def session(options, closings, opened=True):
@@ -34,6 +37,10 @@ def session(options, closings, opened=True):
     from cramhy_runtime.storage import kept_code
     from .options import DEFAULT_TIMES
 
+    if options.command in INTERACTIVE:
+        from cramhy_runtime.kernel import patient_calls
+
+        patient_calls.install()
     packages_above["COURSE"] = _define_course
     backtrace.show(options.backtrace)
     if options.verbose:
@@ -282,14 +289,15 @@ def _browser(options):
 def _eval(options):
     from cramhy_runtime.languages.commonlisp.streams import streams
     from cramhy_runtime.ground.conditions import Condition
-    from cramhy_runtime.repl import json_lines
+    from cramhy_runtime.repl import answer_streams, json_lines
     from cramhy_runtime.repl.console import report
     from cramhy_runtime.repl.session import Interruption, condition_of
 
     if not _checked(options):
         return 2
     streams.STANDARD_OUTPUT.value = streams.CONSOLE_ERROR  # standard output is for the answers
-    with ExitStack() as closings:
+    out = sys.stdout
+    with answer_streams.turned_aside() as descriptors, ExitStack() as closings:
         try:
             made = session(options, closings)
         except Interruption:
@@ -297,7 +305,7 @@ def _eval(options):
         except (Exception, Condition) as problem:
             report(condition_of(problem))
             return 1
-        json_lines.serve(made)
+        json_lines.serve(made, out=out, descriptors=descriptors)
 
 
 def _run(options):

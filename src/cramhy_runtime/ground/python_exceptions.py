@@ -26,6 +26,8 @@ EQUIVALENT = {
     MemoryError: types.StorageCondition,
 }
 """Classes of exceptions that are classes of conditions already."""
+ALSO = {EOFError: types.EndOfFile}
+"""Classes of exceptions that mean what a class of conditions means: a handler for either gets them."""
 
 _classes: dict = {}
 
@@ -37,6 +39,8 @@ def condition_class(cls):
         bases = tuple(
             dict.fromkeys(condition_class(base) for base in cls.__bases__ if issubclass(base, Exception) and base not in EQUIVALENT)
         ) or (types.PythonError,)
+        if cls in ALSO:
+            bases += (ALSO[cls],)
         found = _classes[cls] = type(
             cls.__name__, bases, {"lisp_name": f"{PYTHON}::{lisp_spelling(cls.__name__)}", "__module__": __name__, "__doc__": cls.__doc__}
         )

@@ -119,6 +119,10 @@ class Guarded(Kernel):
             await super().dispatch_shell(msg, *more, **named)
         except Exception as problem:
             self._left("shell", problem)
+        self.answered()
+
+    def answered(self):
+        """A message of the shell channel has been answered."""
 
     async def process_control(self, msg):
         """A message of the control channel, as above."""

@@ -10,8 +10,8 @@ SIGINT, which Jupyter's stop button sends, interrupts the cell that runs: its pl
 from __future__ import annotations
 
 import asyncio
+import getpass
 import signal
-import sys
 from fnmatch import fnmatchcase
 
 from traitlets import Any as AnyTrait
@@ -36,7 +36,7 @@ REFUSED = "This kernel has no debugger of Jupyter's. After a cell with %debugger
 
 
 class CramhyKernel(Guarded):
-    """See the top of this file. plans: the session's `kernel.Kernel`; made: the `Session`."""
+    """See the top of this file. plans: the session's `kernel.Kernel`; made: the `Session`; end: a function that stops the loop."""
 
     implementation = "cramhy"
     implementation_version = __version__
@@ -51,6 +51,7 @@ class CramhyKernel(Guarded):
     help_links = [{"text": "Common Lisp", "url": "https://www.lispworks.com/documentation/HyperSpec/Front/"}]
 
     plans: AnyTrait = AnyTrait()
+    end: AnyTrait = AnyTrait()
     made: AnyTrait = AnyTrait()
 
     # ------------------------------------------------------------------------------------------------------------ beginning
@@ -69,6 +70,7 @@ class CramhyKernel(Guarded):
         self.cell = None  # the Request of the cell that runs
         self.asks = False  # whether an error asks what to do (%debugger on)
         self.parent_of_cell = {}
+        self.leaving = None  # the status with which a cell has ended the kernel, see `end`
         self._may_ask = False
         self._printed = []  # (stream, text) that the loop has not sent
         self._reads = None  # the Mailbox of a task that reads a line
@@ -76,7 +78,7 @@ class CramhyKernel(Guarded):
         self._stdin.on_recv(self._line_came)
         requests.ask_whoever_asked()
         streams.route(self.write, self.read_line, self.show_value)
-        sys.stdout, sys.stderr = streams.PythonOutput("stdout", self.write), streams.PythonOutput("stderr", self.write)
+        getpass.getpass = self.read_password
         signal.signal(signal.SIGINT, lambda number, frame: self.stop_cell())
 
     def pre_handler_hook(self):
@@ -153,21 +155,25 @@ class CramhyKernel(Guarded):
 
     # ---------------------------------------------------------------------------------------------------------------- input
 
-    def read_line(self, prompt=""):
+    def read_password(self, prompt="Password: ", stream=None):
+        """``getpass.getpass``: Python's own would ask at Jupyter's terminal."""
+        return self.read_line(prompt, password=True).removesuffix("\n")
+
+    def read_line(self, prompt="", password=False):
         """A line that the user types, with its newline; ``""`` where the front end has no input. Called in a task of the session."""
         if not self._may_ask:
             return ""
         mailbox, request = Mailbox(), requests.request_of()
-        self.loop.call_soon_threadsafe(lambda: self._ask_line(prompt, mailbox))
+        self.loop.call_soon_threadsafe(lambda: self._ask_line(prompt, password, mailbox))
         try:
             return request.wait(mailbox) if request is not None else mailbox.take()
         finally:
             self._reads = None
 
-    def _ask_line(self, prompt, mailbox):
+    def _ask_line(self, prompt, password, mailbox):
         self._reads = mailbox
         ident, header = self.identity_of_cell, self.parent_of_cell
-        self.session.send(self.stdin_socket, "input_request", {"prompt": prompt, "password": False}, header, ident=ident)
+        self.session.send(self.stdin_socket, "input_request", {"prompt": prompt, "password": password}, header, ident=ident)
 
     def _line_came(self, parts):
         try:
@@ -210,7 +216,13 @@ class CramhyKernel(Guarded):
     def _evaluated(self, code, silent, looked_at):
         displays = Displays(self.say if not silent else lambda kind, content: None, f"cell-{self.ident}-{self.execution_count}")
         with Live(displays, self.watcher, self.watched, self.tasks, self._follow).during(looked_at):
-            values = self.notebook.evaluate(code)
+            try:
+                values = self.notebook.evaluate(code)
+            except kernel.Terminated:
+                raise
+            except SystemExit as leaving:
+                self.leaving = leaving.code or 0
+                values = []
         if not silent:
             with binding(PACKAGE, self.notebook.package):
                 shown = rich.bundle(values, self.notebook.shown, self.watched)
@@ -222,7 +234,8 @@ class CramhyKernel(Guarded):
             self.controls.follow()
 
     def _ok(self, expressions):
-        return {"status": "ok", "execution_count": self.execution_count, "payload": [], "user_expressions": expressions}
+        payload = [] if self.leaving is None else [{"source": "ask_exit", "keepkernel": False}]  # as IPython says it
+        return {"status": "ok", "execution_count": self.execution_count, "payload": payload, "user_expressions": expressions}
 
     def _error(self, name, text, lines, silent):
         content = {"ename": name, "evalue": text, "traceback": lines or [f"; {text}"]}
@@ -241,6 +254,11 @@ class CramhyKernel(Guarded):
                 told = await self._told(request.failure or Aborted("interrupted"))
                 answers[name] = {"status": "error", "ename": told.name, "evalue": told.text, "traceback": told.lines}
         return answers
+
+    def answered(self):
+        """A message has been answered: when a cell has ended the kernel (``(exit)``), the loop stops now, and then the plans end."""
+        if self.leaving is not None:
+            self.end()
 
     # ------------------------------------------------------------------------------------------------------------- settings
 

@@ -5,7 +5,12 @@ What a task prints that no cell has started, a node's callback say, goes below t
 
 from __future__ import annotations
 
+import functools
+import sys
+
+from cramhy_runtime import kernel
 from cramhy_runtime.languages.commonlisp.streams import streams
+from cramhy_runtime.languages.commonlisp.streams.python_files import InputFile, OutputFile
 
 
 class CellOutput(streams.OutputStream):
@@ -35,40 +40,12 @@ class CellInput(streams.InputStream):
         self.more = read_line
 
 
-class PythonOutput:
-    """Standard output for code in Python and Hy. write: as for `CellOutput`."""
-
-    encoding, errors = "utf-8", "replace"
-
-    def __init__(self, name, write):
-        self.name, self._write = name, write
-
-    def write(self, text):
-        if text:
-            self._write(self.name, str(text))
-        return len(text)
-
-    def writelines(self, lines):
-        for line in lines:
-            self.write(line)
-
-    def flush(self):
-        """What is printed is sent as it comes."""
-
-    def isatty(self):
-        return False
-
-    def writable(self):
-        return True
-
-    def readable(self):
-        return False
-
-
 def route(write, read_line, show):
-    """Let the standard streams of Lisp lead to a notebook, from now on."""
+    """Let the standard streams of Lisp, and the standard files of Python, lead to a notebook, from now on."""
     output = CellOutput("stdout", write, show)
     streams.STANDARD_OUTPUT.value = streams.TRACE_OUTPUT.value = output
     streams.ERROR_OUTPUT.value = CellOutput("stderr", write, show)
     streams.STANDARD_INPUT.value = CellInput(read_line)
     streams.TERMINAL_IO.value = streams.TwoWayStream(streams.STANDARD_INPUT.value, output)
+    sys.stdout, sys.stderr = (OutputFile(functools.partial(write, name)) for name in ("stdout", "stderr"))
+    sys.stdin = InputFile(lambda: read_line() if kernel.holds_baton() else "")

@@ -21,8 +21,9 @@ timer, and the virtual clock jumps there. The wall clock is the same with a pace
 Where the parts are:
 
 * `scheduler`  the baton, the queue, the next task; `endings` interrupts, stopping, unhandled failures; `uncaught` exceptions that
-  end the program; `signals` of the system; `inbox` other threads and calls that block; `standard_input` typed lines; `terminals` keys
-  and modes; `asyncio_thread` a thread of the system that serves clients, and its share of the processor
+  end the program; `signals` of the system; `inbox` other threads and calls that block; `patient_calls` Python's own that wait;
+  `standard_input` typed lines; `terminals` keys and modes; `asyncio_thread` a thread of the system that serves clients, and its share
+  of the processor
 * `tasks`      a task, its end, the request to end; `cleanup` the cleanup of a task that ends
 * `timers`, `clocks`, `throttle` (of virtual time for spectators), `budget` (the count of checkpoints), `reports` (for people), `errors`
 * `waiting`    tasks that wait for a change, made of the functions below
@@ -48,6 +49,7 @@ from .active import (
     checkpoint,
     choice_point,
     current,
+    holds_baton,
     interrupt,
     interrupt_over,
     now,
@@ -86,8 +88,8 @@ from .waiting import Waiting
 __all__ = [
     "Abandoned", "CLEANUP_LIMIT", "Cancelled", "Deadlock", "Interrupted", "Kernel", "KernelError", "Task", "Terminated", "TimeLimit",
     "Timer", "VirtualClock", "WaitEnded", "Waiting", "WallClock", "active", "allow_deep_recursion", "aside", "at_hand", "call_at",
-    "call_every", "checkpoint", "choice_point", "cleanup", "cleanup_here", "current", "describe_frame", "install_reporter", "interrupt",
-    "interrupt_over", "limit_by", "now", "outside_source", "pace", "park", "post", "refill", "run_blocking", "set_clock", "settle",
-    "shield", "sleep", "slice_over", "spawn", "start", "stop", "time_held", "time_limited", "time_wanted", "unhandled", "unpark",
-    "woken_by", "yield_",
+    "call_every", "checkpoint", "choice_point", "cleanup", "cleanup_here", "current", "describe_frame", "holds_baton",
+    "install_reporter", "interrupt", "interrupt_over", "limit_by", "now", "outside_source", "pace", "park", "post", "refill",
+    "run_blocking", "set_clock", "settle", "shield", "sleep", "slice_over", "spawn", "start", "stop", "time_held", "time_limited",
+    "time_wanted", "unhandled", "unpark", "woken_by", "yield_",
 ]  # fmt: skip

@@ -198,6 +198,13 @@ def current() -> Task[object]:
     return (ACTIVE.value or _none()).current
 
 
+def holds_baton() -> bool:
+    """Whether the code that asks is that of the task with the baton: not that of another thread, nor of the scheduler."""
+    kernel = ACTIVE.value
+    carrier = None if kernel is None or kernel.stopped else kernel.current.carrier
+    return carrier is not None and carrier.ident == get_ident()
+
+
 def now() -> float:
     """Seconds of the kernel's clock since `start`. Without a kernel: KernelError."""
     return (ACTIVE.value or _none()).clock.now()

@@ -3,7 +3,8 @@
 In: ``{"form": "..."}``. Out: ``{"output": printed text, "values": [printed values], "error": null}``, or for a form that fails
 ``"error": {"type", "message", "restarts"}`` with ``"where"`` and ``"hint"`` when they are known. What the compiler warned of is a
 list ``"warnings"`` of such objects, when there is something. A line that is no such object
-gets an error answer, and the next line is read. For the forms standard input is empty: its lines are requests.
+gets an error answer, and the next line is read. The output has all that is printed, also by Python and by child processes (see
+`answer_streams`). For the forms standard input is empty: its lines are requests. A form that ends the program is answered before.
 """
 
 from __future__ import annotations
@@ -15,7 +16,6 @@ from cramhy_runtime import kernel
 from cramhy_runtime.kernel import standard_input
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.languages.commonlisp.compiler import compilation_unit
-from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.tools import backtrace
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for, report_text
 from cramhy_runtime.ground.classes import class_name
@@ -25,36 +25,48 @@ from cramhy_runtime.ground.source_places import describe
 
 from cramhy_runtime.session.session import Interruption, condition_of, signalled_here
 
+from . import answer_streams
 
-def serve(session, lines=None, out=None):
-    """Answer every line of ``lines`` (default: standard input) on ``out``."""
+
+class Left(Exception):
+    """A form has ended the program. ``answer``: what it has printed before. ``leaving``: the SystemExit."""
+
+    def __init__(self, answer, leaving):
+        self.answer, self.leaving = answer, leaving
+
+
+def serve(session, lines=None, out=None, descriptors=None):
+    """Answer every line of ``lines`` (default: standard input) on ``out``. descriptors: see `answer_streams`, or ``None``."""
     out = out or sys.stdout
     conditions.install_debugger(signalled_here)
-    lines = _standard_input() if lines is None else lines
-    nothing = streams.StringInputStream("")
-    streams.STANDARD_INPUT.value = nothing
-    streams.TERMINAL_IO.value = streams.TwoWayStream(nothing, streams.CONSOLE_ERROR)
+    if lines is None:
+        lines = sys.stdin if descriptors is None else descriptors.requests
     lines = iter(lines)
     while (line := _next(lines)) is not None:
         if not line.strip():
             continue
-        _give(session, line, out)
+        _give(session, line, out, descriptors)
 
 
-def _give(session, line, out):
+def _give(session, line, out, descriptors):
     """Answer ``line``: once, whatever interrupt comes meanwhile."""
+    leaving = None
     try:
-        found = answer(session, line)
+        found = answer(session, line, descriptors)
     except kernel.Terminated:
         raise
+    except Left as left:
+        found, leaving = left.answer, left.leaving
     except (KeyboardInterrupt, kernel.Abandoned):  # after the form, while its values are printed
         found = _failure("", "CRAMHY::INTERRUPTED", "The form was interrupted.")
     import json  # a process that is asked nothing does without it
 
     text = json.dumps(found) + "\n"
-    with kernel.shield():
+    with kernel.shield(), nullcontext() if descriptors is None else descriptors.answering():
         out.write(text)
         out.flush()
+    if leaving is not None:
+        raise leaving
 
 
 def _next(lines):
@@ -87,14 +99,7 @@ def _next(lines):
             kernel.interrupt_over()
 
 
-def _standard_input():
-    """Lines of standard input; what is no UTF-8 becomes signs that are no JSON, so it gets an error answer."""
-    if hasattr(sys.stdin, "reconfigure"):
-        sys.stdin.reconfigure(encoding="utf-8", errors="replace")
-    return sys.stdin
-
-
-def answer(session, line):
+def answer(session, line, descriptors=None):
     """The answer to one line, a dict."""
     import json
 
@@ -105,15 +110,15 @@ def answer(session, line):
             raise TypeError
     except (ValueError, KeyError, TypeError, RecursionError):
         return _failure("", "CRAMHY::BAD-REQUEST", 'Not understood: a line must be a JSON object {"form": "..."}.')
-    return evaluate(session, text)
+    return evaluate(session, text, descriptors)
 
 
-def evaluate(session, text):
-    """Evaluate the forms of ``text``; output of all tasks is collected."""
+def evaluate(session, text, descriptors=None):
+    """Evaluate the forms of ``text``; output of all tasks is collected. Raises `Left` if a form ends the program."""
     warnings = []
     reporter = compilation_unit.report_to(warnings.extend)
     try:
-        found = _evaluate(session, text)
+        found = _evaluate(session, text, answer_streams.Printed(descriptors))
     finally:
         compilation_unit.report_to(reporter)
     if warnings:
@@ -121,25 +126,25 @@ def evaluate(session, text):
     return found
 
 
-def _evaluate(session, text):
-    output = streams.StringOutputStream()
-    saved = streams.STANDARD_OUTPUT.value, streams.ERROR_OUTPUT.value, streams.TRACE_OUTPUT.value
-    streams.STANDARD_OUTPUT.value = streams.ERROR_OUTPUT.value = streams.TRACE_OUTPUT.value = output
+def _evaluate(session, text, output):
     try:
-        completed, values = session.with_abort(lambda: session.evaluate_text(text))
-        if not completed:
-            return _failure(output.take(), "CRAMHY::ABORTED", "aborted")
-        from cramhy_runtime.ground.printing import prin1_to_string
+        with output.collecting():
+            completed, values = session.with_abort(lambda: session.evaluate_text(text))
+            if not completed:
+                return _failure(output.take(), "CRAMHY::ABORTED", "aborted")
+            from cramhy_runtime.ground.printing import prin1_to_string
 
-        printed = [prin1_to_string(value) for value in values]
+            printed = [prin1_to_string(value) for value in values]
     except Interruption:
         return _failure(output.take(), "CRAMHY::INTERRUPTED", "The form was interrupted.")
+    except kernel.Terminated:
+        raise
+    except SystemExit as leaving:
+        raise Left({"output": output.take(), "values": [], "error": None}, leaving) from None
     except Exception as exception:
         return _condition(output.take(), condition_of(exception))
     except conditions.Condition as condition:
         return _condition(output.take(), condition)
-    finally:
-        streams.STANDARD_OUTPUT.value, streams.ERROR_OUTPUT.value, streams.TRACE_OUTPUT.value = saved
     return {"output": output.take(), "values": printed, "error": None}
 
 

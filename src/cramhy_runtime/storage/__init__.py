@@ -26,6 +26,6 @@ from .leftovers import tidy, tidy_once
 from .partial_files import Part, growing
 from .system_errors import why
 from .file_transactions import Tree
-from .atomic_write import write_whole, writing
+from .atomic_write import write_new, write_whole, writing
 
-__all__ = ["Part", "Tree", "growing", "tidy", "tidy_once", "why", "write_whole", "writing"]
+__all__ = ["Part", "Tree", "growing", "tidy", "tidy_once", "why", "write_new", "write_whole", "writing"]

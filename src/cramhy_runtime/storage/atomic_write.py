@@ -21,6 +21,20 @@ def write_whole(path, content, mode=None, durable=True, follow=True):
         file.write(data)
 
 
+def write_new(path, content, mode):
+    """Make a new file ``path`` with the bytes ``content``, all at once. `FileExistsError` if something has that name, also a link.
+
+    Of several processes that do so at the same moment one succeeds, and the others find its file complete. mode: see `write_whole`.
+    """
+    part = Part(path, mode, follow=False)
+    try:
+        part.file.write(content)
+    except BaseException:
+        part.discard()
+        raise
+    part.finish(replace=False)
+
+
 @contextmanager
 def writing(path, mode=None, durable=True, follow=True):
     """A binary file to write to, which becomes the file ``path`` when the body ends without an error. Arguments: those of `write_whole`."""

@@ -79,11 +79,12 @@ class Part:
         problem.filename, problem.filename2 = self.path, None
         return problem
 
-    def finish(self, durable=True, backup=None, lost=True):
+    def finish(self, durable=True, backup=None, lost=True, replace=True):
         """Check that everything is on the disk, and give the file its name.
 
         durable: to wait for the disk, not only for the system. backup: a name for the older file, beside it; else that file goes. lost:
-        whether to discard what was written if that fails; else it is the caller's to `discard` or `keep`.
+        whether to discard what was written if that fails; else it is the caller's to `discard` or `keep`. replace: whether a file that
+        has the name is replaced; else that is a `FileExistsError`.
         """
         try:
             self.file.flush()
@@ -91,7 +92,10 @@ class Part:
                 synchronize(self.file.fileno())
             self.file.close()  # a network file system may say only now that the disk is full
             if self.name not in (None, self.place):
-                if backup is None:
+                if not replace:
+                    os.link(self.name, self.place)  # unlike a rename, it needs a free name
+                    forget(self.name)
+                elif backup is None:
                     os.replace(self.name, self.place)
                 else:
                     backups.replace(self.name, self.place, backup)

@@ -1,7 +1,8 @@
 """The server: a socket on loopback, or a Unix socket, that Emacs connects to.
 
-It listens only if somebody asks (law 9). With the file ``~/.slime-secret``, which SLIME reads too, the first message of a client must be
-the secret. The file counts only if nobody else may read or write it.
+It listens only if somebody asks (law 9). The first message of a client must be the user's secret, see `secret`, and nothing else that it
+sends reaches the session before. Clients that have not said it are few, do not stay long, and make way for newer ones, so they
+cannot keep those out that know it.
 
 The socket belongs to a thread of the kernel's making (`kernel.asyncio_thread`). It cuts the bytes into frames and posts them into the
 kernel's inbox, and does nothing else; it never touches a task (law 4). `connection` does the rest, with the baton.
@@ -14,10 +15,7 @@ import contextlib
 import hmac
 import os
 import signal
-import socket
-import stat
 from collections import deque
-from pathlib import Path
 
 from cramhy_runtime import kernel, storage
 from cramhy_runtime.kernel.asyncio_thread import Company
@@ -25,34 +23,32 @@ from cramhy_runtime.kernel.images import per_image
 
 from cramhy_runtime.session import requests
 
-from . import streams, wire
+from . import secret, streams, wire
 from .connection import Connection
+from .errors import ServerError
+from .sockets import Listening
 
-HOST = "127.0.0.1"
-SECRET = "~/.slime-secret"
 LONGEST_STOP = 5.0  # s that the thread gets to end
-FIRST_MESSAGE = 10.0  # s that a client gets to say the secret
+FIRST_MESSAGE = 5.0  # s that a client gets to say the secret
 MOST_CLIENTS = 32
+MOST_STRANGERS = 64  # that have not said the secret yet
+QUIET = 10.0  # s between two lines about clients that were sent away; a flood of them is no flood of lines
 MOST_WAITING = 500  # messages of a client that the kernel has not read yet; then the thread reads no more of them
 MOST_UNREAD = 32 << 20  # bytes that a client has not read
 SHARE = 0.3  # of the processor while the kernel computes: a user waits for each answer
-LONGEST_SECRET = 4096  # bytes
-
-
-class ServerError(Exception):
-    """A server that cannot start; the text says why and what to do."""
 
 
 class Server:
     """A running server, made by `serve`. address: a port number of loopback, or the path of a Unix socket."""
 
     def __init__(self, session, log, address=None, alone=False):
-        self.secret = _secret()
+        secret.current()
         self.session, self.log, self.alone = session, log, alone
         self.kernel = kernel.active()
         self.connections: list[Connection] = []
         self.closed = False
-        self.socket, self.address = _listen(address)
+        self.listening = Listening(address)
+        self.socket, self.address = self.listening.socket, self.listening.address
         self.kernel.count_outside(1)
         self.company = Company(self._main, "cramhy swank", self.kernel)
         self.company.share.share = SHARE
@@ -75,17 +71,14 @@ class Server:
         self.company.share.forgiven = True
         self.company.call(self._stop)
         self.company.join(LONGEST_STOP)
-        self.socket.close()
-        if self.port is None:
-            with contextlib.suppress(OSError):
-                os.unlink(self.address)
+        self.listening.close()
         self.kernel.count_outside(-1)
         self.kernel.not_at_stop(self.close)
 
     # ------------------------------------------------------------------------------------------------------------ the kernel
 
     def joined(self, line):
-        """A client has said the secret, if there is one. Called in the scheduler."""
+        """A client has said the secret. Called in the scheduler."""
         if self.closed:
             return line.end()
         streams.route(self, self.alone)
@@ -107,15 +100,17 @@ class Server:
 
     async def _main(self):
         self._ended = asyncio.Event()
-        self._lines = set()
+        self._lines, self._strangers = set(), deque()
+        self._told, self._untold = None, 0  # when a line told of a stranger last, and how many have come since
         server = await asyncio.start_server(self._meet, sock=self.socket, limit=1 << 16)
         if self.closed:
             server.close()
             return
         await self._ended.wait()
         server.close()
-        for line in list(self._lines):
-            line.shut()
+        for writer in [*self._strangers, *(line.writer for line in self._lines)]:
+            with contextlib.suppress(Exception):
+                writer.close()
 
     def _stop(self):
         ended = getattr(self, "_ended", None)
@@ -123,20 +118,38 @@ class Server:
             ended.set()
 
     async def _meet(self, reader, writer):
-        if self.secret is None and self.port is not None and _of_another_user(writer.get_extra_info("peername"), self.port):
-            self._tell(f"A client of another user was sent away. A secret in {SECRET} lets those in who know it.")
-            writer.close()
-            return
-        if len(self._lines) >= MOST_CLIENTS:
-            self._tell(f"A client was sent away: {MOST_CLIENTS} are connected.")
-            writer.close()
-            return
+        with contextlib.closing(writer):
+            self._strangers.append(writer)
+            while len(self._strangers) > MOST_STRANGERS:
+                self._strangers.popleft().transport.abort()  # the one that has said nothing for longest
+            refused = await self._refusal(reader)
+            if writer in self._strangers:
+                self._strangers.remove(writer)
+            if refused is None and not writer.is_closing():
+                await self._serve(reader, writer)
+            elif refused:
+                self._tell_of_stranger(refused)
+
+    async def _refusal(self, reader):
+        """Why a client is sent away, a text that follows "A client was sent away"; ``""`` if it has gone, ``None`` if it may come in."""
+        try:
+            said = await asyncio.wait_for(_first_message(reader), FIRST_MESSAGE)
+            if not hmac.compare_digest(said, secret.current()):
+                return f": its first message is not the secret that stands in {secret.PLACE}."
+        except (wire.FrameError, ServerError) as problem:
+            return f". {problem}"
+        except TimeoutError:
+            return f": it has not said the secret within {FIRST_MESSAGE:g} s."
+        except (asyncio.IncompleteReadError, ConnectionError):
+            return ""
+        return f": {MOST_CLIENTS} are connected." if len(self._lines) >= MOST_CLIENTS else None
+
+    async def _serve(self, reader, writer):
         line = Line(self, writer)
         self._lines.add(line)
         try:
-            if self.secret is None or await self._knows_secret(reader):
-                self.kernel.post(lambda: self.joined(line))
-                await self._read(reader, line)
+            self.kernel.post(lambda: self.joined(line))
+            await self._read(reader, line)
         except (asyncio.IncompleteReadError, ConnectionError, TimeoutError):
             pass  # it is gone
         except wire.FrameError as problem:
@@ -144,18 +157,6 @@ class Server:
         finally:
             self._lines.discard(line)
             self.kernel.post(line.is_lost)
-            writer.close()
-
-    async def _knows_secret(self, reader):
-        said = b""
-        with contextlib.suppress(asyncio.IncompleteReadError, wire.FrameError, TimeoutError):
-            length = wire.length_of(await asyncio.wait_for(reader.readexactly(wire.LENGTH), FIRST_MESSAGE))
-            if length <= LONGEST_SECRET:
-                said = await asyncio.wait_for(reader.readexactly(length), FIRST_MESSAGE)
-        known = hmac.compare_digest(said, self.secret)
-        if not known:
-            self._tell(f"A client was sent away: its first message is not the secret that stands in {SECRET}.")
-        return known
 
     async def _read(self, reader, line):
         while True:
@@ -167,6 +168,21 @@ class Server:
 
     def _tell(self, text):
         self.kernel.post(lambda: self.log(text))
+
+    def _tell_of_stranger(self, why):
+        now = asyncio.get_running_loop().time()
+        if self._told is not None and now < self._told + QUIET:
+            self._untold += 1
+            return
+        more = f" So were {self._untold} more since the last line." if self._untold else ""
+        self._told, self._untold = now, 0
+        self._tell(f"A client was sent away{why}{more}")
+
+
+async def _first_message(reader):
+    """The first frame of a client, bytes; ``b""`` where it is too long for a secret."""
+    length = wire.length_of(await reader.readexactly(wire.LENGTH))
+    return await reader.readexactly(length) if length <= secret.LONGEST else b""
 
 
 class Line:
@@ -225,65 +241,6 @@ class Line:
         self.server.company.call(self.shut)
 
 
-# -------------------------------------------------------------------------------------------------------------- what it needs
-
-
-def _secret():
-    """The secret of this user, bytes, or ``None``. It is the first line of the file, as SLIME reads it."""
-    path = Path(SECRET).expanduser()
-    try:
-        status = path.stat()
-        if os.name == "posix" and (status.st_uid != os.getuid() or stat.S_IMODE(status.st_mode) & 0o077):
-            raise ServerError(
-                f"{SECRET} holds the secret for Emacs, and others may read or write it. Type: chmod 600 {SECRET}, and see that it is yours."
-            )
-        with path.open("rb") as file:
-            first = file.readline(LONGEST_SECRET).rstrip(b"\n")
-    except FileNotFoundError:
-        return None
-    except OSError as problem:
-        raise ServerError(f"{SECRET}, the secret for Emacs, cannot be read: {problem.strerror}.") from None
-    return first
-
-
-def _of_another_user(peer, port):
-    """Whether Linux says that the client at ``peer``, (host, port), belongs to another user. Other systems do not tell."""
-    try:
-        with open("/proc/net/tcp", encoding="ascii") as table:
-            rows = [row.split() for row in table]
-        mine = os.getuid()
-    except (OSError, AttributeError):
-        return False
-    ours, theirs = f":{port:04X}", f":{peer[1]:04X}"
-    owners = [int(row[7]) for row in rows[1:] if row[1].endswith(theirs) and row[2].endswith(ours)]
-    return bool(owners) and owners[0] not in (mine, 0)
-
-
-def _listen(address):
-    """(socket, where it listens): on loopback at the port ``address`` (``None`` or 0: a free one), or at the path of a Unix socket."""
-    at_path = isinstance(address, str)
-    found = socket.socket(socket.AF_UNIX if at_path else socket.AF_INET, socket.SOCK_STREAM)
-    try:
-        if at_path:
-            before = os.umask(0o077)  # nobody else may connect
-            try:
-                found.bind(address)
-            finally:
-                os.umask(before)
-        else:
-            if os.name == "posix":
-                found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            found.bind((HOST, address or 0))
-        found.listen(8)
-    except (OSError, OverflowError) as problem:
-        found.close()
-        why = getattr(problem, "strerror", None) or problem
-        where = address if at_path else f"port {address} of {HOST}"
-        raise ServerError(f"The server for Emacs cannot listen on {where}: {why}. Choose another place, or none for a free port.") from None
-    found.setblocking(False)
-    return found, address if at_path else found.getsockname()[1]
-
-
 _servers = per_image([])
 
 
@@ -307,8 +264,11 @@ def serve(session, log, address=None, port_file=None, alone=False):
 
 
 def _write_port(path, address):
-    """Write the port into a file that appears as a whole, since Emacs reads it as soon as it is there."""
-    storage.write_whole(path, f"{address}\n".encode())
+    """Write the port into a file that appears as a whole, since Emacs reads it as soon as it is there.
+
+    Emacs names a file in the folder for temporary files, where somebody may have put a link; that one is replaced, and not followed.
+    """
+    storage.write_whole(path, f"{address}\n".encode(), follow=os.fspath(path).startswith(("/dev/", "/proc/")))
 
 
 def running():

@@ -60,7 +60,8 @@ def case_failure(value, operator, possibilities):
 def ask_for_value(value, operator, possibilities):
     """Signal that no clause fits, with a restart STORE-VALUE; returns the value to try next."""
     return conditions.restart_case(
-        [(sym("STORE-VALUE"), lambda new: new, "Supply a new value.")], lambda: error(CaseFailure(value, operator, possibilities))
+        [(sym("STORE-VALUE"), lambda new: new, "Supply a new value.", conditions.ask_value)],
+        lambda: error(CaseFailure(value, operator, possibilities)),
     )
 
 
@@ -71,7 +72,9 @@ def check_type_failed(value, place, kind, name):
         "The value of ~S is ~S, which is not ~:[of type ~S~;~:*~A~].", place, value, name, kind, datum=value, expected_type=kind
     )
     where = symbol_name(place) if is_symbol(place) else "the place"
-    return conditions.restart_case([(sym("STORE-VALUE"), lambda new: new, f"Supply a new value for {where}.")], lambda: error(condition))
+    return conditions.restart_case(
+        [(sym("STORE-VALUE"), lambda new: new, f"Supply a new value for {where}.", conditions.ask_value)], lambda: error(condition)
+    )
 
 
 # ---------------------------------------------------------------------------------------------------------------- conditions

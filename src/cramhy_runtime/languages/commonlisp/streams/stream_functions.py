@@ -363,18 +363,20 @@ def _ask_until(control, args, question, yes, no, reminder):
         answer, ended = _ask(control, args, question)
         if answer.strip().lower() in yes:
             return True
-        if answer.strip().lower() in no or (ended and not answer):
+        if answer.strip().lower() in no:
             return None
+        if ended and not answer:
+            return _at_end(streams.QUERY_IO.value, True, None)
         streams.QUERY_IO.value.write(reminder)
 
 
 def y_or_n_p(control=None, *args):
-    """``y-or-n-p``: ask on ``*query-io*``; the end of the input counts as no."""
+    """``y-or-n-p``: ask on ``*query-io*``. At the end of the input it is an END-OF-FILE, as in SBCL."""
     return _ask_until(control, args, "(y or n) ", ("y",), ("n",), 'Please type "y" for yes or "n" for no.\n')
 
 
 def yes_or_no_p(control=None, *args):
-    """``yes-or-no-p``: ring the bell and ask on ``*query-io*``; the end of the input counts as no."""
+    """``yes-or-no-p``: ring the bell and ask on ``*query-io*``. At the end of the input it is an END-OF-FILE, as in SBCL."""
     streams.QUERY_IO.value.write("\a")
     return _ask_until(control, args, "(yes or no) ", ("yes",), ("no",), 'Please type "yes" for yes or "no" for no.\n')
 
