@@ -23,7 +23,7 @@ from cramhy_runtime.ground.packages import COMMON_LISP, symbol_name, symbol_pack
 from cramhy_runtime.ground.source_places import describe
 
 
-from cramhy_runtime.session.session import Interruption, condition_of, signalled_here
+from cramhy_runtime.session.session import Interruption, condition_of, signalled_here, value_text
 
 
 def serve(session, lines=None, out=None):
@@ -126,12 +126,9 @@ def _evaluate(session, text):
     saved = streams.STANDARD_OUTPUT.value, streams.ERROR_OUTPUT.value, streams.TRACE_OUTPUT.value
     streams.STANDARD_OUTPUT.value = streams.ERROR_OUTPUT.value = streams.TRACE_OUTPUT.value = output
     try:
-        completed, values = session.with_abort(lambda: session.evaluate_text(text))
+        completed, printed = session.with_abort(lambda: [value_text(value) for value in session.evaluate_text(text)])
         if not completed:
             return _failure(output.take(), "CRAMHY::ABORTED", "aborted")
-        from cramhy_runtime.ground.printing import prin1_to_string
-
-        printed = [prin1_to_string(value) for value in values]
     except Interruption:
         return _failure(output.take(), "CRAMHY::INTERRUPTED", "The form was interrupted.")
     except Exception as exception:
