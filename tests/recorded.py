@@ -98,7 +98,7 @@ RECORDINGS = [
         comments=True,
     ),
     *_of_forms("lisp/symbols", *sorted(path.name for path in (TESTS / "lisp" / "symbols").glob("*.txt"))),
-    *_of_forms("lisp/printing", **(f"{name}.jsonl" for name in "code float_directives floats format random_data".split()), given="forms"),
+    *_of_forms("lisp/printing", *(f"{name}.jsonl" for name in "code float_directives floats format random_data".split()), given="forms"),
     Recording(TESTS / "lisp" / "sbcl" / "type_names.txt", (*SBCL, "type_names.lisp"), given=""),
     Recording(
         TESTS / "libraries" / "alexandria.txt",
