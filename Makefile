@@ -2,6 +2,7 @@
 # make test: the tests. make soak: each case of them, for hours.
 # make docs: the pages with what happens now. make site: the pages as a site, in site/index.html.
 # make bench: what things cost, beside their goals and beside others. make bench-compare COMMIT=HEAD~1: this checkout beside that one.
+# make recorded: what SBCL and its libraries answered, asked again, where they are installed.
 # make notebooks OUT=folder: the tutorial as notebooks.
 # make course: the course for a browser's tab, as static files in course-site. make pyodide: fetches what that needs from npm.
 # The first call of tutorial, view, kitchen or course makes a small environment in .venv; the first call of any other target adds the rest to it.
@@ -13,7 +14,7 @@ ROBOT := .venv/.robot
 READY := .venv/.ready
 PEERS := .venv/.peers
 
-.PHONY: tutorial view kitchen test interpreters docs notebooks site pyodide course bench bench-compare golden lint soak clean
+.PHONY: tutorial view kitchen test interpreters recorded docs notebooks site pyodide course bench bench-compare golden lint soak clean
 
 tutorial: $(LIGHT)
 	@$(BIN)/python tutorials/lectures.py --png turtle.png
@@ -30,6 +31,9 @@ test: $(READY)
 
 interpreters: $(READY)
 	@CRAMHY_INTERPRETERS=all $(BIN)/python -m pytest -rs tests/test_interpreters.py
+
+recorded: $(READY)
+	@$(BIN)/python tests/recorded.py
 
 golden: $(READY)
 	@$(BIN)/python tests/golden/score.py

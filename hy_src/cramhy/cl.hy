@@ -162,19 +162,22 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   (if extra (raise (TypeError "takes at most three parts")) #(variable form result)))
 
 (defoperator dotimes [spec #* body]
+  ; one variable for all turns, as in SBCL: closures share it, and a form that assigns it changes the turns
   (setv #(variable count result) (iteration-spec #* spec))
-  (setv counter (gensym "COUNTER") limit (gensym "LIMIT") next (gensym "NEXT") end (gensym "END"))
+  (setv limit (gensym "LIMIT") next (gensym "NEXT") end (gensym "END"))
   (setv #(declarations forms) (split-declarations body))
   `(block nil
-     (let [[~counter 0] [~limit ~count]]
+     (let [[~variable 0] [~limit ~(if (isinstance count int) count `(the integer ~count))]]
+       (declare (ignorable ~variable))
+       ~@declarations
        (tagbody
          ~next
-         (if (>= ~counter ~limit) (go ~end))
-         (let [[~variable ~counter]] (declare (ignorable ~variable)) ~@declarations (tagbody ~@forms))
-         (setq ~counter (1+ ~counter))
+         (if (>= ~variable ~limit) (go ~end))
+         (tagbody ~@forms)
+         (setq ~variable (1+ ~variable))
          (go ~next)
          ~end)
-       ~(if (is result None) None `(let [[~variable (max ~limit 0)]] (declare (ignorable ~variable)) ~@declarations ~result)))))
+       ~result)))
 
 (defoperator dolist [spec #* body]
   (setv #(variable items result) (iteration-spec #* spec))

@@ -2,7 +2,8 @@
 
 (eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *)
-(import cramhy_runtime.languages.commonlisp.syntax.macros [mentions])
+(import cramhy_runtime.languages.commonlisp.syntax.macros [mentions]
+        cramhy_runtime.languages.commonlisp.compiler.compilation_unit [mention-definitions])
 
 (setv package "COMMON-LISP")
 
@@ -43,7 +44,15 @@
      :type (quote ~(if (every "TYPE") (only "TYPE") True))
      :documentation ~(only "DOCUMENTATION")))
 
+(defn accessors-of [slot]
+  "The names of the functions that a slot of `define-condition` gets."
+  (setv options (options-of (if (listp slot) slot.cdr [])))
+  (setv names (lfor #(key name) options :if (and (in key ["READER" "WRITER" "ACCESSOR"]) (is-symbol name)) name))
+  [#* names #* (lfor #(key name) options :if (and (= key "ACCESSOR") (is-symbol name)) #("setf" name))])
+
 (defn initargs-form [arguments]
+  (when (% (len arguments) 2)
+    (program-error "malformed plist, odd number of elements in the :DEFAULT-INITARGS ~S." (list-from arguments)))
   `(list ~@(lfor #(key value) (zip (cut arguments None None 2) (cut arguments 1 None 2))
              `(list (quote ~key) (lambda [] ~value) (quote ~value)))))
 
@@ -74,6 +83,7 @@
                   ~@(class-options options)))
 
 (defoperator define-condition [name parents slots #* options]
+  (for [slot (elements slots)] (mention-definitions (accessors-of slot)))
   `(%define-condition (quote ~name) (quote ~parents)
                       (list ~@(lfor slot (elements slots) (slot-specification slot)))
                       ~@(class-options options)))
@@ -289,6 +299,20 @@
       (return (elements option.cdr))))
   [None])
 
+(defn structure-functions [name slots options]
+  "The names of the functions that `defstruct` defines, as far as its own forms are likely to call them."
+  (setv conc (+ name.name "-") makers [(+ "MAKE-" name.name)])
+  (for [option options]
+    (setv #(key #* values) (if (listp option) option [option]) value (if values (get values 0) None))
+    (match (symbol-name key)
+      "CONC-NAME" (setv conc (if (is value None) "" (if (is-symbol value) (symbol-name value) (str value))))
+      "CONSTRUCTOR" (when (and values (is-symbol value) (is-not value None)) (.append makers (symbol-name value)))))
+  (setv readers (lfor slot slots (+ conc (symbol-name (if (listp slot) slot.car slot)))))
+  (setv here (. (sym "*PACKAGE*") value))
+  (setv [#* named] (lfor text [#* readers #* makers (+ name.name "-P") (+ "COPY-" name.name)] (get (.lookup here text) 0)))
+  (setv symbols (lfor each named :if (isinstance each LispSymbol) each))
+  [#* symbols #* (lfor each symbols #("setf" each))])
+
 (defn check-structure-options [name keys]
   "Complain of options of `defstruct` that stand there twice. keys: their names."
   (for [key (sfor key keys :if (not-in key ["CONSTRUCTOR" "NAMED"]) key)]
@@ -302,6 +326,7 @@
   (setv documentation (if (and slots (isinstance (get slots 0) str)) (.pop slots 0) None))
   (check-structure-options name (lfor option options (symbol-name (if (listp option) option.car option))))
   (setv arguments [] constructors [] [included #* overrides] (included-structure options))
+  (mention-definitions (structure-functions name slots options))
   (for [option options]
     (setv #(key #* values) (if (listp option) option [option]))
     (match (symbol-name key)

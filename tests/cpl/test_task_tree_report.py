@@ -247,7 +247,7 @@ def test_it_takes_no_pulse_and_changes_no_name():
 def test_a_value_that_cannot_be_printed_does_not_break_the_report(lisp):
     lisp('(defclass shy () ()) (defmethod print-object ((x shy) stream) (error "no"))')
     lisp("(let ((*record-task-tree* t)) (top-level (make-instance 'shy)))")
-    assert "succeeded after 0 s: (cannot be printed: " in lisp.report()
+    assert "succeeded after 0 s: #<error printing a SHY: no (at " in lisp.report()
 
 
 def test_a_file_without_box_characters_gets_ascii():

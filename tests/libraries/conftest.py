@@ -12,6 +12,6 @@ collect_ignore = ["workspace"]  # packages that test_systems_as_cram_has_them.py
 
 @pytest.fixture
 def values(session):
-    """A function: the printed values of the last form of a text, in a package of its own."""
+    """A function: the printed values of the last form of a text, in a package of its own, with something between them."""
     session.package = ensure_package("LIBRARIES-TESTS", use=[COMMON_LISP])
-    return lambda text: " ".join(prin1_to_string(value) for value in session.evaluate_text(text, "<test>"))
+    return lambda text, between=" ": between.join(prin1_to_string(value) for value in session.evaluate_text(text, "<test>"))

@@ -55,7 +55,7 @@ def test_an_invalid_initarg_names_the_class():
         make_instance(here("STRICT"), keyword("BAD"), 1)
     assert str(problem.value) == (
         "Invalid initialization argument:\n  :BAD\nin call for class #<STANDARD-CLASS CLOS-TESTS::STRICT>.\n"
-        "See also:\nThe ANSI Standard, Section 7.1.2"
+        "See also:\n  The ANSI Standard, Section 7.1.2"
     )
 
 

@@ -326,8 +326,7 @@ RUNNING = [
     (
         '(error "speed ~a of ~a" 1)',
         """\
-  speed ~a of ~a
-  (Its report could not be made: error in FORMAT: No more arguments speed ~a of ~a ^)
+  #<error printing a SIMPLE-ERROR "speed ~a of ~a": error in FORMAT: No more arguments speed ~a of ~a ^>
   at plan.lisp:1:1
     (error "speed ~a of ~a" 1)
     ^""",

@@ -6,7 +6,7 @@ All of it is taken at once, on the stack that failed. Nobody may look at the fra
 from __future__ import annotations
 
 from cramhy_runtime.ground.packages import symbol_name
-from cramhy_runtime.ground.printing import guarded
+from cramhy_runtime.ground.printing import attempt_to_print, report_of
 from cramhy_runtime.ground.source_places import describe
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
@@ -24,7 +24,7 @@ def told(condition: Any, restarts: list[Any], frame: FrameType) -> dict[str, Any
     """What the page shows of ``condition``, which was signalled in ``frame`` or below it, and can be left by ``restarts``."""
     return {
         "type": condition_type(condition),
-        "restarts": [{"name": symbol_name(restart.name), "report": restart.report()} for restart in restarts],
+        "restarts": [{"name": symbol_name(restart.name), "report": report_of(restart)} for restart in restarts],
         "frames": [
             {
                 "call": call.text,
@@ -38,5 +38,5 @@ def told(condition: Any, restarts: list[Any], frame: FrameType) -> dict[str, Any
 
 
 def _shown(value):
-    text = guarded(lambda: prin1_to_string(value), lambda problem: f"#<{type(value).__name__}>")
+    text = attempt_to_print(prin1_to_string, value)
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."

@@ -8,7 +8,6 @@ texts are those of SBCL 2.2.9, on which the course runs. SBCL's own classes keep
 from __future__ import annotations
 
 
-from cramhy_runtime import kernel
 from cramhy_runtime.kernel.images import part
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
@@ -145,6 +144,18 @@ class _OfImage:
         return None
 
 
+class Shown:
+    """How the text of a condition is made for Python: ``printing.py`` puts `printing.shown` here, which stands above conditions."""
+
+    __slots__ = ("text",)
+
+    def __init__(self) -> None:
+        self.text: Callable[[Any, Callable[[], str]], str] = lambda condition, report: report()
+
+
+SHOWN = Shown()
+
+
 class Condition(BaseException):
     """The root of all conditions."""
 
@@ -166,13 +177,7 @@ class Condition(BaseException):
         return f"Condition {shown_with(class_name(type(self)), 'COMMON-LISP')} was signalled."
 
     def __str__(self) -> str:
-        try:
-            with kernel.at_hand():  # Python prints what nobody caught when the kernel is gone
-                return self.report()
-        except Exception as problem:  # a broken :report must not hide the condition itself
-            control = getattr(self, "format_control", None)
-            told = f"{control!s}" if isinstance(control, str) else f"A condition of type {shown(class_name(type(self)))} was signalled"
-            return f"{told}\n(Its report could not be made: {' '.join(str(problem).split()) or type(problem).__name__})"
+        return SHOWN.text(self, self.report)
 
 
 class SeriousCondition(Condition):

@@ -20,7 +20,7 @@ import functools
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.active import ACTIVE
 from cramhy_runtime.kernel.images import Cell
-from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, NoReturn
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn
 from . import condition_types as types
 from .catching import EVERYBODY, Case, Cluster, HandlerExit, handlers_in_force
 from .condition_types import *  # noqa: F403  the classes are this module's interface too
@@ -224,6 +224,11 @@ def handler_case(clauses, thunk, no_error=None):
 def ignore_errors(thunk):
     """``ignore-errors`` for Python rooms: the values of ``thunk``, or nil and the error."""
     return handler_case([(types.Error, lambda condition: MultipleValues((None, condition)))], thunk)
+
+
+def guarded(thunk: Callable[[], Any], otherwise: Callable[[Any], Any]) -> Any:
+    """The value of ``thunk()``; if it signals a serious condition, ``otherwise(condition)``."""
+    return handler_case([(types.SeriousCondition, otherwise)], thunk)
 
 
 # --------------------------------------------------------------------------------------------------------------- signalling

@@ -82,7 +82,15 @@ class PlainPrinter:
             parts += [".", self.text(end, escape)]
         return f"({' '.join(parts)})"
 
+    guard: Any = None
+    """A function of an object and of one that makes its text: it says what stands for an object whose text cannot be made."""
+
     def _other(self, thing: Any, escape: bool) -> str:
+        if self.guard is None:
+            return self._text_of_other(thing, escape)
+        return self.guard(thing, lambda: self._text_of_other(thing, escape))
+
+    def _text_of_other(self, thing: Any, escape: bool) -> str:
         if hasattr(thing, "report") and isinstance(thing, BaseException):
             name = symbol_text(PORTS.classes.name(type(thing)))
             return f'#<{name} "{thing}">' if escape else str(thing)

@@ -2,34 +2,51 @@
 
 A room says by `define_printer` how its objects look. The function writes to a stream and prints components by `output_object`, so it is
 right in every language and under all control variables.
+
+Text about an error must not become another error, and must come to an end: see `shown`. While such a text is made,
+``sb-ext:*suppress-print-errors*`` is bound, as in SBCL's debugger, and an object whose printing fails is ``#<error printing a CLASS: why>``
+in the midst of the text.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import nullcontext
+from math import inf
 from cramhy_runtime.kernel.typing_names import Any
 
+from cramhy_runtime import kernel
+
+from .catching import HandlerExit
 from .classes import class_name
-from .condition_types import SeriousCondition
-from .conditions import handler_case
+from .condition_types import SHOWN, Condition, PythonError, SeriousCondition
+from .conditions import BREAK_ON_SIGNALS, guarded, handler_bind
 from .data import Symbol
-from .dynamic import special
-from .plain_answers import printer_for, printers, printers_found
+from .dynamic import binding, special
+from .packages import ensure_package, sym
+from .plain_answers import PlainPrinter, printer_for, printers, printers_found
 from .ports import PORTS
+from .source_places import describe, error_place
 
 __all__ = [
     "CURRENT_LEVEL",
     "LEVELS_COUNT",
     "attempt_to_print",
+    "bounded",
+    "class_text",
     "define_printer",
     "format_to_string",
     "guarded",
+    "not_ending",
     "output_object",
+    "print_suppressed",
     "prin1_to_string",
     "princ_to_string",
     "print_slots",
     "print_unreadable",
     "printer_for",
+    "report_of",
+    "shown",
     "unprintable",
     "write",
 ]
@@ -53,25 +70,6 @@ def princ_to_string(thing: Any) -> str:
 def format_to_string(control: Any, *arguments: Any) -> str:
     """The text of a format control (a string or a function) with ``arguments``."""
     return PORTS.printer.formatted(control, *arguments)
-
-
-def attempt_to_print(text_of: Callable[[Any], str], thing: Any) -> str:
-    """``text_of(thing)``; if that fails, ``#<error printing a CLASS: why>``. For texts about an error, which must not become another error.
-
-    The handlers around the caller are not asked about the failure of the printer.
-    """
-    return guarded(lambda: text_of(thing), lambda problem: unprintable(thing, problem))
-
-
-def unprintable(thing: Any, problem: Any) -> str:
-    """What stands for ``thing``, whose printer failed with the condition ``problem``."""
-    why = guarded(lambda: princ_to_string(problem), lambda _: "")
-    return f"#<error printing a {class_name(type(thing)).name}{': ' + ' '.join(why.split()) if why else ''}>"
-
-
-def guarded(thunk: Callable[[], Any], otherwise: Callable[[Any], Any]) -> Any:
-    """The value of ``thunk()``; if it signals a serious condition, ``otherwise(condition)``."""
-    return handler_case([(SeriousCondition, otherwise)], thunk)
 
 
 def define_printer(cls: type, function: Callable[[Any, Any], Any]) -> None:
@@ -114,3 +112,251 @@ def report_text(condition: Any) -> str:
 def address(thing: Any) -> str:
     """The address that ``#<... {1001000003}>`` shows for ``thing``: hexadecimal digits, the same as long as it lives."""
     return PORTS.printer.address(thing)
+
+
+# ------------------------------------------------------------------------------------------------------- texts about errors
+
+SUPPRESS = special(ensure_package("SB-EXT").intern("*SUPPRESS-PRINT-ERRORS*"))
+"""The type of the errors that printing an object may signal without ending what is printed around it; nil: none (SBCL's variable)."""
+SUPPRESS.package.export(SUPPRESS)
+MAKING = special(Symbol("*TEXT-ABOUT-AN-ERROR*"), None)
+"""The `Making` of the text about an error that is made now, or ``None``."""
+
+LONGEST = 20_000  # characters of a text about an error
+LONGEST_REASON = 300  # characters of why an object cannot be printed
+DEEPEST = 50  # objects around an object that is printed
+AGAIN = 3  # times that an object is met while it is printed itself
+SECONDS, SLICES = 10, 100  # for which a text about an error may wait, and compute
+SHORTER = ("*PRINT-CIRCLE*", True, "*PRINT-LENGTH*", 50, "*PRINT-LEVEL*", 10)
+
+
+class TextTooLong(BaseException):
+    """A string that is being written in a text about an error has become longer than `LONGEST`. It is no error that code handles."""
+
+    def __init__(self, number: int, text: str):
+        self.number, self.text = number, text
+
+
+class Making:
+    """A text about an error while it is made: the objects that are being printed, those that failed, how many strings were begun."""
+
+    __slots__ = ("printing", "failed", "strings", "explaining", "too_long")
+
+    def __init__(self) -> None:
+        self.printing: list[int] = []
+        self.failed: dict[int, tuple[Any, str | None]] = {}  # with the object, so that its id stays its own
+        self.strings = 0
+        self.explaining = False
+        self.too_long = False
+
+    def appender(self, parts: list[str]) -> Callable[[str], None]:
+        """What adds text to ``parts``, a string that is begun now, until it is too long."""
+        self.strings += 1
+        number, room = self.strings, LONGEST
+
+        def append(text: str) -> None:
+            nonlocal room
+            parts.append(text)
+            room -= len(text)
+            if room < 0:
+                self.too_long = True
+                raise TextTooLong(number, "".join(parts))
+
+        return append
+
+    def stands_for(self, thing: Any) -> str | None:
+        """What is shown in the place of ``thing`` without asking its printer, which failed before or would never end; else ``None``."""
+        found = self.failed.get(id(thing))
+        if found is not None:
+            return found[1] or _brief(thing)
+        if len(self.printing) >= DEEPEST or self.printing.count(id(thing)) >= AGAIN:
+            return _brief(thing)
+        return None
+
+    def attempt(self, thing: Any, thunk: Callable[[], Any], begun: float = inf) -> Any:
+        """The value of ``thunk()``, which prints ``thing``, as a tuple; the text that stands for it if that fails.
+
+        begun: so many strings were begun before; if one of the later ones becomes too long, that is a failure of this object.
+        """
+        self.printing.append(id(thing))
+        try:
+            return suppressed(lambda: (thunk(),), lambda problem: self.fail(thing, problem))
+        except TextTooLong as exit_:
+            if exit_.number <= begun:  # it is the text around this object that is too long
+                raise
+            return self.keep(thing, f"#<error printing a {class_text(thing)}: its text is longer than {LONGEST} characters>")
+        except kernel.WorkLimit:
+            return self.keep(thing, f"#<error printing a {class_text(thing)}: it took too long>")
+        finally:
+            self.printing.pop()
+
+    def fail(self, thing: Any, problem: Any) -> str:
+        """The text that stands for ``thing`` from now on, as its printer failed with ``problem``."""
+        self.failed[id(thing)] = thing, None
+        return self.keep(thing, unprintable(thing, problem))
+
+    def keep(self, thing: Any, text: str) -> str:
+        """``text``, which stands for ``thing`` from now on."""
+        self.failed[id(thing)] = thing, text
+        return text
+
+
+def suppressed(thunk: Callable[[], Any], otherwise: Callable[[Any], Any], kind: Any = SeriousCondition) -> Any:
+    """The value of ``thunk()``; if it signals a condition of type ``kind``, ``otherwise(condition)``. The condition knows its place."""
+    token = object()
+
+    def leave(condition: Any) -> None:
+        if getattr(condition, "position", None) is None:
+            condition.position = error_place(condition)
+        raise HandlerExit(token, 0, condition)
+
+    try:
+        return handler_bind([(kind, leave)], thunk)
+    except HandlerExit as exit_:
+        if exit_.token is not token:
+            raise
+        condition, exit_.__traceback__ = exit_.condition, None
+    except BaseException as exception:  # a printer in Python may raise SystemExit or a class of its own
+        if isinstance(exception, (KeyboardInterrupt, Condition)) or type(exception).__module__.startswith(_EXITS):
+            raise
+        condition = PythonError(exception)
+        condition.position = error_place(condition)
+    return otherwise(condition)
+
+
+_EXITS = ("cramhy_runtime.", "greenlet", "_pytest.")
+"""Where the exceptions are from that ask a task to end, or leave a form of Lisp, a stack or a test."""
+
+
+def shown(thing: Any, text_of: Callable[[], str]) -> str:
+    """``text_of()``, a text for somebody who is told of an error. It never fails, and it ends.
+
+    thing: what it is about. Where an object in the text cannot be printed, ``#<error printing a CLASS: why>`` stands; if the text as a
+    whole cannot be made, that is all of it. A text of more than `LONGEST` characters is made again with its lists cut short, and then cut.
+    Printing that computes or waits for longer than it may is broken off. Nothing ends a function of Python that never returns, but Ctrl-C.
+    The handlers around the caller are not asked about what printers signal.
+    """
+    making = MAKING.value
+    if making is not None:
+        return _text(making, thing, text_of)
+    alone = kernel.active() is None  # then nothing that is waited for takes time
+    with kernel.at_hand():
+        if not kernel.on_own_stack():  # a thread of Python has no bindings of its own
+            return _shown_outside(thing, text_of)
+        with nullcontext() if alone else kernel.time_limited(SECONDS), kernel.work_limited(SLICES):
+            making = Making()
+            with binding(SUPPRESS, sym("SERIOUS-CONDITION"), MAKING, making, BREAK_ON_SIGNALS, None):
+                text = _text(making, thing, text_of)
+            if making.too_long:
+                making = Making()
+                shorter = [sym(item) if isinstance(item, str) else item for item in SHORTER]
+                with binding(SUPPRESS, sym("SERIOUS-CONDITION"), MAKING, making, BREAK_ON_SIGNALS, None, *shorter):
+                    text = _text(making, thing, text_of)
+    return _cut(text)
+
+
+def bounded(thunk: Callable[[], str]) -> str:
+    """``thunk()``, which writes a string and returns it; what it has written when the string becomes too long for a text about an error."""
+    making = MAKING.value
+    if making is None:
+        return thunk()
+    number = making.strings + 1
+    try:
+        return thunk()
+    except TextTooLong as exit_:
+        if exit_.number != number:
+            raise
+        return exit_.text
+
+
+def _text(making: Making, thing: Any, text_of: Callable[[], str]) -> str:
+    if (known := making.stands_for(thing)) is not None:
+        return known
+    try:
+        found = making.attempt(thing, text_of)
+    except TextTooLong as exit_:
+        found = (exit_.text,)
+    text = found if isinstance(found, str) else str(found[0])
+    if len(text) > LONGEST:
+        making.too_long = True
+    return text
+
+
+def _shown_outside(thing: Any, text_of: Callable[[], str]) -> str:
+    try:
+        return _cut(text_of())
+    except Exception as problem:
+        return f"#<error printing a {class_text(thing)}: {type(problem).__name__}>"
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= LONGEST else f"{text[:LONGEST]} ... ({len(text) - LONGEST} more characters)"
+
+
+def class_text(thing: Any) -> str:
+    """The name of the class of ``thing``."""
+    try:
+        return str(class_name(type(thing)).name)
+    except Exception:
+        return type(thing).__name__.upper()
+
+
+def _brief(thing: Any) -> str:
+    return f"#<{class_text(thing)}>"
+
+
+def attempt_to_print(text_of: Callable[[Any], str], thing: Any) -> str:
+    """``text_of(thing)`` for a text about an error: see `shown`."""
+    return shown(thing, lambda: text_of(thing))
+
+
+def report_of(restart: Any) -> str:
+    """The text of ``restart`` for a debugger: see `shown`."""
+    return shown(restart, lambda: str(restart.report()))
+
+
+def unprintable(thing: Any, problem: Any) -> str:
+    """What stands for ``thing``, whose printer failed with the condition ``problem``: a line with its class, why, and where."""
+    making = MAKING.value
+    if making is None:
+        return shown(thing, lambda: MAKING.value.fail(thing, problem))
+    control = getattr(thing, "format_control", None)
+    begun = f"#<error printing a {class_text(thing)}" + (f' "{control[:LONGEST_REASON]}"' if isinstance(control, str) else "")
+    if making.explaining:  # why another object cannot be printed
+        return f"{begun}: {class_text(problem)}>"
+    making.explaining = True
+    try:
+        why = " ".join(str(problem).split())
+    finally:
+        making.explaining = False
+    if len(why) > LONGEST_REASON:
+        why = why[:LONGEST_REASON] + " ..."
+    place = describe(getattr(problem, "position", None))
+    return f"{begun}{f': {why}' if why else ''}{f' (at {place})' if place else ''}>"
+
+
+def not_ending() -> binding:
+    """``with not_ending():`` An object whose printing fails does not end what is printed around it, as where SBCL describes and traces."""
+    return binding(SUPPRESS, sym("SERIOUS-CONDITION"))
+
+
+def print_suppressed(thing: Any, stream: Any, output: Callable[[Any, Any], Any]) -> None:
+    """``output(thing, stream)``, where ``*suppress-print-errors*`` is not nil: what stands for ``thing`` is written if that fails."""
+    making = MAKING.value
+    if making is None:  # the user has bound it
+        suppressed(lambda: output(thing, stream), lambda problem: stream.write(unprintable(thing, problem)), SUPPRESS.value)
+        return
+    found: Any = making.stands_for(thing)
+    if found is None:
+        found = making.attempt(thing, lambda: output(thing, stream), making.strings)
+    if isinstance(found, str):
+        stream.write(found)
+
+
+def _guarded_text(thing: Any, text_of: Callable[[], str]) -> str:
+    making = MAKING.value
+    return text_of() if making is None else _text(making, thing, text_of)
+
+
+SHOWN.text = shown
+PlainPrinter.guard = staticmethod(_guarded_text)

@@ -11,9 +11,10 @@ import sys
 from itertools import islice
 
 from .data import list_from
-from .printing import guarded
+from .conditions import guarded
 
-_LIBRARIES = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "libraries")
+_RUNTIME = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+_LIBRARIES = os.path.join(_RUNTIME, "libraries")
 
 
 _called = {}  # the names of texts that are no files → the files that they were read from
@@ -217,6 +218,25 @@ circumstance = Circumstances()
 def source_position():
     """``cramhy::source-position``: the place of the innermost user frame as a list (file line column), or ``nil``."""
     return list_from(user_position(sys._getframe(1)) or ())
+
+
+def error_place(condition):
+    """Where ``condition``, which is signalled now, arose: of the user's text, or for an exception of Python the line that raised it."""
+    cause = condition.__cause__ if condition.__cause__ is not None else condition
+    if cause.__traceback__ is None:
+        return user_position(sys._getframe(1))
+    place = exception_position(cause)
+    if place is None:
+        frame, _ = _passed(cause)[0]
+        place = None if frame.f_code.co_filename.startswith(_RUNTIME) else (frame.f_code.co_filename, _passed_line(cause))
+    return place
+
+
+def _passed_line(exception):
+    traceback = exception.__traceback__
+    while traceback.tb_next is not None:
+        traceback = traceback.tb_next
+    return traceback.tb_lineno
 
 
 def describe(position):

@@ -15,7 +15,7 @@ from cramhy_runtime import kernel, storage
 from cramhy_runtime.ground.data import Cons, Symbol
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import COMMON_LISP_USER
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.session.session import value_text
 from cramhy_runtime.ground.source_places import keep_text
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
@@ -161,7 +161,7 @@ class Notebook:
 
             return hy.repr(value)
         with binding(PACKAGE, self.package):
-            return prin1_to_string(value)
+            return value_text(value)
 
     # ---------------------------------------------------------------------------------------------------------- completeness
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.packages import symbol_name
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.ground.printing import prin1_to_string, report_of
 from cramhy_runtime.languages.commonlisp.tools import backtrace
 from cramhy_runtime.languages.commonlisp.tools.advice import explanation, report_text
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of, condition_type
@@ -23,7 +23,7 @@ class Told:
         self.condition = condition
         self.name = str(condition_type(condition))
         self.text = report_text(condition)
-        self.restarts = [f"[{symbol_name(each.name) if each.name is not None else ''}] {each.report()}" for each in restarts]
+        self.restarts = [f"[{symbol_name(each.name) if each.name is not None else ''}] {report_of(each)}" for each in restarts]
         self.lines = [self.name, *explanation(condition).splitlines(), *backtrace.lines(condition)]
         if self.restarts:
             self.lines += ["", "restarts (%debugger on lets a cell ask which to take):"]

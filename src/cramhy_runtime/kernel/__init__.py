@@ -53,6 +53,7 @@ from .active import (
     interrupt,
     interrupt_over,
     now,
+    on_own_stack,
     outside_source,
     pace,
     park,
@@ -72,13 +73,14 @@ from .active import (
     time_wanted,
     unpark,
     woken_by,
+    work_limited,
     yield_,
 )
 from .cleanup import cleanup, cleanup_here, limit_by
 from .clocks import VirtualClock, WallClock
 from .depth import allow_deep_recursion
 from .endings import CLEANUP_LIMIT
-from .errors import Abandoned, Cancelled, Deadlock, Interrupted, KernelError, Terminated, TimeLimit, WaitEnded
+from .errors import Abandoned, Cancelled, Deadlock, Interrupted, KernelError, Terminated, TimeLimit, WaitEnded, WorkLimit
 from .reports import describe_frame, install_reporter, unhandled
 from .scheduler import Kernel
 from .tasks import Task
@@ -87,9 +89,9 @@ from .waiting import Waiting
 
 __all__ = [
     "Abandoned", "CLEANUP_LIMIT", "Cancelled", "Deadlock", "Interrupted", "Kernel", "KernelError", "Task", "Terminated", "TimeLimit",
-    "Timer", "VirtualClock", "WaitEnded", "Waiting", "WallClock", "active", "allow_deep_recursion", "aside", "at_hand", "call_at",
-    "call_every", "checkpoint", "choice_point", "cleanup", "cleanup_here", "current", "describe_frame", "holds_baton",
-    "install_reporter", "interrupt", "interrupt_over", "limit_by", "now", "outside_source", "pace", "park", "post", "refill",
-    "run_blocking", "set_clock", "settle", "shield", "sleep", "slice_over", "spawn", "start", "stop", "time_held", "time_limited",
-    "time_wanted", "unhandled", "unpark", "woken_by", "yield_",
+    "Timer", "VirtualClock", "WaitEnded", "Waiting", "WallClock", "WorkLimit", "active", "allow_deep_recursion", "aside", "at_hand",
+    "call_at", "call_every", "checkpoint", "choice_point", "cleanup", "cleanup_here", "current", "describe_frame", "holds_baton",
+    "install_reporter", "interrupt", "interrupt_over", "limit_by", "now", "on_own_stack", "outside_source", "pace", "park", "post",
+    "refill", "run_blocking", "set_clock", "settle", "shield", "sleep", "slice_over", "spawn", "start", "stop", "time_held",
+    "time_limited", "time_wanted", "unhandled", "unpark", "woken_by", "work_limited", "yield_",
 ]  # fmt: skip

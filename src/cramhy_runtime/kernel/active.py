@@ -101,6 +101,30 @@ def time_limited(seconds: float) -> Iterator[None]:
         timer.cancel()
 
 
+def on_own_stack() -> bool:
+    """Whether the caller is the task that runs, and not an outside thread that came by."""
+    carrier = current().carrier
+    return carrier is None or carrier.ident == get_ident()
+
+
+@contextmanager
+def work_limited(slices: int) -> Iterator[None]:
+    """Raise `WorkLimit` in the current task when the block has used up so many slices of the processor, and at the end of each slice after.
+
+    It ends a block that computes, where `time_limited` ends one that waits. Slices are counted, not seconds, so that a run stays a function
+    of its inputs (law 4). In a block that is limited already the limit around it counts.
+    """
+    task = current()
+    if task.slices_left is not None:
+        yield
+        return
+    task.slices_left = slices
+    try:
+        yield
+    finally:
+        task.slices_left = None
+
+
 _idle: Cell[Kernel | None] = Cell(None, fresh=True)
 
 

@@ -73,5 +73,9 @@ class TimeLimit(Exception):
     """Kernel time reached the limit given to `start`. Raised in the main task."""
 
 
+class WorkLimit(BaseException):
+    """A block has used up the slices that `work_limited` gave it. It is no error, so a handler in the block does not swallow it."""
+
+
 class NoStack(Exception):
     """The system gives no more stacks. The cause says why. Back ends raise it, and the task that needed the stack fails."""

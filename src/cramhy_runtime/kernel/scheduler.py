@@ -314,12 +314,14 @@ class Kernel(Endings, Outside, Timing):
             self._breathe()
         if me is self._scheduler:
             budget.renew()
+            me.use_slice()
             if self._interrupts:
                 raise Interrupted  # a signal gets the user out of a callback that loops for ever, too
             return
         if me.carrier.ident != get_ident():
             budget.end()  # an outside thread came by; the task whose slice it is shall find it over
             return
+        me.use_slice()
         if me.attention and me.deliver():
             budget.renew()  # the slice was ended for this, and not because the task is busy: no time passes
             return

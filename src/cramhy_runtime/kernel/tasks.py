@@ -17,7 +17,7 @@ from contextvars import copy_context
 from types import SimpleNamespace
 
 from .budget import budget
-from .errors import Abandoned, Cancelled, KernelError
+from .errors import Abandoned, Cancelled, KernelError, WorkLimit
 from .typing_names import TYPE_CHECKING, Any, Generic, NoReturn, Protocol, TypeVar, subscripted
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class Task(Generic[T]):
         "kernel", "id", "_name", "parent", "owner", "_local", "dynamic", "handlers", "result", "cancelled_delivered",
         "state", "why", "carrier", "attention", "woken", "ticket", "timed", "preempted", "shielded", "alarms", "abandoned",
         "fn", "args", "context", "joiners", "cancel_request", "interjections", "delivered",
-        "swallowed", "_exception", "claimed", "when_refused", "cleanup", "parts",
+        "swallowed", "_exception", "claimed", "when_refused", "cleanup", "parts", "slices_left",
         "__weakref__",
     )  # fmt: skip
     __class_getitem__ = subscripted
@@ -82,6 +82,7 @@ class Task(Generic[T]):
         self.cleanup: cleanup | None = None  # the innermost `cleanup` block it is in
         self.alarms: list[Alarm] | None = None
         self.abandoned = False
+        self.slices_left: int | None = None  # in a block of `work_limited`
         self.fn = fn
         self.args: tuple[object, ...] | None = args
         self.context: Context | None = copy_context()
@@ -159,6 +160,14 @@ class Task(Generic[T]):
         self.attention = True
         self.kernel.rouse(self)
         return True
+
+    def use_slice(self) -> None:
+        """Count the end of a slice against the limit of `work_limited`, if the task is in such a block."""
+        if self.slices_left is not None:
+            self.slices_left -= 1
+            if self.slices_left < 0:
+                budget.renew()
+                raise WorkLimit
 
     def abandon(self) -> None:
         """Abandon its cleanup: `Abandoned` is raised at every park point and checkpoint from now on, in shields too."""

@@ -23,7 +23,7 @@ from cramhy_runtime.ground.packages import COMMON_LISP, symbol_name, symbol_pack
 from cramhy_runtime.ground.source_places import describe
 
 
-from cramhy_runtime.session.session import Interruption, condition_of, signalled_here
+from cramhy_runtime.session.session import Interruption, condition_of, signalled_here, value_text
 
 from . import answer_streams
 
@@ -129,12 +129,9 @@ def evaluate(session, text, descriptors=None):
 def _evaluate(session, text, output):
     try:
         with output.collecting():
-            completed, values = session.with_abort(lambda: session.evaluate_text(text))
+            completed, printed = session.with_abort(lambda: [value_text(value) for value in session.evaluate_text(text)])
             if not completed:
                 return _failure(output.take(), "CRAMHY::ABORTED", "aborted")
-            from cramhy_runtime.ground.printing import prin1_to_string
-
-            printed = [prin1_to_string(value) for value in values]
     except Interruption:
         return _failure(output.take(), "CRAMHY::INTERRUPTED", "The form was interrupted.")
     except kernel.Terminated:

@@ -27,6 +27,7 @@ from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import Cons
 from cramhy_runtime.ground.packages import sym, symbol_name
+from cramhy_runtime.ground.printing import report_of
 from cramhy_runtime.ground.source_places import circumstance
 
 from . import commands, prompt_words
@@ -34,7 +35,7 @@ from .line_input import BROKEN_OFF, Lines
 from .open_forms import of_lisp
 from .progress import Progress
 from cramhy_runtime.session.boot import boot
-from cramhy_runtime.session.session import Interruption, leave, signalled_here
+from cramhy_runtime.session.session import Interruption, leave, signalled_here, value_text
 
 
 ABORT = sym("ABORT")
@@ -294,14 +295,12 @@ class Listener:
 
     def show(self, values):
         """Print values, each on a line of its own."""
-        from cramhy_runtime.ground.printing import prin1_to_string
-
         output = streams.CONSOLE_OUTPUT
         output.fresh_line()
         if not values:
             output.write("; No value\n")
         for value in values:
-            output.write(prin1_to_string(value) + "\n")
+            output.write(value_text(value) + "\n")
         output.flush()
 
     # ------------------------------------------------------------------------------------------------------------ debugger
@@ -344,7 +343,7 @@ class Listener:
             "",
             "restarts (type a number to choose one, or a form to evaluate):",
         ]
-        lines += [f"  {index}: [{symbol_name(restart.name):{width}}] {restart.report()}" for index, restart in enumerate(restarts)]
+        lines += [f"  {index}: [{symbol_name(restart.name):{width}}] {report_of(restart)}" for index, restart in enumerate(restarts)]
         output.write("\n".join(lines) + "\n")
         output.flush()
 

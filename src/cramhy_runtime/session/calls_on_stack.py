@@ -13,7 +13,7 @@ import sys
 from cramhy_runtime.ground.data import lisp_list, list_from
 from cramhy_runtime.languages.commonlisp.compiler.frame_exits import FrameExit, can_be_left
 from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.printing import guarded
+from cramhy_runtime.ground.printing import attempt_to_print
 from cramhy_runtime.ground.python_names import lisp_spelling, python_name
 from cramhy_runtime.ground.source_places import circumstance, frame_position, is_user_file
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
@@ -129,7 +129,7 @@ def calls_on_stack(frame, condition=None):
 
 
 def _short(value):
-    text = guarded(lambda: prin1_to_string(value), lambda problem: f"#<{type(value).__name__}>")
+    text = attempt_to_print(prin1_to_string, value)
     text = " ".join(text.split())
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 

@@ -17,7 +17,7 @@ from cramhy_runtime.designators import classes, resolution
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import Cons, Symbol, list_end, list_from
 from cramhy_runtime.ground.packages import is_symbol
-from cramhy_runtime.ground.printing import guarded
+from cramhy_runtime.ground.printing import attempt_to_print, guarded
 from cramhy_runtime.languages.commonlisp.objects.classes import class_of
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.tools import inspecting
@@ -181,4 +181,8 @@ def _designator(designator):
 
 
 def _pair(pair):
-    return Part(prin1_to_string(pair.car), classes.value_of(pair)) if isinstance(pair, Cons) else Part(prin1_to_string(pair), pair)
+    return (
+        Part(attempt_to_print(prin1_to_string, pair.car), classes.value_of(pair))
+        if isinstance(pair, Cons)
+        else Part(attempt_to_print(prin1_to_string, pair), pair)
+    )

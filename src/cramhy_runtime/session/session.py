@@ -17,11 +17,13 @@ from cramhy_runtime.kernel.images import Cell
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.streams import streams
+from cramhy_runtime.languages.commonlisp.python import python_calls
 from cramhy_runtime.languages.commonlisp.systems import asdf, systems, unit_tests
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of  # noqa: F401  for those who have a session
 from cramhy_runtime.languages.commonlisp.compiler.compilation_unit import signalling_position
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import all_values, list_from
+from cramhy_runtime.ground.printing import class_text, prin1_to_string
 from cramhy_runtime.languages.commonlisp.packages.face_definition import define_face
 from cramhy_runtime.languages.commonlisp.pathnames.namestrings import parse_native
 from cramhy_runtime.ground.packages import COMMON_LISP_USER, find_package_or_error, near_names, on_demand, registered, sym
@@ -334,6 +336,12 @@ class Session:
     def with_abort(self, thunk, report="Exit debugger, returning to top level."):
         """Call ``thunk`` with a restart ABORT; (True, its result), or (False, None) when it was aborted."""
         return conditions.restart_case([(sym("ABORT"), lambda: (False, None), report)], lambda: (True, thunk()))
+
+
+@circumstance(lambda variables: f"while a value of class {class_text(variables['value'])} was printed")
+def value_text(value):
+    """A value as ``prin1`` prints it, for a prompt. If its printer fails, that is an error, which says so."""
+    return python_calls.guarded(prin1_to_string, value)
 
 
 def signalled_here(condition):

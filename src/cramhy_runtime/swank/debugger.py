@@ -12,6 +12,7 @@ import sys
 from cramhy_runtime import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.packages import symbol_name
+from cramhy_runtime.ground.printing import report_of
 from cramhy_runtime.ground.source_places import circumstance
 from cramhy_runtime.languages.commonlisp.tools.advice import explanation
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_type
@@ -100,7 +101,7 @@ class Debugger:
         waiting = [number for request, number in self.connection.running.items() if request is requests.request_of(self.task)]
         return (
             (explanation(condition), f"   [Condition of type {condition_type(condition)}]", None),
-            [(symbol_name(restart.name) if restart.name is not None else "", restart.report()) for restart in self.restarts],
+            [(symbol_name(restart.name) if restart.name is not None else "", report_of(restart)) for restart in self.restarts],
             self.backtrace(start, end),
             waiting,
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.printing import guarded
+from cramhy_runtime.ground.printing import attempt_to_print
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PRINT_LENGTH, PRINT_LEVEL, PRINT_PRETTY
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.session import inspection
@@ -21,9 +21,9 @@ def text_of(obj, pretty=False):
     """How an object is printed, shortened unless ``pretty``."""
     if pretty:
         with binding(PRINT_PRETTY, True):
-            return guarded(lambda: prin1_to_string(obj), lambda problem: f"#<it cannot be printed: {problem}>")
+            return attempt_to_print(prin1_to_string, obj)
     with binding(PRINT_LENGTH, 20, PRINT_LEVEL, 5):
-        found = guarded(lambda: prin1_to_string(obj), lambda problem: f"#<it cannot be printed: {problem}>")
+        found = attempt_to_print(prin1_to_string, obj)
     return found if len(found) <= LONGEST else found[: LONGEST - 3] + "..."
 
 

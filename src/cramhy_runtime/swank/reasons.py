@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.printing import guarded, prin1_to_string
+from cramhy_runtime.ground.printing import attempt_to_print, prin1_to_string
 from cramhy_runtime.languages.commonlisp.tools.advice import report_text
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of
 
@@ -14,14 +14,11 @@ def aborted(work):
     condition = getattr(work, "debugged", None)
     if condition is None:
         return "aborted"
-    return guarded(lambda: prin1_to_string(condition), lambda problem: type(condition).__name__)
+    return attempt_to_print(prin1_to_string, condition)
 
 
 def reason_of(failure):
     """The text of a failure for the echo area."""
     if isinstance(failure, Refused):
         return str(failure)
-    try:
-        return report_text(condition_of(failure))
-    except Exception:
-        return f"{type(failure).__name__}: {failure}"
+    return report_text(condition_of(failure))

@@ -26,7 +26,7 @@ from cramhy_runtime.ground.classes import class_name
 from cramhy_runtime.ground.packages import symbol_name
 from cramhy_runtime.ground.packages import CURRENT as PACKAGE
 from cramhy_runtime.ground.packages import sym as lisp_symbol
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.ground.printing import attempt_to_print, prin1_to_string
 from cramhy_runtime.ground.output import designated_stream
 from cramhy_runtime.ground.printing import report_text
 from ..tasks.branches import Branches
@@ -330,11 +330,8 @@ def waits_for(kernel_task):
 
 def short(value):
     """``value`` printed on one line, cut to `LONGEST` characters."""
-    try:
-        with binding(PRINT_LENGTH, 8, PRINT_LEVEL, 4, PRINT_PRETTY, None):
-            return cut(prin1_to_string(value))
-    except Exception as broken:
-        return f"(cannot be printed: {type(broken).__name__})"
+    with binding(PRINT_LENGTH, 8, PRINT_LEVEL, 4, PRINT_PRETTY, None):
+        return cut(attempt_to_print(prin1_to_string, value))
 
 
 def cut(text):

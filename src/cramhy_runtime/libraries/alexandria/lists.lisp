@@ -47,7 +47,9 @@
 
 (defun lastcar (list)
   "The last element of LIST."
-  (if (proper-list-p list) (car (last list)) (not-a-proper-list list)))
+  (if (proper-list-p list)
+      (car (last list))
+      (not-a-proper-list (if (and (consp list) (not (circular-list-p list))) (cdr (last list)) list))))
 
 (defun (setf lastcar) (object list)
   (if (proper-list-p list) (setf (car (last list)) object) (not-a-proper-list list)))

@@ -128,12 +128,12 @@
 
 (defmacro eswitch ((object &key (test 'eql) (key 'identity)) &body clauses)
   "SWITCH that signals an error when no clause matches."
-  (switch-form clauses object test key (lambda (value) `(error "No keys match in ESWITCH. Value: ~S, tested with ~S." ,value ',test))))
+  (switch-form clauses object test key (lambda (value) `(error "No keys match in SWITCH. Testing against ~S with ~S." ,value ',test))))
 
 (defmacro cswitch ((object &key (test 'eql) (key 'identity)) &body clauses)
   "SWITCH that signals a correctable error when no clause matches."
   (switch-form clauses object test key
-               (lambda (value) `(cerror "Return NIL from CSWITCH." "No keys match in CSWITCH. Value: ~S, tested with ~S." ,value ',test))))
+               (lambda (value) `(cerror "Return NIL from CSWITCH." "No keys match in SWITCH. Testing against ~S with ~S." ,value ',test))))
 
 (defmacro whichever (&rest possibilities)
   "The value of one of the forms, chosen at random."
@@ -184,17 +184,16 @@
            ,values)))))
 
 (defun destructuring-form (keyform clauses case-operator)
-  "The expansion of DESTRUCTURING-CASE and its kin with the operator CASE-OPERATOR."
+  "The expansion of DESTRUCTURING-CASE and its kin with the operator CASE-OPERATOR. In all clauses, that of T too, the lambda list gets
+what follows the key."
   (with-gensyms (object)
     `(let ((,object ,keyform))
-       (,case-operator (first ,object)
+       (unless (consp ,object)
+         (error "Invalid key to DESTRUCTURING-~S: ~S" ',case-operator ,object))
+       (,case-operator (car ,object)
          ,@(mapcar (lambda (clause)
                      (destructuring-bind ((keys . lambda-list) &body body) clause
-                       (if (eq case-operator 'case)
-                           (if (member keys '(t otherwise))
-                               `(,keys (destructuring-bind ,lambda-list ,object ,@body))
-                               `(,keys (destructuring-bind ,lambda-list (rest ,object) ,@body)))
-                           `(,keys (destructuring-bind ,lambda-list (rest ,object) ,@body)))))
+                       `(,keys (destructuring-bind ,lambda-list (cdr ,object) ,@body))))
                    clauses)))))
 
 (defmacro destructuring-case (keyform &body clauses)

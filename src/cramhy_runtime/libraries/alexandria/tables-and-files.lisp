@@ -12,21 +12,23 @@
   "Call FUNCTION with each value of TABLE."
   (maphash (lambda (key value) (declare (ignore key)) (funcall function value)) table))
 
+;;; The lists are in the order in which the library makes them: what was entered last comes first.
+
 (defun hash-table-keys (table)
   "The list of the keys of TABLE."
-  (loop for key being the hash-keys of table collect key))
+  (let ((keys nil)) (maphash (lambda (key value) (declare (ignore value)) (push key keys)) table) keys))
 
 (defun hash-table-values (table)
   "The list of the values of TABLE."
-  (loop for value being the hash-values of table collect value))
+  (let ((all nil)) (maphash (lambda (key value) (declare (ignore key)) (push value all)) table) all))
 
 (defun hash-table-alist (table)
   "The association list of the entries of TABLE."
-  (loop for key being the hash-keys of table using (hash-value value) collect (cons key value)))
+  (let ((alist nil)) (maphash (lambda (key value) (push (cons key value) alist)) table) alist))
 
 (defun hash-table-plist (table)
   "The property list of the entries of TABLE."
-  (loop for key being the hash-keys of table using (hash-value value) collect key collect value))
+  (let ((plist nil)) (maphash (lambda (key value) (setf plist (list* key value plist))) table) plist))
 
 (defun alist-hash-table (alist &rest hash-table-initargs)
   "A hash table with the pairs of ALIST; of equal keys the first counts."

@@ -242,7 +242,7 @@
             (if (and (zerop b) (>= a c)) 0d0 (atan (- (+ middle distance) a) b)))))
 
 (defun sample-from-distribution-matrix (matrix)
-  "The row and the column, two values, of an element of MATRIX that is drawn by lot; its value is its chance against the others.
+  "The list (column row) of an element of MATRIX that is drawn by lot; its value is its chance against the others.
 No element may be negative. A matrix of zeros is an error."
   (let ((left (random 1d0)) (sum (total matrix)))
     (unless (plusp sum)
@@ -255,7 +255,8 @@ No element may be negative. A matrix of zeros is an error."
             (setf drawn index)
             (when (< left weight) (return))
             (decf left weight))))
-      (floor drawn (width matrix)))))
+      (multiple-value-bind (row column) (floor drawn (width matrix))
+        (list column row)))))
 
 ;;; ------------------------------------------------------------------------------------------------------------------ colours
 

@@ -8,9 +8,9 @@ The macros evaluate their arguments only if `enabled` is true. Source: roslisp.m
 from __future__ import annotations
 
 from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleError, SimpleWarning
+from cramhy_runtime.ground.condition_types import SimpleCondition, SimpleError, SimpleWarning
 from cramhy_runtime.ground.data import Cons, LispString, Symbol, lisp_list, list_from
-from cramhy_runtime.ground.printing import format_to_string
+from cramhy_runtime.ground.printing import format_to_string, guarded, shown
 from cramhy_runtime.ground.output import standard_output
 from cramhy_runtime.ground.packages import intern, string_designator, symbol_name
 from cramhy_runtime.ground.printing import princ_to_string
@@ -62,11 +62,16 @@ def enabled(level: int, topic: object) -> bool:
 def ros_log(level: int, topic: object, control: str, *arguments: object) -> int | None:
     """Log the format ``control`` with ``arguments``, if the topic's level allows ``level``.
 
-    Returns the number of ``/rosout`` subscribers, or nil if nothing is logged or no node runs. Source: roslisp.md 4.
+    Returns the number of ``/rosout`` subscribers, or nil if nothing is logged or no node runs. An argument that cannot be printed does not
+    end the plan that logs it: see `shown`. Source: roslisp.md 4.
     """
     if not enabled(level, topic):
         return None
-    return _print(level, topic, format_to_string(control, *arguments))
+    text = guarded(
+        lambda: format_to_string(control, *arguments),
+        lambda _: shown(SimpleCondition(control, *arguments), lambda: format_to_string(control, *arguments)),
+    )
+    return _print(level, topic, text)
 
 
 def log_text(level: int, topic: object, text: str) -> int | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.data import UNBOUND, Symbol
 from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.printing import guarded, prin1_to_string
+from cramhy_runtime.ground.printing import attempt_to_print, prin1_to_string
 from cramhy_runtime.languages.commonlisp.collections.characters import CHARACTER_NAMES
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PRINT_LENGTH, PRINT_LEVEL
 from cramhy_runtime.session import arglists, completion, fuzzy
@@ -121,7 +121,7 @@ def _value_of_variable(word, package):
     if not isinstance(symbol, Symbol) or symbol.value is UNBOUND or not symbol.special or arglists.is_callable(symbol):
         return None
     with binding(PRINT_LENGTH, 10, PRINT_LEVEL, 4):
-        shown = guarded(lambda: prin1_to_string(symbol.value), lambda problem: f"#<{type(symbol.value).__name__}>")
+        shown = attempt_to_print(prin1_to_string, symbol.value)
     text = " ".join(f"{symbol.name} => {shown}".split())
     return text if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 3] + "..."
 

@@ -6,7 +6,7 @@ from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.data import all_values
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import symbol_name
-from cramhy_runtime.ground.printing import guarded, prin1_to_string
+from cramhy_runtime.ground.printing import attempt_to_print, prin1_to_string
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PRINT_PRETTY
 from cramhy_runtime.languages.commonlisp.tools import tracing
@@ -99,7 +99,7 @@ def frame_locals(call, index):
 
 
 def _text(value):
-    return guarded(lambda: prin1_to_string(value), lambda problem: f"#<it cannot be printed: {problem}>")
+    return attempt_to_print(prin1_to_string, value)
 
 
 @rpc("frame-source-location")

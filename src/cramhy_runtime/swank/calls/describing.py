@@ -10,7 +10,7 @@ from cramhy_runtime.languages.commonlisp.objects.classes import registered_class
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.tools import apropos
 from cramhy_runtime.languages.commonlisp.tools.describing import description
-from cramhy_runtime.languages.commonlisp.tools.documentation import documentation
+from cramhy_runtime.languages.commonlisp.tools.documentation import shown_documentation
 from cramhy_runtime.languages.operators import operator_of
 
 from ..rpcs import Refused, rpc, text
@@ -59,7 +59,7 @@ def _documented(symbol):
     if operator is not None:
         yield "Operator", f"{operator.shape}\n {operator.documentation}"
     for label, kind in (("Variable", VARIABLE), ("Function", FUNCTION), ("Type", TYPE)):
-        told = documentation(symbol, kind) if not (operator is not None and kind is FUNCTION) else None
+        told = shown_documentation(symbol, kind) if not (operator is not None and kind is FUNCTION) else None
         if isinstance(told, str):
             yield label, str(told).strip()
 
@@ -99,7 +99,7 @@ def _facts(symbol):
     for name, is_so, kind in kinds:
         if is_so:
             operator = operator_of(symbol) if name == ":macro" else None
-            told = operator.documentation if operator is not None else documentation(symbol, kind)
+            told = operator.documentation if operator is not None else shown_documentation(symbol, kind)
             first = str(told).strip().partition("\n")[0] if isinstance(told, str) and told.strip() else Name(":not-documented")
             facts += [Name(name), first]
     return facts

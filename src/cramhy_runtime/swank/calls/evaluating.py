@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PRINT_PRETTY, PRINT_RIGHT_MARGIN
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.systems import program_files
 from cramhy_runtime.session.requests import request_of
-from cramhy_runtime.session.session import HISTORY, LAST_FORMS, LAST_VALUES
+from cramhy_runtime.session.session import HISTORY, LAST_FORMS, LAST_VALUES, value_text
 
 from .. import indentation, presentations
 from ..packages import prompt_of
@@ -40,7 +39,7 @@ def echo(values):
     """The values for the echo area, as SLIME shows them."""
     if not values:
         return "; No value"
-    shown = ", ".join(map(prin1_to_string, values))
+    shown = ", ".join(map(value_text, values))
     only = values[0]
     if len(values) == 1 and isinstance(only, int) and not isinstance(only, bool):
         return f"=> {only} ({only.bit_length()} bit{'s' if only.bit_length() != 1 else ''}, #x{only:X}, #o{only:o}, #b{only:b})"
@@ -52,14 +51,15 @@ def echo(values):
 
 @rpc("interactive-eval interactive-eval-region", evaluates=True)
 def interactive_eval(call, source):
-    return echo(evaluated(call, text(source)))
+    values = evaluated(call, text(source))
+    return aborting(call, lambda: echo(values))
 
 
 @rpc("pprint-eval", evaluates=True)
 def pprint_eval(call, source):
     values = evaluated(call, text(source))
     with binding(PRINT_PRETTY, True):
-        return "".join(prin1_to_string(value) + "\n" for value in values) or "; No value"
+        return aborting(call, lambda: "".join(value_text(value) + "\n" for value in values)) or "; No value"
 
 
 @rpc("eval-and-grab-output", evaluates=True)
@@ -67,13 +67,13 @@ def eval_and_grab_output(call, source):
     output = streams.StringOutputStream()
     with binding(streams.STANDARD_OUTPUT, output, streams.ERROR_OUTPUT, output, streams.TRACE_OUTPUT, output):
         values = evaluated(call, text(source))
-    return [output.take(), "\n".join(map(prin1_to_string, values))]
+    return [output.take(), aborting(call, lambda: "\n".join(map(value_text, values)))]
 
 
 @rpc("value-for-editing", evaluates=True)
 def value_for_editing(call, source):
     with binding(PRINT_PRETTY, True):
-        return "".join(prin1_to_string(value) for value in evaluated(call, text(source))[:1])
+        return "".join(value_text(value) for value in evaluated(call, text(source))[:1])
 
 
 @rpc("commit-edited-value", evaluates=True)
@@ -112,7 +112,7 @@ def listener_eval(call, source, *, window_width=None):
         before, connection.package = connection.package, evaluator.PACKAGE.value
         if connection.package is not before:
             connection.send(Name(":new-package"), connection.package.name, prompt_of(connection.package))
-        show(connection, values)
+        aborting(call, lambda: show(connection, values))
         if connection.images is not None:
             connection.images.show()
     if "(" in text(source) and ("mac" in text(source).lower() or "load" in text(source).lower()):
@@ -133,7 +133,7 @@ def show(connection, values):
     if not values:
         connection.send(Name(":write-string"), "; No value\n", result)
     for value in values:
-        shown = prin1_to_string(value)
+        shown = value_text(value)
         if connection.presents:
             id_ = kept.add(value)
             connection.send(Name(":presentation-start"), id_, result)

@@ -276,6 +276,17 @@ def mention_type(specifier):
         unit.types.append(Mention(name, None, expansion_place(), ()))
 
 
+def mention_definitions(names):
+    """Note that the macro call being expanded defines functions of these ``names``, symbols or ``("setf", symbol)``.
+
+    Forms in it may call them.
+    """
+    unit = CURRENT.value
+    if unit is not None:
+        for name in names:
+            unit.define(name, None, None)
+
+
 def noticing(thunk):
     """(value of ``thunk``, the warnings that compiling in it gave and nobody muffled)."""
     with compilation_unit("form") as unit:

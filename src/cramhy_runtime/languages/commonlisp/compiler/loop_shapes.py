@@ -76,6 +76,9 @@ def loop_of(node):
     return Loop(first, last, early)
 
 
+FIXNUM = sym("FIXNUM")
+
+
 @dataclass
 class Counting:
     """``variable`` goes from its value by ``step`` to ``limit``, a node; ``body`` is what is left to do in each turn."""
@@ -152,7 +155,9 @@ def _goes(node, tagbody, index):
 
 
 def _step(value, variable):
-    """The number that is added to ``variable``, or ``None``."""
+    """The number that is added to ``variable``, or ``None``. Nobody counts beyond a fixnum, so the declaration of one needs no check."""
+    if value.__class__ is nodes.Checked and value.type is FIXNUM:
+        value = value.value
     if value.__class__ is not nodes.Call or value.symbol not in STEPS or not value.arguments:
         return None
     first, *others = value.arguments

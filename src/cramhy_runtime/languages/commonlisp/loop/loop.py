@@ -66,6 +66,7 @@ class Loop:
         self.it = None
         self.it_used = False
         self.accumulators = {}
+        self.aggregates = False  # whether a clause such as ALWAYS decides about the value
         self.default_result = None
 
     # ------------------------------------------------------------------------------------------------------------- clauses
@@ -209,16 +210,24 @@ def _while(loop, keyword):
 
 
 def _always(loop, keyword):
-    _top_level_only(loop, keyword)
     test, leave = loop.tokens.form(), loop.leave(None)
+    _aggregate(loop, keyword)
     loop.emit(lisp_list(IF, test, None, leave) if keyword == "ALWAYS" else lisp_list(IF, test, leave, None))
     loop.default_result = True
 
 
 def _thereis(loop, keyword):
+    found, form = gensym("FOUND"), loop.tokens.form()
+    _aggregate(loop, keyword)
+    loop.emit(lisp_list(LET, lisp_list(lisp_list(found, form)), lisp_list(IF, found, loop.leave(found), None)))
+
+
+def _aggregate(loop, keyword):
+    """Note a clause that decides about the value of the loop; there may be none that accumulates it, too (ANSI 6.1.4)."""
     _top_level_only(loop, keyword)
-    found = gensym("FOUND")
-    loop.emit(lisp_list(LET, lisp_list(lisp_list(found, loop.tokens.form())), lisp_list(IF, found, loop.leave(found), None)))
+    if None in loop.accumulators:
+        loop.tokens.fail("This LOOP clause is not permitted with anonymous collectors.", hint=loop_accumulation.WITH_INTO)
+    loop.aggregates = True
 
 
 def _top_level_only(loop, keyword):

@@ -15,6 +15,8 @@ from .loop_tokens import zero
 SETQ, CONS, CDR, PLUS, GREATER, LESS = map(sym, "SETQ CONS CDR + > <".split())
 IF, LET = sym("IF"), sym("LET")
 
+WITH_INTO = "INTO gives what is collected a variable, which FINALLY can return."
+
 KINDS = {
     **dict.fromkeys(("COLLECT", "COLLECTING", "APPEND", "APPENDING", "NCONC", "NCONCING"), "LIST"),
     **dict.fromkeys(("SUM", "SUMMING", "COUNT", "COUNTING"), "SUM"),
@@ -62,6 +64,8 @@ def clause(loop, keyword):
 
 def _accumulator(loop, keyword, into, declared):
     kind = KINDS[keyword]
+    if into is None and loop.aggregates:
+        loop.tokens.fail("This anonymous collection LOOP clause is not permitted with aggregate booleans.", hint=WITH_INTO)
     found = loop.accumulators.get(into)
     if found is not None:
         if found.kind != kind:

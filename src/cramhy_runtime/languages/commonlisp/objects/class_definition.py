@@ -90,8 +90,12 @@ def define_class(name, superclasses=None, slots=None, *, default_initargs=None, 
     initargs = [python_list(entry)[0] for entry in python_list(default_initargs)]
     for initarg in initargs:
         if initargs.count(initarg) > 1:
-            invalid_class_definition("Duplicate initarg ~S in the :DEFAULT-INITARGS of DEFCLASS ~S.", initarg, name)
-    bases = [_superclass(name, base) for base in python_list(superclasses)]
+            invalid_class_definition("Duplicate initialization argument name ~S in :DEFAULT-INITARGS of DEFCLASS ~S.", initarg, name)
+    superclasses = python_list(superclasses)
+    if name in superclasses or registered_class(name) in superclasses:
+        error(SimpleError("Class named ~A specified as its own superclass.", qualified(name)))
+    bases = [_superclass(name, base) for base in superclasses]
+    _check_superclasses(name, bases)
     bases = [base for base in bases if base is not object]
     if not any(issubclass(base, StandardObject) for base in bases):
         bases.append(StandardObject)
@@ -136,6 +140,13 @@ def _superclass(name, base):
             )
         )
     return cls
+
+
+def _check_superclasses(name, bases):
+    """Signal an error if the class ``name`` would be its own superclass by a round of others."""
+    old = registered_class(name)
+    if old is not None and any(issubclass(base, old) for base in bases):
+        error(SimpleError("Specified class ~S as a superclass of itself.", old))
 
 
 def _make_or_change(name, bases, slots):

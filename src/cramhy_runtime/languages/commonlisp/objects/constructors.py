@@ -54,7 +54,8 @@ def _written_constructor(structure, names):
 def instance_constructor(plan, keys):
     """The function that takes the values of the initargs ``keys`` and makes an instance by the `Plan` of its class; ``None`` if there is
     more to do, or something wrong."""
-    if plan.valid is not None and not plan.valid.issuperset(keys) or ALLOW_OTHER_KEYS in keys or len({*keys}) < len(keys):
+    known = {*keys, *plan.defaults}
+    if plan.valid is not None and not plan.valid.issuperset(known) or ALLOW_OTHER_KEYS in known or len({*keys}) < len(keys):
         return None
     if plan.afters is None or plan.python_init not in (None, Condition.__init__) or plan.parameters:
         return None

@@ -44,7 +44,7 @@ class InitargError(ProgramError):
         plural = "s" if len(self.invalid) > 1 else ""
         return (
             f"Invalid initialization argument{plural}:\n  {names}\nin call for class {shown(self.class_)}.\nSee also:\n"
-            f"The ANSI Standard, Section 7.1.2"
+            f"  The ANSI Standard, Section 7.1.2"
         )
 
 

@@ -35,7 +35,7 @@ from cramhy_runtime.ground.data import (
 from ..streams.streams import BroadcastStream, Stream, StringOutputStream, output_stream
 from cramhy_runtime.ground.plain_answers import printers, printers_found
 from cramhy_runtime.ground.plain_answers import printer_for as nearest_printer
-from cramhy_runtime.ground.printing import define_printer
+from cramhy_runtime.ground.printing import SUPPRESS, bounded, define_printer, print_suppressed
 from cramhy_runtime.ground.looking_on import only_looked_at
 from cramhy_runtime.kernel.images import Cell
 from . import print_controls as controls
@@ -149,6 +149,13 @@ def _print_circular(obj, stream):
 
 
 def _print(obj, stream):
+    if SUPPRESS.value is None:
+        _print_itself(obj, stream)
+    else:
+        print_suppressed(obj, stream, _print_itself)
+
+
+def _print_itself(obj, stream):
     if PRINT_PRETTY.value is not None:
         layout = PRINT_PPRINT_DISPATCH.value.find(obj)
         if layout is not None:
@@ -387,6 +394,10 @@ def _to_string(obj, escape):
     text_of = _ATOMS.get(obj.__class__)
     if text_of is not None and PRINT_CIRCLE.value is None and not PRINT_PPRINT_DISPATCH.value.entries:
         return text_of(obj, escape)
+    return bounded(lambda: _written(obj, escape))
+
+
+def _written(obj, escape):
     stream = StringOutputStream()
     write(obj, stream, escape)
     return stream.text()

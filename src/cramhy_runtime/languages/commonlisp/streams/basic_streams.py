@@ -12,6 +12,7 @@ from cramhy_runtime.ground.condition_types import ClosedStreamError
 from cramhy_runtime.ground.condition_types import SimpleTypeError
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.packages import ensure_package, sym
+from cramhy_runtime.ground.printing import MAKING
 
 _EXTERNAL = {"SB-SYS": "FD-STREAM", "SB-IMPL": "", "SB-PRETTY": "PPRINT-DISPATCH-TABLE", "SB-FORMAT": "FORMAT-ERROR"}
 for _package, _external in _EXTERNAL.items():
@@ -122,7 +123,8 @@ class StringOutputStream(OutputStream, StringStream):
         self.target = target
         self._column = self._counted = 0  # the column behind so many of the parts
         if target is None:
-            self.write = self.parts.append  # nothing else is to be done for most streams
+            making = MAKING.value
+            self.write = self.parts.append if making is None else making.appender(self.parts)  # nothing else is to be done for most streams
         else:
             text = str(target)
             self.column = len(text) - text.rfind("\n") - 1

@@ -103,6 +103,7 @@ def load_asd(pathname, *, name=None):
     if not path.is_file():
         return error(systems.MissingComponent("There is no file ~A.", str(path)))
     systems.load_asd(path, force=True)
+    systems.choose_file(path.absolute())
     return None
 
 

@@ -22,6 +22,7 @@ from ..compiler.compilation_unit import compilation_unit
 from ..evaluation.definitions import RedefinitionWarning
 from ..evaluation.evaluator import PACKAGE, evaluate
 from ..files.files import lisp_path
+from ..streams.streams import ERROR_OUTPUT, output_stream
 from cramhy_runtime.ground.packages import Package, find_package, near_names, register, string_designator, sym
 from . import loader, missing_messages
 from cramhy_runtime.storage.dependencies import file_state, unchanged
@@ -46,6 +47,8 @@ _loading: list = per_image([])
 CENTRAL_REGISTRY = sym("ASDF::*CENTRAL-REGISTRY*")
 preferred: set = per_image(set())
 """Names of systems that `prefer` takes from ROS_PACKAGE_PATH, though cramhy contains one of that name."""
+chosen: dict = per_image({})
+"""Name of a system that cramhy contains, too → the ``.asd`` file that the user has loaded, or has put into the central registry."""
 NOT_TO_BE_HAD = {
     "sb-bsd-sockets": "it is part of SBCL; Python's socket module does its work",
     "usocket": "it opens sockets by functions of the system; Python's socket module does its work",
@@ -101,6 +104,28 @@ def prefer(name):
     preferred.add(name)
     systems.pop(name, None)
     return None
+
+
+def choose_file(path):
+    """Take the systems that the ``.asd`` file ``path`` defines from there, also those that cramhy contains; of these a line is told."""
+    for name in [system.name for system in systems.values() if system.file == path]:
+        if (name in built_in or f"{name}.asd" in libraries()) and chosen.get(name) != path:
+            preferred.add(name)
+            chosen[name] = path
+            stream = output_stream(ERROR_OUTPUT.value)
+            stream.fresh_line()
+            stream.write(f"; The system {name} is that of {path}, not the one that cramhy contains.\n")
+            stream.flush()
+
+
+def _ask_registry(name):
+    """If the user's central registry has a system ``name`` that cramhy contains, too, take that one."""
+    if name in preferred or CENTRAL_REGISTRY.value is None or not (name in built_in or f"{name}.asd" in libraries()):
+        return
+    path = next((folder / f"{name}.asd" for folder in central_registry() if os.path.isfile(folder / f"{name}.asd")), None)
+    if path is not None:
+        load_asd(path)
+        choose_file(path.absolute())
 
 
 def central_registry():
@@ -213,6 +238,8 @@ def find_asd(name):
     """The ``.asd`` file that defines the system ``name`` (its file name, or its secondary name after the slash), or ``None``."""
     home = name.partition("/")[0]
     wanted = home + ".asd"
+    if home in chosen:
+        return chosen[home]
     if home in preferred and (found := _find_below(wanted, True)) is not None:
         return found
     if wanted in libraries():
@@ -349,6 +376,7 @@ def load_system(name, force=False, version=None):
 
 def _load_system(name, force=False, required_by=None, version=None):
     name = string_designator(name).lower()
+    _ask_registry(name)
     if is_provided(name):
         return name
     if name in _loading:

@@ -13,7 +13,8 @@ from cramhy_runtime import kernel
 
 from cramhy_runtime.ground.condition_types import Condition
 from cramhy_runtime.ground.python_exceptions import from_python
-from cramhy_runtime.ground.conditions import SimpleStyleWarning, types
+from cramhy_runtime.ground.conditions import SimpleStyleWarning, guarded, types
+from cramhy_runtime.ground.printing import shown
 from cramhy_runtime.ground.data import Symbol, UNBOUND, UndefinedFunction, list_from
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.source_places import describe, describe_frame, excerpt, locate
@@ -47,10 +48,7 @@ def report_text(condition):
     """The text of ``condition``, with messages and other long objects in their short form, as SBCL's debugger shows them."""
     with binding(pprint_dispatch.PRINT_PPRINT_DISPATCH, pprint_dispatch.INITIAL):
         if type(condition).report is Condition.report:  # without a :report, a method of print-object may tell what happened
-            try:
-                return princ_to_string(condition)
-            except Exception:
-                pass  # a broken method must not hide the condition
+            return shown(condition, lambda: princ_to_string(condition))
         return str(condition)
 
 
@@ -116,7 +114,8 @@ def _expansion(condition, position):
 
 def hint_for(condition):
     """The circumstances, advice, and what else went wrong, a line each, or ``None``."""
-    return "\n".join(filter(None, [*(getattr(condition, "circumstances", None) or ()), _advice(condition), *_beside(condition)])) or None
+    advice = guarded(lambda: _advice(condition), lambda problem: f"What to try could not be told: {' '.join(report_text(problem).split())}")
+    return "\n".join(filter(None, [*(getattr(condition, "circumstances", None) or ()), advice, *_beside(condition)])) or None
 
 
 def _beside(condition):

@@ -45,9 +45,10 @@ from ..objects.structures import StructureObject
 from cramhy_runtime.ground.packages import KEYWORD, Package, is_symbol, sym, symbol_name
 from ..printer.print_controls import PACKAGE, PRINT_GENSYM, PRINT_LINES, PRINT_RIGHT_MARGIN
 from ..printer.printer import prin1_to_string
+from cramhy_runtime.ground.printing import not_ending
 from ..streams.streams import Stream, StringOutputStream, output_stream
 from ..types import types
-from .documentation import documentation
+from .documentation import shown_documentation
 
 LISP_NAMES = "describe describe-object"
 FUNCTION, TYPE, VARIABLE, SETF, T = sym("FUNCTION"), sym("TYPE"), sym("VARIABLE"), sym("SETF"), True
@@ -131,7 +132,7 @@ def one_line(obj):
 
 def describe(obj, stream=None):
     """``describe``: print what is known about ``obj`` to ``stream``; no values."""
-    with binding(PRINT_RIGHT_MARGIN, margin()):
+    with binding(PRINT_RIGHT_MARGIN, margin()), not_ending():
         describe_object(obj, output_stream(stream))
     return NO_VALUES
 
@@ -348,7 +349,7 @@ def describe_function(function, out):
     if generic is not None and generic.shape.required > 1:
         names = generic.shape.names
         out.value("Argument precedence order", list_from([names[index] for index in generic.precedence or range(len(names))]))
-    out.documentation(documentation(function, T))
+    out.documentation(shown_documentation(function, T))
     if generic is not None:
         out.line(f"Method-combination: {symbol_name(generic.combination.name)}")
         out.line("Methods:" if generic.methods else "No methods.")
@@ -366,7 +367,7 @@ def describe_operator(operator, function, out):
     """How an operator of the plan language is written, and what it is for."""
     out.line(f"Written: {operator.shape}")
     out.line(f"In Hy: {hy_shape(operator)}")
-    out.documentation(documentation(function, T))
+    out.documentation(shown_documentation(function, T))
 
 
 def _named_function(function, name, out):
@@ -420,7 +421,7 @@ def describe_symbol(symbol, out):
             else f"(SETF {name}) has a complex setf-expansion:"
         )
         with out.indented():
-            out.documentation(documentation(symbol, SETF))
+            out.documentation(shown_documentation(symbol, SETF))
     _describe_type(symbol, name, out)
     return NO_VALUES
 
@@ -445,7 +446,7 @@ def _variable(symbol, name, kind, value, out):
         else:
             out.value("Value", value)
         if isinstance(symbol, Symbol) and not isinstance(symbol, Keyword):
-            out.documentation(documentation(symbol, VARIABLE))
+            out.documentation(shown_documentation(symbol, VARIABLE))
 
 
 def _describe_type(symbol, name, out):
@@ -455,7 +456,7 @@ def _describe_type(symbol, name, out):
         out.line()
         out.line(f"{name} names a type-specifier:")
         with out.indented():
-            out.documentation(documentation(symbol, TYPE))
+            out.documentation(shown_documentation(symbol, TYPE))
             lambda_list = expander.__lisp_lambda_list__
             out.lambda_list(lambda_list)
             if lambda_list is None:

@@ -8,7 +8,8 @@ standard. Source: ANSI 25.2 (DOCUMENTATION); the texts of the warning and of ``(
 from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import warn
-from cramhy_runtime.ground.data import Cons, Symbol, UndefinedFunction
+from cramhy_runtime.ground.data import Cons, LispString, Symbol, UndefinedFunction
+from cramhy_runtime.ground.printing import attempt_to_print, prin1_to_string, suppressed
 from ..evaluation.definitions import data
 from ..evaluation.forms import compiler_macro_function
 from ..objects import classes
@@ -120,3 +121,13 @@ def _set_documentation(text, obj, doc_type):
 documentation = protocol_function("DOCUMENTATION", "(object doc-type)", _documentation)
 set_documentation = generic("(setf DOCUMENTATION)", "(new-value object doc-type)")
 set_documentation.method(None, None, None)(_set_documentation)
+
+
+def shown_documentation(obj, kind):
+    """The text of ``obj`` as a ``kind`` for somebody who looks it up, or nil. A method that fails, or gives no text, is told as such."""
+
+    def failed(problem):
+        return f"#<error finding the documentation: {' '.join(str(problem).split())}>"
+
+    text = suppressed(lambda: documentation(obj, kind), failed)
+    return text if text is None or isinstance(text, (str, LispString)) else attempt_to_print(prin1_to_string, text)

@@ -23,6 +23,7 @@ from ..objects.slots import slot_boundp, slot_value
 from ..objects.structures import StructureObject
 from cramhy_runtime.ground.packages import Package, ensure_package, is_symbol, sym, symbol_name, symbol_package
 from ..printer.printer import prin1_to_string
+from cramhy_runtime.ground.printing import attempt_to_print
 from ..reader.reader import Reader, incomplete
 from ..streams.streams import QUERY_IO, input_stream, output_stream
 from .describing import public_attributes
@@ -58,7 +59,7 @@ def parts(obj):
     if arrays.arrayp(obj):
         return _array_parts(obj)
     if isinstance(obj, hash_tables.HashTable):
-        entries = [(prin1_to_string(key), value) for key, value in obj.items()]
+        entries = [(attempt_to_print(prin1_to_string, key), value) for key, value in obj.items()]
         return f"The object is a HASH-TABLE of type {prin1_to_string(hash_tables.hash_table_test(obj))}.", True, entries
     if isinstance(obj, Package):
         entries = [
@@ -133,7 +134,7 @@ def _instance_parts(obj):
     public = public_attributes(obj)
     if public:
         return f"The object is a {kind}." if kind != "T" else f"The object is a Python {type(obj).__qualname__}.", True, public
-    return f"The object is an ATOM:\n  {prin1_to_string(obj)}", True, []
+    return f"The object is an ATOM:\n  {attempt_to_print(prin1_to_string, obj)}", True, []
 
 
 class Inspector:
@@ -152,7 +153,7 @@ class Inspector:
         lines = ["", title]
         for index, (label, value) in enumerate(entries):
             head = f"{index}. {label}: " if named else f"{index}. "
-            shown = '"unbound"' if value is MISSING else prin1_to_string(value)
+            shown = '"unbound"' if value is MISSING else attempt_to_print(prin1_to_string, value)
             lines.append(head + shown.replace("\n", "\n" + " " * len(head)))
         self.write("\n".join(lines) + "\n")
 

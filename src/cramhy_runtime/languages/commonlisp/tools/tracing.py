@@ -23,6 +23,7 @@ from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
 from cramhy_runtime.ground.packages import find_package_or_error, sym
 from ..printer.print_names import symbol_with_prefix
 from ..printer.printer import prin1_to_string
+from cramhy_runtime.ground.printing import not_ending
 from ..streams.streams import TRACE_OUTPUT, output_stream
 
 SETF = sym("SETF")
@@ -46,7 +47,8 @@ class Trace:
             return function(*arguments, **keywords)
         depth, report = _depth.value, "REPORT" not in self.options or option("REPORT") is not None
         if report:
-            self.write(depth, prin1_to_string(Cons(self.name, list_from(arguments))))
+            with not_ending():
+                self.write(depth, prin1_to_string(Cons(self.name, list_from(arguments))))
         self.print("PRINT", depth)
         self.stop("BREAK")
         ended = False
@@ -58,7 +60,8 @@ class Trace:
             if not ended and report:
                 self.write(depth, f"{prin1_to_string(self.name)} exited non-locally")
         if report:
-            shown = "".join(" " + prin1_to_string(value) for value in all_values(result))
+            with not_ending():
+                shown = "".join(" " + prin1_to_string(value) for value in all_values(result))
             self.write(depth, f"{prin1_to_string(self.name)} returned{shown}")
         self.print("PRINT-AFTER", depth)
         self.stop("BREAK-AFTER")
