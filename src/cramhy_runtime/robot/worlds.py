@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from math import atan2, degrees
@@ -78,8 +79,12 @@ class World:
 
     @for_python
     def settle(self, seconds: float = 10.0) -> None:
-        """Let what is free fall, until it lies."""
+        """Let what is free fall, until it lies, so many seconds at most. Of a thing that is stuck inside of another one a warning tells."""
         self.core.simulate(seconds)
+        for item, other in self.core.stuck:
+            inside = "the floor" if other is None else text(other.name)
+            what = f"{text(item.name)} is inside of {inside} and cannot get out of it"
+            warnings.warn(f"{what}. It stays where it is: move() puts it elsewhere.", stacklevel=2)
 
     def names(self) -> list[str]:
         """The names of all objects that are neither robot nor furniture, in the order in which they came."""
