@@ -121,9 +121,8 @@ def _seen_from(stand: PoseStamped | None, kind: str, near: PoseStamped) -> Any:
         if stand is not None:
             go(stand)
         look(near)
-        visible = sorted(
-            lisp("CRAM-PR2-PROJECTION", "visible_items")(wanted) or (), key=lambda item: _distance(item.placement.pose(), near)
-        )
+        visible = list(lisp("CRAM-PR2-PROJECTION", "visible_items")(wanted) or ())
+        visible.sort(key=lambda item: _distance(item.placement.pose(), near))
         return detect(Object(type=wanted["type"], name=visible[0].name) if visible else wanted)
     except (failures.NavigationLowLevelFailure, failures.PtuLowLevelFailure, failures.PerceptionLowLevelFailure):
         return None
@@ -172,8 +171,9 @@ def _lost(thing: Object, target: PoseStamped, failure: Any) -> str:
 def transport(kind: str, near: Place, target: Place) -> Any:
     """Fetch the object of a type that is nearest to a place, and deliver it to ``target``. Returns its designator; it stands there then.
 
-    An object that fell over or was pushed, and lies within `PUSHED` of its target, is fetched again, `AGAIN` times. Failures: `ObjectNowhereToBeFound`,
-    `ObjectUnfetchable`, `ObjectUndeliverable`.
+    An object that fell over or was pushed, and lies within `PUSHED` of its target, is fetched again, `AGAIN` times.
+
+    Failures: `ObjectNowhereToBeFound`, `ObjectUnfetchable`, `ObjectUndeliverable`.
     """
     near, target = in_room(near), in_room(target)
     thing = fetch(kind, near)
