@@ -72,3 +72,4 @@ def test_a_robot_that_lisp_has_loaded_counts(image):
     assert told(lambda: robot.world("cram_porter_description"))[0] is ValueError
     libraries.load("cram_pr2_description")
     assert libraries.robots() == ["PR2"] and robot.World().names() == []
+    assert type(robot.world(mode="physical").core).__name__ == "PhysicalWorld", "the mode is that of this image"

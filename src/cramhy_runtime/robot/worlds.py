@@ -10,7 +10,7 @@ from typing import Any
 
 from cramhy_runtime.cpl.failures.python_exceptions import for_python
 from cramhy_runtime.ground.data import Symbol, list_from
-from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.ground.packages import find_package_or_error, keyword, sym
 from cramhy_runtime.robot_world.placements import Placement, of_pose
 from cramhy_runtime.robot_world.pictures import movies, stills, views
 from cramhy_runtime.tf.stamped import PoseStamped
@@ -184,7 +184,8 @@ def world(description: str | None = None, mode: str = "kinematic") -> World:
     if mode not in MODES:
         raise ValueError(f"The mode of a world is {' or '.join(map(repr, MODES))}, not {mode!r}.")
     load(description)
-    sym("CRAM-BULLET-REASONING-BELIEF-STATE::*WORLD-MODE*").value = keyword(mode.upper())
+    # not by `sym`, which remembers the symbol of the first image: each image loads the library for itself
+    find_package_or_error("CRAM-BULLET-REASONING-BELIEF-STATE").intern("*WORLD-MODE*").value = keyword(mode.upper())
     lisp("CRAM-OCCASIONS-EVENTS", "clear_belief")()
     return World()
 
