@@ -189,10 +189,10 @@ def test_a_variable_of_a_method_may_be_called_as_a_macro_is(type_in, body):
     "form",
     [
         "(cl:in-package :bare-of-lisp)\n(cl-utilities:split-sequence 1 '(2 1 3))\n(cl:in-package :cl-user)",
-        "(let ((*read-base* 16)) (find-package :lisp-unit))",
-        "(let ((*readtable* (let ((r (copy-readtable nil))) (setf (readtable-case r) :preserve) r))) (find-package :closer-mop))",
-        "(let ((*read-suppress* t)) (find-package :trivial-garbage))",
-        "(let ((*package* (find-package :keyword))) (find-package :trivial-gray-streams))",
+        '(let ((*read-base* 16)) (find-symbol "X" :lisp-unit))',
+        '(let ((*readtable* (let ((r (copy-readtable nil))) (setf (readtable-case r) :preserve) r))) (find-symbol "X" :closer-mop))',
+        '(let ((*read-suppress* t)) (find-symbol "X" :trivial-garbage))',
+        '(let ((*package* (find-package :keyword))) (find-symbol "X" :trivial-gray-streams))',
     ],
 )
 def test_a_library_is_loaded_whatever_is_bound_where_its_package_is_named(type_in, form):

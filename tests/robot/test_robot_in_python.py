@@ -55,7 +55,7 @@ def test_objects_come_go_and_are_moved(kitchen):
         (lambda kitchen: kitchen.move("cup-7", CUP), KeyError, "There is nothing named cup-7; there are cup-1"),
         (lambda kitchen: robot.go(None), TypeError, "A place is robot.at"),
         (lambda kitchen: robot.pick_up("cup"), TypeError, "An object that was detected is expected"),
-        (lambda kitchen: robot.world("cram_porter_description"), ValueError, "This image has a robot already"),
+        (lambda kitchen: robot.world("cram_porter_description"), ValueError, "This image has the robot PR2 already"),
     ],
 )
 def test_what_is_asked_wrongly_is_told(kitchen, wrong, error, text):

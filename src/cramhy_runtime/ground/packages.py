@@ -161,8 +161,8 @@ _packages: dict[str, Package] = per_image({})
 _ours: dict[str, Package] = {}
 """The packages of our own code, whose symbols our modules hold: all images have the same, though not all at the same time."""
 on_demand: dict = per_image({})
-"""Packages of libraries that come with cramhy → the system that defines each, or a function that makes it; either is called upon when
-somebody asks for the package."""
+"""Packages that come with cramhy → the system of a library, which is loaded when code names the package to use it, or a function that
+makes the package when somebody asks for it."""
 finders: list = []
 """Who is asked for a package that nobody has registered: pairs of a function of its name, which registers it and returns it, or returns
 ``None``, and a function that gives the names of all that it could make, for "did you mean"."""
@@ -181,7 +181,7 @@ def register(package):
 
 def ensure_package(name, *nicknames, use=()):
     """The package ``name``, registered with its nicknames if it does not exist yet: what a room's ``symbols.py`` calls."""
-    return _packages.get(name) or find_package(name) or ours(name, lambda: Package(name, nicknames, use))
+    return _packages.get(name) or named_package(name) or ours(name, lambda: Package(name, nicknames, use))
 
 
 def ours(name, make):
@@ -260,24 +260,34 @@ def is_string_designator(thing):
 
 
 def find_package(designator):
-    """The package a name, symbol or package stands for, or ``None``."""
+    """The package that a name, symbol or package stands for, or ``None``. A question: no library is loaded to answer it.
+
+    A package of our own that is only made when somebody asks for it counts as there, and is made.
+    """
     if isinstance(designator, Package):
         return designator
     name = string_designator(designator)
     nicknames = getattr(CURRENT.value, "local_nicknames", None)
     if nicknames and name in nicknames:
         return nicknames[name]
-    if name in on_demand:
-        maker = on_demand[name]
-        if callable(maker):
-            with our_own:
-                maker()
-        else:
-            PORTS.systems.load(maker)
+    maker = on_demand.get(name)
+    if callable(maker):
+        with our_own:
+            maker()
     found = _packages.get(name)
-    if found is None:
+    if found is None and maker is None:
         for find, _ in finders:
             found = found or find(name)
+    return found
+
+
+def named_package(designator):
+    """The package that code names in order to use what is in it, or ``None``; a library that defines it is loaded first."""
+    found = find_package(designator)
+    library = on_demand.get(string_designator(designator)) if found is None else None
+    if library is not None:
+        PORTS.systems.load(library)
+        found = find_package(designator)
     return found
 
 
@@ -298,7 +308,7 @@ def defined_by_program(names):
 
 def find_package_or_error(designator):
     """The package; a name without one is an error whose restarts may give another."""
-    package = find_package(designator)
+    package = named_package(designator)
     if package is None:
         if not is_string_designator(designator):
             return PORTS.signals.type_error(designator, "(OR STRING SYMBOL CHARACTER PACKAGE)")

@@ -34,7 +34,7 @@ def plan_macros():
 
 
 TRUSTED = frozenset(("cramhy", "hyrule", "hy"))
-_REQUIRED = re.compile(r"^\s*\((?:require|eval-when-compile|eval-and-compile|do-mac)\b([^()]*)", re.M)
+_REQUIRED = re.compile(r"^[ \t]*\((?:require|eval-when-compile|eval-and-compile|do-mac)\b([^()]*)", re.M)
 _RUNS = re.compile(r"\((?:eval-when-compile|eval-and-compile|do-mac|defreader|defmacro)\b")
 
 

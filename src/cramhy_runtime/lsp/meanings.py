@@ -14,7 +14,7 @@ from cramhy_runtime.session.lookup import bare_name
 
 from .texts import Form
 
-_IN_PACKAGE = re.compile(r"""^\s*\((?:cl:|common-lisp:)?in-package\s+[#:'"]*([^\s()"]+)"?\s*\)""", re.M | re.I)
+_IN_PACKAGE = re.compile(r"""^[ \t]*\((?:cl:|common-lisp:)?in-package\s+[#:'"]*([^\s()"]+)"?\s*\)""", re.M | re.I)
 
 
 def package_name_at(text, offset):

@@ -26,6 +26,7 @@ plan of its own. The room needs the extra ``robot``.
 ``poses``          ``at(x, y, z, yaw=90)``
 ``worlds``         ``world()``, and what can be asked of it and changed in it
 ``designators``    the actions as classes: ``PickingUp(object=found, arm=kw.left)``
+``outcomes``       whether a thing stands at its target, is in a hand, and arms are parked
 ``acting``         ``run``, ``go``, ``look``, ``detect``, ``pick_up``, ``place``, ``park``, ``lift``
 ``transporting``   ``transport``, with the places and the grasps that it tries
 =================  =====================================================================================================

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from cramhy_runtime.cpl import SimplePlanFailure
 
-from .libraries import lisp
+from .libraries import failure_class
 
 
 class _Failure:
@@ -18,7 +18,7 @@ class _Failure:
         self.name = name
 
     def __get__(self, instance: object, owner: type | None = None) -> type[SimplePlanFailure]:
-        found: type[SimplePlanFailure] = lisp("CRAM-COMMON-FAILURES", self.name)
+        found: type[SimplePlanFailure] = failure_class(self.name)
         return found
 
 

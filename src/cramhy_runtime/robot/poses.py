@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, radians, sin
+from math import cos, isfinite, radians, sin
 
 from cramhy_runtime.ground.data import DoubleFloat
 from cramhy_runtime.tf.stamped import PoseStamped, make_pose_stamped
@@ -23,7 +23,17 @@ def at(x: float, y: float, z: float = 0.0, yaw: float = 0.0, frame: str = "map")
 
 
 def pose_of(place: Place) -> PoseStamped:
-    """``place`` as a pose; a point, or three numbers, is not turned. Errors: TypeError, for anything else."""
+    """``place`` as a pose; a point, or three numbers, is not turned. Errors: TypeError, for anything else; ValueError, for numbers that are
+    not finite."""
+    pose = _pose_of(place)
+    origin, turn = pose.origin, pose.orientation
+    numbers = [*map(float, (origin.x, origin.y, origin.z, turn.x, turn.y, turn.z, turn.w))]
+    if not all(map(isfinite, numbers)):
+        raise ValueError(f"A place has finite numbers, not {tuple(numbers[:3])}, turned by the quaternion {tuple(numbers[3:])}.")
+    return pose
+
+
+def _pose_of(place: Place) -> PoseStamped:
     if isinstance(place, PoseStamped):
         return place
     if isinstance(place, Vector3):

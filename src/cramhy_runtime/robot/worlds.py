@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from math import atan2, degrees
@@ -9,7 +10,7 @@ from typing import Any
 
 from cramhy_runtime.cpl.failures.python_exceptions import for_python
 from cramhy_runtime.ground.data import Symbol, list_from
-from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.ground.packages import find_package_or_error, keyword, sym
 from cramhy_runtime.robot_world.placements import Placement, of_pose
 from cramhy_runtime.robot_world.pictures import movies, stills, views
 from cramhy_runtime.tf.stamped import PoseStamped
@@ -78,8 +79,12 @@ class World:
 
     @for_python
     def settle(self, seconds: float = 10.0) -> None:
-        """Let what is free fall, until it lies."""
+        """Let what is free fall, until it lies, so many seconds at most. Of a thing that is stuck inside of another one a warning tells."""
         self.core.simulate(seconds)
+        for item, other in self.core.stuck:
+            inside = "the floor" if other is None else text(other.name)
+            what = f"{text(item.name)} is inside of {inside} and cannot get out of it"
+            warnings.warn(f"{what}. It stays where it is: move() puts it elsewhere.", stacklevel=2)
 
     def names(self) -> list[str]:
         """The names of all objects that are neither robot nor furniture, in the order in which they came."""
@@ -179,7 +184,8 @@ def world(description: str | None = None, mode: str = "kinematic") -> World:
     if mode not in MODES:
         raise ValueError(f"The mode of a world is {' or '.join(map(repr, MODES))}, not {mode!r}.")
     load(description)
-    sym("CRAM-BULLET-REASONING-BELIEF-STATE::*WORLD-MODE*").value = keyword(mode.upper())
+    # not by `sym`, which remembers the symbol of the first image: each image loads the library for itself
+    find_package_or_error("CRAM-BULLET-REASONING-BELIEF-STATE").intern("*WORLD-MODE*").value = keyword(mode.upper())
     lisp("CRAM-OCCASIONS-EVENTS", "clear_belief")()
     return World()
 

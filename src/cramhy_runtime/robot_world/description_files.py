@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 from . import urdf
 from .descriptions import Description
-
-_MJCF = re.compile(rb"\A(?:\xef\xbb\xbf)?\s*(?:<\?.*?\?>\s*|<!--.*?-->\s*|<!DOCTYPE[^>]*>\s*)*<mujoco[\s>/]", re.DOTALL)
+from .xml_elements import read_bytes, root_name
 
 
 def read_text(text: str | bytes, file: str = "") -> Description:
     """The description in a text; ``file`` is its name in errors. Errors: `DescriptionError`; ImportError, for MJCF without MuJoCo."""
-    if _is_mjcf(text):
+    if root_name(text) == "mujoco":
         from . import mjcf  # MuJoCo is an extra
 
         return mjcf.read_text(text, file)
@@ -22,12 +20,9 @@ def read_text(text: str | bytes, file: str = "") -> Description:
 
 def read_file(path: str | Path) -> Description:
     """The description in a file. Errors: as of `read_text`; OSError, when it cannot be read."""
-    if _is_mjcf(Path(path).read_bytes()):
+    data = read_bytes(path)
+    if root_name(data) == "mujoco":
         from . import mjcf
 
         return mjcf.read_file(path)
-    return urdf.read_file(path)
-
-
-def _is_mjcf(text: str | bytes) -> bool:
-    return _MJCF.match(text.encode("utf-8", "replace") if isinstance(text, str) else text) is not None
+    return urdf.read_text(data, str(path))

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .descriptions import DescriptionError
-from .xml_elements import Element, parsed
+from .xml_elements import Element, parsed, read_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -95,7 +95,7 @@ def solid_mesh(points: np.ndarray, triangles: np.ndarray, name: str) -> Mesh:
 
 
 def _stl(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    data = path.read_bytes()
+    data = read_bytes(path)
     count = int.from_bytes(data[80:84], "little")
     if len(data) >= 84 and len(data) == 84 + 50 * count:  # a binary file may begin with the word solid, too
         facets = np.frombuffer(data, np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("rest", "<u2")]), offset=84)
@@ -113,7 +113,7 @@ def _stl(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 def _obj(path: Path) -> tuple[np.ndarray, list]:
     points, triangles = [], []
-    for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
+    for number, line in enumerate(read_bytes(path).decode("utf-8", "replace").splitlines(), 1):
         word, *rest = line.split("#")[0].split() or [""]
         try:
             if word == "v":
@@ -136,7 +136,7 @@ def _fan(corners: list[int]) -> list[list[int]]:
 
 
 def _dae(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    return _Collada(parsed(path.read_bytes(), path.name), str(path)).scene()
+    return _Collada(parsed(read_bytes(path), path.name), str(path)).scene()
 
 
 class _Collada:

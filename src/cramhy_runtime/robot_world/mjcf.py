@@ -11,7 +11,7 @@ Law: whatever the text is, it gives a `Description`, or a `DescriptionError` wit
 from __future__ import annotations
 
 import re
-from math import inf
+from math import inf, prod
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,12 @@ import numpy as np
 from .descriptions import Description, DescriptionError, Frame, Joint, Link, Shape
 from .mesh_files import Mesh
 from .mujoco_parts import mujoco
+from .xml_elements import Element, parsed, read_bytes
 
+MOST_PARTS = 5_000
+"""Bodies, geoms and sites, each copy that <replicate> and the like make counted; MuJoCo needs ten seconds for 2,000 bodies that fall."""
+MOST_INCLUDED = 100
+_REPEATING = {"replicate", "composite", "flexcomp"}
 _WHERE = re.compile(r"Element '(?P<element>[^']*)'(?:, line (?P<line>\d+))?|[Ll]ine (?P<other>\d+)")
 _PLANE, _SPHERE, _CAPSULE, _ELLIPSOID, _CYLINDER, _BOX, _MESH = (
     int(getattr(mujoco.mjtGeom, f"mjGEOM_{kind}")) for kind in "PLANE SPHERE CAPSULE ELLIPSOID CYLINDER BOX MESH".split()
@@ -31,14 +36,41 @@ _ROOT = "world"
 
 def read_file(path: str | Path) -> Description:
     """The description in an MJCF file. Errors: `DescriptionError`; OSError, when it cannot be read."""
-    Path(path).read_bytes()  # tells what MuJoCo does not: why a file cannot be opened
+    _check_size(parsed(read_bytes(path), str(path)), str(path), Path(path).parent)
     return _read(lambda: mujoco.MjModel.from_xml_path(str(path)), str(path))
 
 
 def read_text(text: str | bytes, file: str = "") -> Description:
     """The description in the text of an MJCF file, which cannot name other files. Errors: `DescriptionError`."""
     words = text.decode("utf-8", "replace") if isinstance(text, bytes) else text
+    _check_size(parsed(text.lstrip(), file), file)
     return _read(lambda: mujoco.MjModel.from_xml_string(words), file)
+
+
+def _check_size(root: Element, file: str, folder: Path | None = None) -> None:
+    """Refuse what MuJoCo would take minutes to read, with no way to interrupt it. ``folder``: where included files are looked for."""
+    left, waiting, included = MOST_PARTS, [(root, 1, file)], 0
+    while waiting:
+        element, times, place = waiting.pop()
+        if element.name in _REPEATING:
+            times *= max(1, _product(element.attributes.get("count", "1")))
+        elif element.name in ("body", "geom", "site", "flexcomp"):
+            left -= times
+        if left < 0 or times > MOST_PARTS:
+            reason = f"it makes more than {MOST_PARTS} bodies and geoms, which MuJoCo needs too long to read."
+            raise DescriptionError(reason, place, element.line, element.name)
+        if element.name == "include" and folder is not None:
+            path, included = folder / element.attributes.get("file", ""), included + 1
+            if included > MOST_INCLUDED:
+                raise DescriptionError(f"more than {MOST_INCLUDED} files are included.", place, element.line, element.name)
+            if path.is_file():  # of others MuJoCo tells that they are missing
+                waiting.append((parsed(read_bytes(path), str(path)), times, str(path)))
+        waiting += [(inner, times, place) for inner in element.inside]
+
+
+def _product(count: str) -> int:
+    numbers = [float(word) for word in count.split() if word.replace(".", "", 1).isdigit()]
+    return int(min(prod(numbers), 1e9))
 
 
 def _read(load, file: str) -> Description:  # noqa: ANN001

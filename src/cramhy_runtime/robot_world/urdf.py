@@ -14,15 +14,14 @@ from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 from .descriptions import UNTURNED, Description, DescriptionError, Four, Frame, Joint, Link, Shape, Three, turned
-from .xml_elements import Element, parsed
+from .xml_elements import Element, parsed, read_bytes
 
 _KINDS = {"fixed", "revolute", "continuous", "prismatic"}
 
 
 def read_file(path: str | Path) -> Description:
     """The description in a URDF file. Errors: `DescriptionError`; OSError, when it cannot be read."""
-    data = Path(path).read_bytes()
-    return read_text(data, str(path))
+    return read_text(read_bytes(path), str(path))
 
 
 def read_text(text: str | bytes, file: str = "") -> Description:

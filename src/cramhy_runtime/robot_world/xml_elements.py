@@ -1,10 +1,16 @@
 """XML as a tree of elements that know their line: what URDF and Collada are read from.
 
-Entities that a document defines itself are refused: a small file can make them huge. Errors are `DescriptionError`, with file and line.
+The files are other people's, so each size has a bound. Entities that a document defines itself are refused: a small file can make them
+huge, or have other files in it. Text is parsed in pieces, so an interrupt ends a long one. Errors are `DescriptionError`, with file and
+line.
 """
 
 from __future__ import annotations
 
+import os
+from contextlib import suppress
+from pathlib import Path
+from stat import S_ISREG
 from typing import TYPE_CHECKING
 from xml.parsers import expat
 
@@ -14,6 +20,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 MOST_ELEMENTS = 200_000
+MOST_BYTES = 256 * 1024 * 1024
+"""Of a file. The Collada files of the robots that people publish have up to 40 MB."""
+MOST_WITHIN = 1_000
+"""Elements around an element."""
+_PIECE = 1 << 16  # bytes or characters that are parsed at once
 
 
 class Element:
@@ -50,6 +61,48 @@ class Element:
             waiting += reversed(element.inside)
 
 
+class _Enough(Exception):
+    """What was asked is known."""
+
+
+def read_bytes(path: str | Path) -> bytes:
+    """The bytes of a regular file. Errors: `DescriptionError`, for a pipe, a device, or a file that is too large; OSError."""
+    with open(path, "rb", opener=_without_waiting) as file:
+        if not S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise DescriptionError("this is not a regular file; a description is read from a file of finite size.", str(path))
+        data = file.read(MOST_BYTES + 1)
+    if len(data) > MOST_BYTES:
+        raise DescriptionError(f"it has more than {MOST_BYTES >> 20} MiB.", str(path))
+    return data
+
+
+def _without_waiting(path: str, flags: int) -> int:
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))  # a pipe that nobody writes to is opened, and then refused
+
+
+def root_name(text: str | bytes) -> str:
+    """The name of the element around all, as far as this is XML; else ``""``."""
+    parser, found = expat.ParserCreate(), [""]
+
+    def start(name: str, attributes: dict[str, str]) -> None:
+        found[0] = name
+        raise _Enough
+
+    def refused(*arguments: object) -> None:
+        raise _Enough
+
+    parser.StartElementHandler, parser.EntityDeclHandler = start, refused
+    with suppress(_Enough, expat.ExpatError):
+        _feed(parser, text.lstrip())  # MuJoCo takes files that begin with white space
+    return found[0]
+
+
+def _feed(parser: expat.XMLParserType, text: str | bytes) -> None:
+    for begin in range(0, len(text), _PIECE):
+        parser.Parse(text[begin : begin + _PIECE], False)
+    parser.Parse(b"", True)
+
+
 def parsed(text: str | bytes, file: str) -> Element:
     """The root element of an XML text; ``file`` stands in errors. Errors: `DescriptionError`."""
     parser, stack, roots, count = expat.ParserCreate(), [], [], 0
@@ -61,6 +114,8 @@ def parsed(text: str | bytes, file: str) -> Element:
         element = Element(name, attributes, parser.CurrentLineNumber)
         if count > MOST_ELEMENTS:
             raise DescriptionError(f"it has more than {MOST_ELEMENTS} elements.", file, element.line, name)
+        if len(stack) >= MOST_WITHIN:
+            raise DescriptionError(f"more than {MOST_WITHIN} elements are around this one.", file, element.line, name)
         (stack[-1].inside if stack else roots).append(element)
         stack.append(element)
 
@@ -72,7 +127,7 @@ def parsed(text: str | bytes, file: str) -> Element:
     parser.CharacterDataHandler = lambda text: stack[-1].add_text(text)
     parser.EntityDeclHandler = refused
     try:
-        parser.Parse(text, True)
+        _feed(parser, text)
     except expat.ExpatError as problem:
         within = stack[-1].name if stack else ""
         reason = f"this is no XML: {expat.ErrorString(problem.code)}, column {problem.offset + 1}."

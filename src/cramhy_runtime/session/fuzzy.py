@@ -52,10 +52,10 @@ def completions(word, package, most=300):
     if not rest and not prefix:
         return []
     letters = rest.upper()
-    in_order = re.compile(".*?".join(map(re.escape, letters)), re.S)
+    in_order = re.compile("".join(f"[^{each}]*{each}" for each in map(re.escape, letters)))  # no letter is passed over: one way only
     found = []
     for name in names:
-        if in_order.search(name) is not None:
+        if in_order.match(name) is not None:
             chunks = _chunks(letters, name)
             found.append((-_score(chunks, rest, name), len(name), name, chunks))
     found.sort()

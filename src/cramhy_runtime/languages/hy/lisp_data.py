@@ -12,7 +12,7 @@ import re
 from hy import models
 
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from
-from cramhy_runtime.ground.packages import common, find_package, find_package_or_error, intern, make_package, symbol_name
+from cramhy_runtime.ground.packages import common, find_package, find_package_or_error, intern, make_package, named_package, symbol_name
 from cramhy_runtime.kernel.images import per_image
 from ..commonlisp.syntax.hy_models import atom
 
@@ -58,7 +58,7 @@ def choose_package(module, name):
 
 def plan_package(name):
     """The package ``name``; a new one uses the packages of the plan language."""
-    package = find_package(name)
+    package = named_package(name)
     if package is None:
         package = make_package(name)
         package.use = [used for used in map(find_package, USED) if used is not None]

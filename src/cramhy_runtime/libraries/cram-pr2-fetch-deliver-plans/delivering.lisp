@@ -52,13 +52,18 @@
       (list (btr:pose item)
             (cram-tf:ensure-pose-in-frame (desig:reference target) cram-tf:*fixed-frame* :use-zero-time t)))))
 
+(defun settle-world ()
+  "Let what falls or rolls in the current world come to rest, ten seconds at most."
+  (btr:simulate btr:*current-bullet-world* 60))
+
 (defun lies-at-p (object target)
-  "Whether OBJECT lies where TARGET, a location, has it; true where no world knows it."
+  "Whether OBJECT lies where TARGET, a location, has it, and no hand holds it; true where no world knows it."
   (let ((poses (where-it-lies object target)))
     (or (null poses)
         (destructuring-bind (is wanted) poses
           (let ((way (cl-transforms:v- (cl-transforms:origin is) (cl-transforms:origin wanted))))
-            (and (<= (abs (cl-transforms:x way)) *most-beside*)
+            (and (not (in-hand-p object))
+                 (<= (abs (cl-transforms:x way)) *most-beside*)
                  (<= (abs (cl-transforms:y way)) *most-beside*)
                  (<= (- *most-below*) (cl-transforms:z way) *most-beside*)
                  (>= (cl-transforms:dot-product (upwards is) (upwards wanted)) (cos *most-tilted*))))))))
@@ -71,8 +76,8 @@
 
 (cpl:def-cram-function deliver (?object-designator ?target-location ?target-robot-location place-action)
   "Go to where an object that is held shall be, and put it there. Where that is out of reach the robot goes to another place, five times,
-and takes another solution of the target, twice from the same place, and twice with places of its own. In the end the plan asks the world
-whether the object lies there."
+and takes another solution of the target, twice from the same place, and twice with places of its own. In the end the plan asks the world,
+when it has come to rest, whether the object lies there."
   (flet ((give-up (description)
            (cpl:fail 'common-fail:object-undeliverable :object ?object-designator :description description))
          (next-target ()
@@ -95,6 +100,7 @@ whether the object lies there."
             ((next-target)
              (give-up "The target is not to be seen or reached from here."))
           (put-down ?object-designator ?target-location place-action))))
+    (settle-world)
     (unless (lies-at-p ?object-designator ?target-location)
       (give-up "The object was put down, but does not lie where it was to be.")))
   nil)

@@ -20,6 +20,14 @@
     (exe:perform (desig:an action (type placing) (target (desig:a location (pose ?over-sink)))))
     (pp-plans:park-arms)))
 
+(defun try-to-drop-at-sink ()
+  "Drop what is held at the sink, as far as that goes: why the robot drops it is what the caller is to know."
+  (cpl:with-failure-handling
+      (((or common-fail:low-level-failure common-fail:high-level-failure desig:designator-error) (failure)
+         (roslisp:ros-warn (fd-plans transport) "~a~%It was not dropped at the sink." failure)
+         (return)))
+    (drop-at-sink)))
+
 (defun settle-on-place-to-manipulate-from (location ?type ?container ?arm ?distance)
   "Move LOCATION on to a solution from which the handle of a container can be moved as far as is known."
   (or (pr2-proj-reasoning:settle-on-place
@@ -98,6 +106,14 @@
                                (robot-location ?deliver-from)
                                (place-action ?place)))))))
 
+(defmacro resolving-or-failing ((object) &body body)
+  "Do BODY. What no designator could be resolved for is a failure of fetching OBJECT, or of delivering it when the robot holds it."
+  `(cpl:with-failure-handling
+       ((desig:designator-error (problem)
+          (cpl:fail (if (in-hand-p ,object) 'common-fail:object-undeliverable 'common-fail:object-unfetchable)
+                    :object ,object :description (format nil "~a" problem))))
+     ,@body))
+
 (defun fetch-and-deliver (?object ?target ?arm)
   "Take an object that was seen, and bring it to ?TARGET. An object that is still held when that fails is dropped at the sink. One that was
 put down near to its place is taken again, once."
@@ -107,7 +123,7 @@ put down near to its place is taken again, once."
           ((common-fail:object-undeliverable (failure)
              (cond ((in-hand-p ?object)
                     (roslisp:ros-warn (fd-plans transport) "~a~%Dropping the object at the sink." failure)
-                    (drop-at-sink))
+                    (try-to-drop-at-sink))
                    ((worth-taking-again-p ?object ?target)
                     (cpl:do-retry left
                       (roslisp:ros-warn (fd-plans transport) "~a~%Taking the object again." failure)
@@ -117,7 +133,8 @@ put down near to its place is taken again, once."
              (when first-failure
                (roslisp:ros-warn (fd-plans transport) "~a" failure)
                (cpl:fail first-failure))))
-        (fetch-and-deliver-once ?object ?target ?arm)))))
+        (resolving-or-failing (?object)
+          (fetch-and-deliver-once ?object ?target ?arm))))))
 
 (cpl:def-cram-function transport (?object-designator ?search-location ?delivering-location ?arm search-location-accessible)
   "Find an object, take it, and bring it to another place. What it is in is opened before, and closed again whatever happens. An object

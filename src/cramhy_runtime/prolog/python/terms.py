@@ -25,7 +25,7 @@ from cramhy_runtime.kernel.typing_names import Any, NoReturn, annotations_of
 
 from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, Cons, Keyword, Symbol, list_from
 from cramhy_runtime.ground.python_names import attribute_symbols
-from cramhy_runtime.ground.packages import KEYWORD, Package, ensure_package, find_package, near_names, package_names, printed
+from cramhy_runtime.ground.packages import KEYWORD, Package, ensure_package, named_package, near_names, package_names, printed
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import CURRENT
 from cramhy_runtime.utilities.lazy_lists import force_ll, lazy_list_p
@@ -238,7 +238,7 @@ kw = Keywords()
 def names(package: str) -> Names:
     """The names of the Lisp package ``package``: ``names("TUT").drive``. If there is no such package, it is a LookupError."""
     with reasoning():
-        found = find_package(package.upper())
+        found = named_package(package.upper())
     if found is None:
         near = near_names(package.upper(), package_names(), 1)
         hint = f"Did you mean {near[0]!r}?" if near else "Load the system that defines it first: import my_package."

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import Error, handler_bind, type_error
 from cramhy_runtime.ground.data import Character, Cons, list_from, truth
-from cramhy_runtime.ground.packages import find_package
+from cramhy_runtime.ground.packages import named_package
 from cramhy_runtime.kernel.active import checkpoint
 from ..printer import print_controls as controls
 from ..printer.pretty import call_logical_block, pprint_indent, pprint_newline, pprint_tab
@@ -92,7 +92,7 @@ def _function_name(directive):
     head, colon, name = directive.name.upper().partition(":")
     if not colon:
         head, name = "COMMON-LISP-USER", head
-    package = find_package(head)
+    package = named_package(head)
     if package is None:
         directive.complain(f'No package named "{head}"')
     return package.intern(name.removeprefix(":"))

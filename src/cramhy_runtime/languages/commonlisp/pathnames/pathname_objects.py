@@ -44,12 +44,24 @@ class Pattern:
 
     def __init__(self, pieces):
         self.pieces = tuple(pieces)
-        self._expression = re.compile("".join(map(_expression, self.pieces)), re.DOTALL)
 
     def match(self, text):
-        """What the wild pieces stand for if ``text`` fits, a list; else ``None``."""
-        found = self._expression.fullmatch(text)
-        return None if found is None else list(found.groups())
+        """What the wild pieces stand for if ``text`` fits, a list, the first ones as long as they can be; else ``None``.
+
+        It takes no longer for several ``*``: at which places the last pieces fit is known before the ones in front of them are tried.
+        """
+        fits = [{len(text)}]
+        for piece in reversed(self.pieces):
+            fits.append(_places(piece, text, fits[-1]))
+        if 0 not in fits.pop():
+            return None
+        at, found = 0, []
+        for piece, after in zip(self.pieces, reversed(fits), strict=True):
+            end = at + len(piece) if piece.__class__ is str else max(after) if piece is MULTI_CHAR else at + 1
+            if piece.__class__ is not str:
+                found.append(text[at:end])
+            at = end
+        return found
 
     def __eq__(self, other):
         return isinstance(other, Pattern) and self.pieces == other.pieces
@@ -61,12 +73,14 @@ class Pattern:
 MULTI_CHAR, SINGLE_CHAR, CHARACTER_SET = map(keyword, "MULTI-CHAR-WILD SINGLE-CHAR-WILD CHARACTER-SET".split())
 
 
-def _expression(piece):
+def _places(piece, text, after):
+    """Where in ``text`` a piece fits, so that what follows it begins at one of the places ``after``."""
+    if piece is MULTI_CHAR:
+        return set(range(max(after) + 1)) if after else set()
     if piece.__class__ is str:
-        return re.escape(piece)
-    if isinstance(piece, tuple):
-        return "([" + re.sub(r"([\\\]\[^])", r"\\\1", piece[1]) + "])"
-    return "(.*)" if piece is MULTI_CHAR else "(.)"
+        return {end - len(piece) for end in after if end >= len(piece) and text.startswith(piece, end - len(piece))}
+    wild = re.compile("[" + re.sub(r"([\\\]\[^])", r"\\\1", piece[1]) + "]") if isinstance(piece, tuple) else re.compile(".", re.DOTALL)
+    return {end - 1 for end in after if end and wild.match(text, end - 1)}
 
 
 class Pathname:

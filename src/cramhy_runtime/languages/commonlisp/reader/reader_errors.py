@@ -14,7 +14,7 @@ from cramhy_runtime.ground.condition_types import EndOfFile, ReaderError, Reader
 from cramhy_runtime.ground.conditions import ask_value, restart_case
 from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import find_package, find_package_or_error, near_names, package_names, sym
+from cramhy_runtime.ground.packages import named_package, find_package_or_error, near_names, package_names, sym
 from cramhy_runtime.ground.source_places import describe
 from cramhy_runtime.ros.definition_files import why_no_lisp_package
 from ..packages.package_errors import PackageLockedError, locked, violated
@@ -157,7 +157,7 @@ def no_package(reader, offset, package_name, name):
     current = sym("*PACKAGE*").value
 
     def again():
-        package = find_package(package_name)
+        package = named_package(package_name)
         return package.intern(name) if package else no_package(reader, offset, package_name, name)
 
     return restart_case(

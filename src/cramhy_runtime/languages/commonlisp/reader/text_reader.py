@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.data import NO_VALUES, Character, Cons, MultipleValues, Symbol, one
 from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.packages import COMMON_LISP_USER, KEYWORD, find_package, sym
+from cramhy_runtime.ground.packages import COMMON_LISP_USER, KEYWORD, named_package, sym
 from ..streams.streams import EchoStream, InputStream, input_stream
 from . import reader_errors, tokens
 from ..syntax.backquote import QUASIQUOTE, Comma
@@ -499,7 +499,7 @@ class Reader(InputStream):
         if not parts[0]:
             return KEYWORD.intern(name)
         package_name = convert(parts[0])
-        package = find_package(package_name)
+        package = named_package(package_name)
         if package is None:
             return reader_errors.no_package(self, start, package_name, name)
         if count == 2 or package is KEYWORD:

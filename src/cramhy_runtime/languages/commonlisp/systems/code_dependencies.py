@@ -22,7 +22,7 @@ from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction
 from cramhy_runtime.kernel.reports import of_the_library
-from cramhy_runtime.ground.packages import common, find_package, registered, sym, was_redefined
+from cramhy_runtime.ground.packages import common, named_package, registered, sym, was_redefined
 from ..evaluation.evaluator import PACKAGE
 from ..reader.readtables import READTABLE, STANDARD, DispatchTable, Readtable
 from ..syntax.backquote import Comma
@@ -176,7 +176,7 @@ class Expectations:
 
 def _found(key: tuple[str, str, str], meanings: Meanings) -> tuple[bool, str] | None:
     """What is true now of the symbol and the package that ``key`` names; ``None`` when one of them is not there."""
-    home, current = find_package(key[0]), registered(key[2])  # a package that is made on demand was made when the form was read
+    home, current = named_package(key[0]), registered(key[2])  # a package that is made on demand was made when the form was read
     if home is None or current is None:
         return None
     symbol = home.lookup(key[1])[0]

@@ -85,7 +85,7 @@ class LispTest:
 
 
 def _loaded(package):
-    return package not in packages.on_demand and packages.find_package(package) is not None
+    return packages.find_package(package) is not None
 
 
 def _symbol(name):

@@ -36,7 +36,7 @@ from ...objects.classes import find_class
 from cramhy_runtime.ground.classes import make_instance
 from cramhy_runtime.ground.classes import class_name
 from ...objects.structures import StructureObject
-from cramhy_runtime.ground.packages import find_package, keyword
+from cramhy_runtime.ground.packages import named_package, keyword
 from cramhy_runtime.ground.printing import define_printer
 from cramhy_runtime.ground.printing import prin1_to_string
 from ...printer.standard_printers import function_name
@@ -217,7 +217,7 @@ class Reader:
         name = _text(form["symbol"])
         if "in" not in form:
             return self._new(form, Symbol(name))
-        package = find_package(_text(form["in"]))
+        package = named_package(_text(form["in"]))
         if form["in"] == "KEYWORD":
             return keyword(name)
         if package is None:
