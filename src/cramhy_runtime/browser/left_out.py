@@ -31,7 +31,7 @@ WHY = {
     "cli.swank_command": _PROCESSES,
     "cli.workspace": _PROCESSES,
     "coverage_plugin": _PROCESSES,
-    "grading.cage": _PROCESSES,
+    "grading.sandbox": _PROCESSES,
     "jupyter": _PROGRAMS,
     "lsp": _PROGRAMS,
     "robot_world.costmaps": _MUJOCO,

@@ -237,7 +237,7 @@ def _add_learn(commands):
 
 
 def _add_grade(commands):
-    grade = commands.add_parser("grade", help="grade a submission: run it in a cage, and tell what failed and how many points it gets")
+    grade = commands.add_parser("grade", help="grade a submission: run it in a sandbox, and tell what failed and how many points it gets")
     grade.add_argument("exercise", metavar="EXERCISE", help="the folder of an exercise, or the name of one of cramhy's, such as square")
     grade.add_argument("submission", metavar="SUBMISSION", help="the file that a student hands in, or the folder with the files")
     grade.add_argument("--seeds", type=_at_least_one, default=None, metavar="N", help="try checks with N seeds (as the exercise says)")

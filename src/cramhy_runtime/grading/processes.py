@@ -1,4 +1,4 @@
-"""The grader's side of nurseries: it starts them, gives them jobs, and waits no longer than a job may take."""
+"""The grader's side of fork_servers: it starts them, gives them jobs, and waits no longer than a job may take."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ import sys
 import tempfile
 import time
 
-from . import nursery
+from . import fork_server
 from .problems import ExerciseError
 
 MORE = 20.0
-"""Seconds that the nursery gets beside those of a job, before it counts as lost."""
+"""Seconds that the fork server gets beside those of a job, before it counts as lost."""
 START = 120.0
 
 
-class Nursery:
+class ForkServer:
     """A process from which those of submissions come. `ask` gives it a job, and `answers` waits for what came of it."""
 
     def __init__(self, systems):
@@ -32,10 +32,10 @@ class Nursery:
         self.coming = 0  # answers
 
     def _start(self):
-        self.folder = tempfile.TemporaryDirectory(prefix="cramhy-nursery-")
+        self.folder = tempfile.TemporaryDirectory(prefix="cramhy-fork-server-")
         environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST") and name != "CRAMHY_BACKTRACE"}
         self.process = subprocess.Popen(
-            [sys.executable, "-P", "-m", f"{__package__}.nursery"],
+            [sys.executable, "-P", "-m", f"{__package__}.fork_server"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -69,10 +69,13 @@ class Nursery:
     def _send(self, message):
         self.coming += 1
         with contextlib.suppress(OSError):  # it is gone, which `take` will notice
-            nursery.send(self.process.stdin.fileno(), message)
+            fork_server.send(self.process.stdin.fileno(), message)
 
     def take(self):
-        """The answer that has begun to come, or ``None`` if the nursery is lost. Raises `StillComing` after the one of its preparation."""
+        """The answer that has begun to come, or ``None`` if the fork server is lost.
+
+        Raises `StillComing` after the answer of its preparation.
+        """
         try:
             found = self._received()
         except (OSError, ValueError, _Lost):
@@ -96,23 +99,23 @@ class Nursery:
             data += piece
             if wanted == 8 and len(data) == 8:
                 wanted = 8 + int.from_bytes(data, "big")
-        return nursery.json.loads(bytes(data[8:]))
+        return fork_server.json.loads(bytes(data[8:]))
 
 
 class StillComing(Exception):
-    """The nursery has prepared itself, and now does its job."""
+    """The fork server has prepared itself, and now does its job."""
 
 
 class _Lost(Exception):
-    """The nursery is gone, or says nothing."""
+    """The fork server is gone, or says nothing."""
 
 
 def answers(asked):
-    """Wait for the first of some nurseries; a pair of a nursery and its answer for each that has one. ``None`` as answer: it was lost.
+    """Wait for the first of some fork servers; a pair of a fork server and its answer for each that has one.
 
-    asked: nurseries, each with a job; or objects that have the answer at once, such as `Here`.
+    ``None`` as answer: it was lost. asked: fork servers, each with a job; or objects that have the answer at once, such as `Here`.
     """
-    found = [(each, each.take()) for each in asked if not isinstance(each, Nursery)]
+    found = [(each, each.take()) for each in asked if not isinstance(each, ForkServer)]
     while not found:
         now = time.monotonic()
         ready = select.select([each.process.stdout for each in asked], (), (), max(min(each.latest for each in asked) - now, 0))[0]

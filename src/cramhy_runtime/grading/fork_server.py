@@ -1,12 +1,12 @@
-"""The process from which the processes of submissions are forked: ``python -m cramhy_runtime.grading.nursery``.
+"""The process from which the processes of submissions are forked: ``python -m cramhy_runtime.grading.fork_server``.
 
-It starts once, loads the course, and never runs a line of a submission. For each job it forks a process, which goes into a cage and
+It starts once, loads the course, and never runs a line of a submission. For each job it forks a process, which goes into a sandbox and
 performs the job; meanwhile this one reads what that tells and prints, and watches its time. Whatever a submission does, its process is
 ended as a whole when the job is over. Jobs come and answers go as length and JSON over the standard input and output.
 
 An answer is a dictionary. ``reports``: the lines that the job told, as text, without what is cut off. ``output``: what it printed.
 ``ended``: "done", "left" (the process ended by itself), "time", "idle", "long", "output" or "disk". ``signal``: the number of the signal
-that ended it. ``held``: the locks of the cage.
+that ended it. ``held``: the locks of the sandbox.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ def answer(job):
 
 
 def _live(job, folder, telling, printing):
-    """Go into the cage and perform the job. Never returns."""
+    """Go into the sandbox and perform the job. Never returns."""
     status = 1
     try:
         tell = _prepare_to_tell(job, folder, telling, printing)
@@ -133,7 +133,7 @@ def _live(job, folder, telling, printing):
 
 
 def _prepare_to_tell(job, folder, telling, printing):
-    from . import cage, performing
+    from . import sandbox, performing
 
     os.setsid()
     _die_with_parent()
@@ -148,7 +148,7 @@ def _prepare_to_tell(job, folder, telling, printing):
     tempfile.tempdir = folder
     signal.signal(signal.SIGXCPU, signal.SIG_DFL)
     performing.lay_out(job, folder)
-    held = cage.close(folder, job["seconds"], job["megabytes"])
+    held = sandbox.close(folder, job["seconds"], job["megabytes"])
     nonce, write = job["nonce"], os.write
 
     def tell(kind, **facts):
@@ -161,7 +161,7 @@ def _prepare_to_tell(job, folder, telling, printing):
 
 
 def _die_with_parent():
-    """Let Linux end this process when the nursery ends."""
+    """Let Linux end this process when the fork server ends."""
     if sys.platform == "linux":
         import ctypes
 
@@ -169,7 +169,7 @@ def _die_with_parent():
             ctypes.CDLL(None).prctl(1, signal.SIGKILL, 0, 0, 0)
 
 
-# --------------------------------------------------------------------------------------------------------------- in the nursery
+# --------------------------------------------------------------------------------------------------------------- in the fork server
 
 
 class _Watch:

@@ -1,4 +1,4 @@
-"""The calls of Linux that a caged process may not make, with their numbers on the two kinds of processors that are known here.
+"""The calls of Linux that a process in the sandbox may not make, with their numbers on the two kinds of processors that are known here.
 
 Source: the tables of the kernel, ``arch/x86/entry/syscalls/syscall_64.tbl`` and ``include/uapi/asm-generic/unistd.h``. 0 or more is a
 number, ``None`` means that the processor has no such call.

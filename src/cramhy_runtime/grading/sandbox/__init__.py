@@ -1,4 +1,4 @@
-"""A cage for a process that runs what a student has handed in: limits of the system, no network, no other programs, no files of others.
+"""A sandbox for a process that runs what a student has handed in: limits of the system, no network, no other programs, no files of others.
 
 Three locks, each as far as the system has it. `limits` are those of POSIX: processor time, memory, size of files. `system_calls` is a
 filter of Linux (seccomp): no sockets, no new processes, no signals to others. `folders` are rules of Linux, too (Landlock): what may be
@@ -16,7 +16,7 @@ from . import folders, limits, system_calls
 
 
 def close(scratch, seconds, megabytes):
-    """Put the calling process into the cage; the names of the locks that hold.
+    """Put the calling process into the sandbox; the names of the locks that hold.
 
     scratch: the folder where it may write. seconds: of processor time. megabytes: of memory.
     """
