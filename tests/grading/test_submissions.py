@@ -16,7 +16,7 @@ from cramhy_runtime.grading import Grader
 from cramhy_runtime.grading.exercise import Exercise, own_exercises
 from cramhy_runtime.grading.processes import ForkServer
 
-from .submissions import SHORT, cases, hand_in
+from .submissions import SHORT, cases, hand_in, says
 
 pytestmark = linux
 
@@ -46,7 +46,7 @@ def graded(grader, exercises, case, folder, seconds=None):
 def check(case, exercise, report):
     text = report.text()
     assert report.points == (exercise.points if case.points is None else case.points), text
-    assert case.words in text
+    assert says(report, case.words), text
     assert case.points == 0 or report.held, "nothing has run"
 
 

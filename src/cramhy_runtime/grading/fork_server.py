@@ -1,12 +1,11 @@
 """The process from which the processes of submissions are forked: ``python -m cramhy_runtime.grading.fork_server``.
 
-It starts once, loads the course, and never runs a line of a submission. For each job it forks a process, which goes into a sandbox and
-performs the job; meanwhile this one reads what that tells and prints, and watches its time. Whatever a submission does, its process is
-ended as a whole when the job is over. Jobs come and answers go as length and JSON over the standard input and output.
+It starts once with a small environment, loads the course, and never runs a line of a submission. It never sees one, either: what it has in
+its memory, each process that is forked from it has, too. So a forked process reads its job from a pipe of its own, and what it tells and
+prints goes to the process that watches it (`watcher`). What this one gets for each job is four ends of pipes and which sandbox to join.
 
-An answer is a dictionary. ``reports``: the lines that the job told, as text, without what is cut off. ``output``: what it printed.
-``ended``: "done", "left" (the process ended by itself), "time", "idle", "long", "output" or "disk". ``signal``: the number of the signal
-that ended it. ``held``: the locks of the sandbox.
+Between the two there is a process that joins the sandbox, forks once more, and says what it forked and how that ended. It is outside of the
+sandbox's space of processes, so a submission cannot reach it.
 """
 
 from __future__ import annotations
@@ -14,24 +13,17 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import select
-import shutil
 import signal
-import struct
+import socket
 import sys
 import tempfile
-import time
-from pathlib import Path
 
-MOST_REPORTED = 24_000_000
-"""Bytes of reports of a job. A hundred thousand commands are eight million."""
-LOOK = 0.05
-"""Seconds between two looks at a process."""
-IDLE = 3.0
-"""Seconds after which a process that does nothing is ended: it waits for something that never comes, or for the wall clock."""
-MOST_ON_DISK = 32 * 1024 * 1024
-KEPT_OUTPUT = 20_000
+from . import sandbox
+from .sandbox import bubblewrap, linux
 
+ENDS = 4
+"""What comes with each job: where to read it, where to tell, where to print, and where the status goes."""
+_MOST = 100_000  # bytes of a message
 
 _WARM_UP = """
 (roslisp:start-ros-node "warm-up")
@@ -44,36 +36,25 @@ _WARM_UP = """
 """What most plans do. Done once here, it takes a third of the time in each process that is forked later."""
 
 
-def serve(source, sink):
-    """Answer jobs until ``source`` ends. Both are file descriptors."""
-    while (job := receive(source)) is not None:
-        send(sink, answer(job))
-
-
-def send(sink, message):
-    """Write a message. sink: a file descriptor."""
-    data = json.dumps(message).encode()
-    data = struct.pack(">Q", len(data)) + data
-    while data:
-        data = data[os.write(sink, data) :]
-
-
-def receive(source):
-    """The next message of a file descriptor, ``None`` at its end."""
-    head = _exactly(source, 8)
-    data = _exactly(source, struct.unpack(">Q", head)[0]) if head is not None else None
-    return None if data is None else json.loads(data)
-
-
-def _exactly(source, count):
-    pieces = []
-    while count:
-        piece = os.read(source, min(count, 1 << 20))
-        if not piece:
-            return None
-        pieces.append(piece)
-        count -= len(piece)
-    return b"".join(pieces)
+def serve(watcher: socket.socket) -> None:
+    """Fork a process for each message of ``watcher``, until it closes. It sends one, and waits for what comes of it."""
+    while True:
+        data, ends, _, _ = socket.recv_fds(watcher, _MOST, ENDS)
+        with contextlib.suppress(ChildProcessError):  # the last one has told how it ended
+            while os.waitpid(-1, os.WNOHANG)[0]:
+                pass
+        if not data:
+            return
+        message = json.loads(data)
+        if "prepare" in message:
+            prepare(message["prepare"])
+            watcher.send(b".")
+            continue
+        if not os.fork():
+            watcher.close()
+            _supervise(message, *ends)
+        for end in ends:
+            os.close(end)
 
 
 def prepare(systems):
@@ -89,35 +70,54 @@ def prepare(systems):
     made.evaluate_text(_WARM_UP)
 
 
-def answer(job):
-    """Perform a job in a process of its own; what came of it."""
-    if "prepare" in job:
-        prepare(job["prepare"])
-        return {}
-    folder = tempfile.mkdtemp(prefix="cramhy-")
-    told, telling = os.pipe()
-    printed, printing = os.pipe()
+# --------------------------------------------------------------------------------------------- between server and submission
+
+
+def _supervise(message, source, telling, printing, status):
+    """Fork the process of a submission and wait for it. Never returns.
+
+    Writes the process's number, and then its status and the seconds of processor time that it used; or "!" and what went wrong.
+    """
     try:
+        os.setsid()
+        if message["join"]:
+            bubblewrap.join(message["join"])
+        if sys.platform == "linux":
+            linux.prctl(linux.PARENT_DEATH_SIGNAL, signal.SIGKILL)
+            linux.prctl(linux.SUBREAPER, 1)
         child = os.fork()
         if not child:
-            _live(job, folder, telling, printing)
-        os.close(telling)
-        os.close(printing)
-        return _Watch(child, told, printed, job, folder).until_its_end()
+            _live(message, source, telling, printing)
+        for end in (source, telling, printing):
+            os.close(end)
+        os.write(status, f"{child}\n".encode())
+        _, ended, usage = os.wait4(child, 0)
+        _end_others()
+        os.write(status, f"{ended} {usage.ru_utime + usage.ru_stime:.3f}\n".encode())
+    except BaseException as problem:
+        with contextlib.suppress(OSError):
+            os.write(status, f"!{type(problem).__name__}: {problem}\n".encode())
     finally:
-        os.close(told)
-        os.close(printed)
-        shutil.rmtree(folder, ignore_errors=True)
+        os._exit(0)
+
+
+def _end_others():
+    """End what the submission has started, where no lock forbids to start anything: its orphans are children of this process."""
+    with contextlib.suppress(OSError):  # there is no /proc, and no such process, or none is left
+        while children := open(f"/proc/self/task/{os.getpid()}/children").read().split():
+            for child in children:
+                os.kill(int(child), signal.SIGKILL)
+                os.waitpid(int(child), 0)
 
 
 # ------------------------------------------------------------------------------------------------- in the submission's process
 
 
-def _live(job, folder, telling, printing):
-    """Go into the sandbox and perform the job. Never returns."""
+def _live(message, source, telling, printing):
+    """Lock the process up, read the job and perform it. Never returns."""
     status = 1
     try:
-        tell = _prepare_to_tell(job, folder, telling, printing)
+        job, folder, tell = _prepare_to_tell(message, source, telling, printing)
         from .performing import perform
 
         perform(job, folder, tell)
@@ -132,23 +132,32 @@ def _live(job, folder, telling, printing):
         os._exit(status)
 
 
-def _prepare_to_tell(job, folder, telling, printing):
-    from . import sandbox, performing
+def _prepare_to_tell(message, source, telling, printing):
+    """The job, the folder of its files, and the function that reports. Nothing else is open then."""
+    from . import performing
 
     os.setsid()
-    _die_with_parent()
+    if sys.platform == "linux":
+        linux.prctl(linux.PARENT_DEATH_SIGNAL, signal.SIGKILL)
+    signal.signal(signal.SIGXCPU, signal.SIG_DFL)
     nothing = os.open(os.devnull, os.O_RDONLY)
-    for number, place in ((nothing, 0), (printing, 1), (printing, 2)):
-        os.dup2(number, place)
-    os.dup2(telling, 3)
-    os.closerange(4, 4096)
+    kept = [os.dup(end) for end in (nothing, printing, printing, telling, source)]  # none of them has the number that it shall have
+    kept = [os.dup2(end, 200 + number) for number, end in enumerate(kept)]
+    for number, end in enumerate(kept):
+        os.dup2(end, number)
+    os.closerange(5, 4096)
+    data = bytearray()
+    while piece := os.read(4, 1 << 20):
+        data += piece
+    os.close(4)
+    job = json.loads(data)
+    folder = bubblewrap.FOLDER if message["join"] else message["folder"]
     os.chdir(folder)
     os.environ.clear()
     os.environ.update(HOME=folder, TMPDIR=folder, PATH="/usr/bin:/bin", LANG="C.UTF-8", CRAMHY_TIME="virtual")
     tempfile.tempdir = folder
-    signal.signal(signal.SIGXCPU, signal.SIG_DFL)
     performing.lay_out(job, folder)
-    held = sandbox.close(folder, job["seconds"], job["megabytes"])
+    held = sandbox.close(folder, job["seconds"], job["megabytes"], bool(message["join"]), message["hidden"])
     nonce, write = job["nonce"], os.write
 
     def tell(kind, **facts):
@@ -157,129 +166,8 @@ def _prepare_to_tell(job, folder, telling, printing):
             data = data[write(3, data) :]
 
     tell("held", locks=held)
-    return tell
-
-
-def _die_with_parent():
-    """Let Linux end this process when the fork server ends."""
-    if sys.platform == "linux":
-        import ctypes
-
-        with contextlib.suppress(OSError, AttributeError):
-            ctypes.CDLL(None).prctl(1, signal.SIGKILL, 0, 0, 0)
-
-
-# --------------------------------------------------------------------------------------------------------------- in the fork server
-
-
-class _Watch:
-    """The process ``child``, which is read and watched until it ends or has to be ended."""
-
-    def __init__(self, child, told, printed, job, folder):
-        self.child, self.told, self.printed, self.job, self.folder = child, told, printed, job, folder
-        self.reports, self.output = bytearray(), bytearray()
-        self.printed_bytes = 0
-        self.reason = None
-        self.worked, self.used = time.monotonic(), -1
-
-    def until_its_end(self):
-        """The answer to the job."""
-        begun = looked = time.monotonic()
-        sources = {self.told, self.printed}
-        while sources and self.reason is None:
-            ready = select.select(sources, (), (), LOOK)[0]
-            for source in ready:
-                data = os.read(source, 1 << 16)
-                if not data:
-                    sources.discard(source)
-                elif source == self.told:
-                    self.reports += data
-                else:
-                    self._take_output(data)
-            now = time.monotonic()
-            if now - looked > LOOK:
-                looked = now
-                self._look(now - begun)
-        status, usage = self._end()
-        return {
-            "reports": self.reports.decode("utf-8", "replace").splitlines()[:5000],
-            "output": self.output.decode("utf-8", "replace"),
-            "ended": self.reason or "left",
-            "signal": os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0,
-            "seconds": round(usage, 3),
-        }
-
-    def _take_output(self, data):
-        self.printed_bytes += len(data)
-        self.output += data[: max(KEPT_OUTPUT - len(self.output), 0)]
-        if self.printed_bytes > self.job["output"]:
-            self.reason = "output"
-
-    def _look(self, passed):
-        if len(self.reports) > MOST_REPORTED:
-            self.reason = "output"
-        elif passed > self.job["wall"]:
-            self.reason = "long"
-        elif _size(self.folder) > MOST_ON_DISK:
-            self.reason = "disk"
-        elif _memory(self.child) > self.job["megabytes"] << 20:
-            self.reason = "memory"
-        else:
-            self._look_for_idleness()
-
-    def _look_for_idleness(self):
-        threads = _threads(self.child)
-        if threads is None:  # no Linux: the wall clock decides
-            return
-        used = sum(ticks for _, ticks in threads)
-        if used != self.used or any(state != "S" for state, _ in threads):
-            self.worked, self.used = time.monotonic(), used
-        elif time.monotonic() - self.worked > IDLE:
-            self.reason = "idle"
-
-    def _end(self):
-        """End the process with all that it has started; its status, and the processor time that it used in seconds."""
-        for end in (os.killpg, os.kill):
-            with contextlib.suppress(OSError):
-                end(self.child, signal.SIGKILL)
-        _, status, usage = os.wait4(self.child, 0)
-        used = usage.ru_utime + usage.ru_stime
-        ended = os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
-        if self.reason is None and (ended == signal.SIGXCPU or (ended and used > self.job["seconds"] - 0.2)):
-            self.reason = "time"
-        return status, used
-
-
-def _threads(process):
-    """For each thread of a process its state, "S" if it sleeps, and its processor time; ``None`` if the system does not tell."""
-    found = []
-    for thread in Path(f"/proc/{process}/task").glob("*"):
-        try:
-            state, *fields = (thread / "stat").read_text().rpartition(")")[2].split()
-        except OSError:  # it has just ended
-            continue
-        found.append((state, int(fields[10]) + int(fields[11])))
-    return found or None
-
-
-def _memory(process):
-    """The bytes of memory that a process uses; 0 if the system does not tell."""
-    try:
-        return int(Path(f"/proc/{process}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
-    except (OSError, IndexError, ValueError):
-        return 0
-
-
-def _size(folder):
-    total = 0
-    for place, _, names in os.walk(folder):
-        for name in names:
-            with contextlib.suppress(OSError):
-                total += os.lstat(os.path.join(place, name)).st_size
-    return total
+    return job, folder, tell
 
 
 if __name__ == "__main__":
-    sink = os.dup(1)
-    os.dup2(2, 1)  # what loading prints does not get between the answers
-    serve(os.dup(0), sink)
+    serve(socket.socket(fileno=os.dup(0)))

@@ -30,6 +30,10 @@ LARGEST = 200_000
 KEPT_OUTPUT = 2000
 NOISE = "[(ROSLISP TOP) INFO]"
 """What roslisp prints when a node starts, which says nothing about a submission."""
+AS_ROOT = (
+    "You are root, so a gap in the sandbox would give this machine to whoever hands in. Grade as another user. If this is a container that "
+    "has nothing else in it, say --as-root, Grader(as_root=True) or CRAMHY_AS_ROOT=yes."
+)
 SIGNALS = {
     4: "illegal instruction",
     6: "abort",
@@ -41,13 +45,15 @@ SIGNALS = {
 }
 
 
-def grade(exercise: str | Path, submission: str | Path, seeds: int | None = None) -> Report:
-    """Grade a submission, a file or a folder. exercise: a folder, or the name of one of cramhy's. seeds: see `Grader`.
+def grade(
+    exercise: str | Path, submission: str | Path, seeds: int | None = None, sandbox: str | None = None, as_root: bool = False
+) -> Report:
+    """Grade a submission, a file or a folder. exercise: a folder, or the name of one of cramhy's. The others: see `Grader`.
 
     Raises `ExerciseError` if the exercise cannot be used, or if there is no such submission.
     """
     found = find(str(exercise))
-    with Grader(seeds) as grader:
+    with Grader(seeds, sandbox=sandbox, as_root=as_root) as grader:
         return grader.grade(found, submission)
 
 
@@ -56,10 +62,16 @@ class Grader:
 
     apart: whether a submission runs in a process of its own. If not, nothing protects this process from it (`Here`).
     at_once: how many submissions `grade_all` has in hand at a time, ``None`` for as many as there are processors.
+    sandbox: "bubblewrap", "locks" for cramhy's own locks alone, or ``None`` for bubblewrap where it works.
+    as_root: whether to grade although the user is root; the variable CRAMHY_AS_ROOT says it, too. Else `ExerciseError` is raised then.
     """
 
-    def __init__(self, seeds: int | None = None, apart: bool = True, at_once: int | None = None):
-        self.seeds, self.apart = seeds, apart
+    def __init__(
+        self, seeds: int | None = None, apart: bool = True, at_once: int | None = None, sandbox: str | None = None, as_root: bool = False
+    ):
+        if apart and not as_root and getattr(os, "geteuid", lambda: 1)() == 0 and not os.environ.get("CRAMHY_AS_ROOT"):
+            raise ExerciseError(AS_ROOT)
+        self.seeds, self.apart, self.sandbox = seeds, apart, sandbox
         self.at_once = (at_once or os.cpu_count() or 1) if apart else 1
         self.fork_servers: dict[tuple[int, tuple[str, ...]], ForkServer | Here] = {}
 
@@ -171,7 +183,7 @@ class Grader:
     def _fork_server(self, slot: int, exercise: Exercise) -> ForkServer | Here:
         key = slot, (*exercise.systems, "lisp-unit", "fiveam")
         if key not in self.fork_servers:
-            self.fork_servers[key] = ForkServer(list(key[1])) if self.apart else Here()
+            self.fork_servers[key] = ForkServer(list(key[1]), self.sandbox) if self.apart else Here()
         return self.fork_servers[key]
 
 
@@ -186,7 +198,9 @@ def _unfinished(told, answer, exercise):
         "long": "took too long, and was stopped.",
         "output": f"printed more than {limits['output']:g} kB, and was stopped.",
         "memory": f"used more than {limits['memory']:g} MB of memory, and was stopped.",
+        "threads": "started too many threads, and was stopped.",
         "disk": "wrote too many files, and was stopped.",
+        "sandbox": f"was not tried, because there was no sandbox for it. Grade it again. ({answer.get('why')})",
     }
     if answer["ended"] in reasons:
         return f"{what} {reasons[answer['ended']]}"

@@ -1,8 +1,9 @@
-"""The grader's side of fork_servers: it starts them, gives them jobs, and waits no longer than a job may take."""
+"""The grader's side of the processes: it starts a watcher with its fork server, gives jobs, and waits no longer than a job may take."""
 
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import select
 import signal
@@ -11,52 +12,66 @@ import sys
 import tempfile
 import time
 
-from . import fork_server
+from . import messages
 from .problems import ExerciseError
+from .sandbox import folders, removal
 
 MORE = 20.0
-"""Seconds that the fork server gets beside those of a job, before it counts as lost."""
+"""Seconds that the watcher gets beside those of a job, before it counts as lost."""
 START = 120.0
+END = 10.0
+"""Seconds in which a watcher ends what it has started, when nobody wants more of it."""
+KEPT_VARIABLES = ("HOME", "XDG_CACHE_HOME", "ROS_PACKAGE_PATH", "LD_LIBRARY_PATH", "TMPDIR")
+"""What a fork server gets of the environment: where kept code, packages and libraries are. Submissions can see it."""
 
 
 class ForkServer:
-    """A process from which those of submissions come. `ask` gives it a job, and `answers` waits for what came of it."""
+    """A process from which those of submissions come, with its watcher. `ask` gives it a job, and `answers` waits for what came of it.
 
-    def __init__(self, systems):
+    choice: "bubblewrap", "locks", or ``None`` for bubblewrap where it works.
+    """
+
+    def __init__(self, systems, choice=None):
         if not hasattr(os, "fork"):
             raise ExerciseError("This system cannot fork processes, so submissions cannot be graded apart. Grade on Linux or macOS.")
-        self.systems = systems
+        self.systems, self.choice = systems, choice
         self.process = None
         self.folder = None
         self.latest = 0.0  # when it is lost if it has not answered
         self.coming = 0  # answers
 
     def _start(self):
-        self.folder = tempfile.TemporaryDirectory(prefix="cramhy-fork-server-")
-        environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST") and name != "CRAMHY_BACKTRACE"}
+        self.folder = tempfile.mkdtemp(prefix="cramhy-grading-")
+        environment = {name: os.environ[name] for name in KEPT_VARIABLES if name in os.environ}
+        environment |= {"PATH": "/usr/bin:/bin", "LANG": "C.UTF-8"}
+        environment["PYTHONPATH"] = os.pathsep.join(dict.fromkeys(os.path.dirname(package) for package in folders.packages()))
         self.process = subprocess.Popen(
-            [sys.executable, "-P", "-m", f"{__package__}.fork_server"],
+            [sys.executable, "-P", "-m", f"{__package__}.watcher"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            cwd=self.folder.name,
+            cwd=self.folder,
             env=environment,
             start_new_session=True,
         )
         self.latest = time.monotonic() + START
-        self._send({"prepare": self.systems})
+        self._send({"prepare": self.systems, "choice": self.choice})
 
     def close(self):
         """End it, with all that it has started."""
         if self.process is None:
             return
         with contextlib.suppress(OSError):
-            os.killpg(self.process.pid, signal.SIGKILL)
-        self.process.wait()
-        self.process.stdin.close()
+            self.process.stdin.close()
+        try:
+            self.process.wait(END)
+        except subprocess.TimeoutExpired:
+            with contextlib.suppress(OSError):
+                os.killpg(self.process.pid, signal.SIGKILL)
+            self.process.wait()
         self.process.stdout.close()
         self.process = None
-        self.folder.cleanup()
+        removal.remove(self.folder)
 
     def ask(self, job):
         """Give it a job; one at a time. If it has been lost since the last one, another one is started."""
@@ -69,7 +84,7 @@ class ForkServer:
     def _send(self, message):
         self.coming += 1
         with contextlib.suppress(OSError):  # it is gone, which `take` will notice
-            fork_server.send(self.process.stdin.fileno(), message)
+            messages.send(self.process.stdin.fileno(), message)
 
     def take(self):
         """The answer that has begun to come, or ``None`` if the fork server is lost.
@@ -83,6 +98,9 @@ class ForkServer:
             return None
         self.coming -= 1
         if self.coming:
+            if self.choice == "bubblewrap" and found["bubblewrap"] is not None:
+                self.close()
+                raise ExerciseError(f"Submissions shall run in bubblewrap, and cannot: {found['bubblewrap']}")
             raise StillComing
         self.latest = 0.0
         return found
@@ -99,7 +117,7 @@ class ForkServer:
             data += piece
             if wanted == 8 and len(data) == 8:
                 wanted = 8 + int.from_bytes(data, "big")
-        return fork_server.json.loads(bytes(data[8:]))
+        return json.loads(bytes(data[8:]))
 
 
 class StillComing(Exception):

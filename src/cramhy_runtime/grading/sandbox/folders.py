@@ -1,24 +1,31 @@
-"""Landlock: which files a process may read and write, as rules of Linux that it makes for itself. Source: landlock(7).
+"""Which files a submission may read and write: the paths, and Landlock's rules for them where bubblewrap is not used. Source: landlock(7).
 
-It may read what Python and cramhy need: the system's programs and libraries, the installation, the modules' folders. It may write in one
-folder. Homes, other submissions and the exercise's own folder are out of reach, unless they lie in one of those.
+It may read what Python and cramhy need: shared libraries, the interpreter's own modules, the installed packages, cramhy, the course. It may
+write in one folder. Homes, ``/etc``, other submissions and the exercises are out of reach, also those exercises that lie beside cramhy in
+an installed package.
 """
 
 from __future__ import annotations
 
 import ctypes
+import importlib.util
 import os
 import sys
+import sysconfig
+
+from . import linux
 
 _CREATE, _ADD, _RESTRICT = 444, 445, 446  # the same numbers on all processors
 _VERSION = 1
 _PATH_BENEATH = 1
 _EXECUTE, _WRITE, _READ, _READ_FOLDER = 1, 2, 4, 8
 _ALL_OF_VERSION = {1: (1 << 13) - 1, 2: (1 << 14) - 1, 3: (1 << 15) - 1, 5: (1 << 16) - 1}
-_MADE_OF_NOTHING = ("/usr", "/lib", "/lib64", "/bin", "/etc", "/opt", "/nix", "/dev/null", "/dev/zero", "/dev/urandom", "/dev/random")
+_LIBRARIES = ("/lib", "/lib32", "/lib64", "/usr/lib", "/usr/lib32", "/usr/lib64", "/usr/local/lib", "/usr/local/lib64")
+_OTHERS = ("/nix/store", "/gnu/store", "/usr/share/zoneinfo")
 _BIND_AND_CONNECT = 3
 _SIGNALS_AND_SOCKETS = 3
-_NO_NEW_PRIVILEGES = 38
+DEVICES = ("/dev/null", "/dev/zero", "/dev/urandom", "/dev/random")
+_PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
 
 class _Rules(ctypes.Structure):
@@ -30,12 +37,15 @@ class _Beneath(ctypes.Structure):
     _fields_ = [("allowed", ctypes.c_uint64), ("folder", ctypes.c_int32)]
 
 
-def close(scratch):
-    """Let the calling process write below ``scratch`` only, and read there and where its modules are; whether the system does that."""
+def close(scratch: str, hidden: list[str]) -> bool:
+    """Let the calling process write below ``scratch`` only, and read there and where its modules are; whether the system does that.
+
+    hidden: folders that it must not read, wherever they are.
+    """
     if sys.platform != "linux":
         return False
     try:
-        system = ctypes.CDLL(None, use_errno=True)
+        system = linux.library()
     except OSError:
         return False
     version = system.syscall(_CREATE, None, ctypes.c_size_t(0), ctypes.c_uint32(_VERSION))
@@ -47,35 +57,61 @@ def close(scratch):
     made = system.syscall(_CREATE, ctypes.byref(rules), ctypes.c_size_t(size), ctypes.c_uint32(0))
     if made < 0:
         return False
+    secret = [os.path.realpath(path) for path in [*exercises(), *hidden]]
     for path in readable():
-        _allow(system, made, path, (_EXECUTE | _READ | _READ_FOLDER) & handled)
+        _allow(system, made, path, _READ_FOLDER)
+        for part in _without(path, secret):
+            _allow(system, made, part, _EXECUTE | _READ | _READ_FOLDER)
+    for path in DEVICES:
+        _allow(system, made, path, _READ)
     _allow(system, made, "/dev/null", _WRITE | _READ)
     _allow(system, made, scratch, handled & ~_EXECUTE)
-    system.prctl(_NO_NEW_PRIVILEGES, 1, 0, 0, 0)
+    linux.prctl(linux.NO_NEW_PRIVILEGES, 1)
     done = system.syscall(_RESTRICT, made, ctypes.c_uint32(0)) == 0
     os.close(made)
     return done
 
 
-def readable():
-    """The paths that a process of Python with cramhy reads."""
-    packages = [path for path in sys.path if path]
-    ours = [os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))]
-    language = sys.modules.get("cramhy")
-    ours += [os.path.dirname(folder) for folder in getattr(language, "__path__", ())]
-    wanted = [*_MADE_OF_NOTHING, f"/proc/{os.getpid()}", sys.prefix, sys.base_prefix, *packages, *ours, *_tutorials()]
-    return [path for path in dict.fromkeys(wanted) if os.path.exists(path)]
+def packages() -> list[str]:
+    """The folders of cramhy's own two packages."""
+    language = importlib.util.find_spec("cramhy")
+    found = language.submodule_search_locations if language is not None else None
+    return list(dict.fromkeys([_PACKAGE, *(found or ())]))
 
 
-def _tutorials():
-    from cramhy_runtime.ros.search_folders import search_folders
+def readable() -> list[str]:
+    """The paths that a process of Python with cramhy reads; none of them is below another one."""
+    prefixes = [os.path.join(prefix, name) for prefix in (sys.prefix, sys.base_prefix) for name in ("lib", "lib64")]
+    modules = [sysconfig.get_path("stdlib"), sysconfig.get_path("platstdlib"), *(path for path in sys.path if path)]
+    wanted = [*_LIBRARIES, *_OTHERS, *prefixes, *modules, *packages(), *_course()]
+    found = [os.path.normpath(path) for path in dict.fromkeys(wanted) if os.path.exists(path)]
+    return [path for path in found if not any(path != other and path.startswith(f"{other}{os.sep}") for other in found)]
 
-    return [os.path.join(path, name) for path in search_folders() if os.path.basename(path) == "tutorials" for name in _packages(path)]
+
+def _tutorials() -> list[str]:
+    """Where cramhy's tutorials may be: in its package, and beside it in a checkout."""
+    checkout = os.path.dirname(os.path.dirname(_PACKAGE))
+    return [os.path.join(place, "tutorials") for place in (_PACKAGE, checkout)]
 
 
-def _packages(folder):
-    """The folders in the tutorials' one, without the exercises: their tests are nobody's business."""
-    return [name for name in os.listdir(folder) if name != "exercises"]
+def exercises() -> list[str]:
+    """The folders of the exercises that come with cramhy, whose tests and answers no submission may see."""
+    return [path for place in _tutorials() if os.path.isdir(path := os.path.join(place, "exercises"))]
+
+
+def _course() -> list[str]:
+    found = [(place, name) for place in _tutorials() if os.path.isdir(place) for name in os.listdir(place)]
+    return [os.path.join(place, name) for place, name in found if name != "exercises"]
+
+
+def _without(path: str, secret: list[str]) -> list[str]:
+    """The paths at or below ``path`` that together are all of it but the secret ones."""
+    real = os.path.realpath(path)
+    if real in secret:
+        return []
+    if not any(each.startswith(f"{real}{os.sep}") for each in secret):
+        return [path]
+    return [part for name in sorted(os.listdir(path)) for part in _without(os.path.join(path, name), secret)]
 
 
 def _allow(system, rules, path, allowed):
@@ -86,6 +122,7 @@ def _allow(system, rules, path, allowed):
     try:
         if not os.path.isdir(path):
             allowed &= _EXECUTE | _WRITE | _READ
-        system.syscall(_ADD, rules, _PATH_BENEATH, ctypes.byref(_Beneath(allowed, place)), ctypes.c_uint32(0))
+        if allowed:
+            system.syscall(_ADD, rules, _PATH_BENEATH, ctypes.byref(_Beneath(allowed, place)), ctypes.c_uint32(0))
     finally:
         os.close(place)
