@@ -16,7 +16,7 @@ from systems import linux, takes_long
 import cramhy_runtime
 from cramhy_runtime.grading import ExerciseError, Grader
 from cramhy_runtime.grading.exercise import Exercise
-from cramhy_runtime.grading.sandbox import bubblewrap
+from cramhy_runtime.grading.sandbox import bubblewrap, folders
 
 from . import attacks
 
@@ -79,7 +79,7 @@ class Place:
 
 
 def exercise(folder, seconds=3, more=""):
-    folder.mkdir()
+    folder.mkdir(parents=True)
     (folder / "exercise.toml").write_text(EXERCISE.format(answer=ANSWER, seconds=seconds, more=more))
     return Exercise.read(folder)
 
@@ -139,6 +139,30 @@ def test_a_submission_reads_no_file_of_others(place):
     report = place.grader.grade_texts(place.exercise, {"attack.py": text})
     assert "looked at True" in report.output, report.text()
     assert "ESCAPED" not in report.output, report.output
+
+
+def test_an_exercise_that_lies_where_modules_are_is_out_of_sight(sandbox, tmp_path, monkeypatch):
+    """As in an installed wheel, where exercises lie in a package."""
+    package = tmp_path / "site-packages" / "a_course"
+    made = exercise(package / "exercises" / "attack")
+    (package / "__init__.py").write_text("")
+    (package / "part.py").write_text("NUMBER = 4711")
+    monkeypatch.setattr(folders, "packages", lambda kept=folders.packages: [*kept(), str(package)])
+    words = {"MARK": "0" * 30, "ANSWER": ANSWER[::-1], "SECRET": SECRET[::-1]}
+    text = attacks.text("reads_files", PLACES=repr(str(made.folder / "exercise.toml")), ROOTS=repr([str(package.parent)]), **words)
+    with Grader(sandbox=sandbox, as_root=True) as grader:  # the watcher is another process: PYTHONPATH tells it where the package is
+        report = grader.grade_texts(made, {"attack.py": f"from a_course.part import NUMBER\nprint(NUMBER)\n{text}"})
+    assert "4711" in report.output and "ESCAPED" not in report.output, report.text()
+
+
+@pytest.mark.parametrize("hidden", [[], ["/usr/lib/a"], ["/usr/lib/a", "/usr/lib/a/b", "/nowhere"]])
+def test_what_is_hidden_is_hidden_once(hidden, tmp_path, monkeypatch):
+    shown = tmp_path / "lib"
+    (shown / "a" / "b").mkdir(parents=True)
+    monkeypatch.setattr(folders, "readable", lambda: [str(shown)])
+    monkeypatch.setattr(folders, "exercises", lambda: [])
+    words = bubblewrap.arguments("/bin/cat", [each.replace("/usr/lib", str(shown)) for each in hidden])
+    assert words.count("--tmpfs") == bool(hidden)
 
 
 # ---------------------------------------------------------------------------------------------------------------- what is done

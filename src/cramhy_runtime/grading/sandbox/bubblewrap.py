@@ -51,8 +51,8 @@ def arguments(keeper: str, hidden: tuple[str, ...] | list[str]) -> list[str]:
             words += ["--symlink", os.readlink(path), path]
         else:
             words += ["--ro-bind", path, path]
-    for path in dict.fromkeys(os.path.realpath(each) for each in [*folders.exercises(), *hidden]):
-        if os.path.isdir(path) and any(os.path.commonpath([path, os.path.realpath(each)]) == os.path.realpath(each) for each in shown):
+    for path in folders.topmost(os.path.realpath(each) for each in [*folders.exercises(), *hidden]):
+        if os.path.isdir(path) and any(folders.is_below(path, os.path.realpath(each)) for each in shown):
             words += ["--tmpfs", path, "--remount-ro", path]
     for path in folders.DEVICES:
         words += ["--dev-bind", path, path]

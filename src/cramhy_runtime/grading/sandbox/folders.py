@@ -12,6 +12,7 @@ import importlib.util
 import os
 import sys
 import sysconfig
+from collections.abc import Iterable
 
 from . import linux
 
@@ -84,8 +85,18 @@ def readable() -> list[str]:
     prefixes = [os.path.join(prefix, name) for prefix in (sys.prefix, sys.base_prefix) for name in ("lib", "lib64")]
     modules = [sysconfig.get_path("stdlib"), sysconfig.get_path("platstdlib"), *(path for path in sys.path if path)]
     wanted = [*_LIBRARIES, *_OTHERS, *prefixes, *modules, *packages(), *_course()]
-    found = [os.path.normpath(path) for path in dict.fromkeys(wanted) if os.path.exists(path)]
-    return [path for path in found if not any(path != other and path.startswith(f"{other}{os.sep}") for other in found)]
+    return topmost(os.path.normpath(path) for path in wanted if os.path.exists(path))
+
+
+def topmost(paths: Iterable[str]) -> list[str]:
+    """The paths, each once, without those that are below another one."""
+    found = list(dict.fromkeys(paths))
+    return [path for path in found if not any(path != other and is_below(path, other) for other in found)]
+
+
+def is_below(path: str, folder: str) -> bool:
+    """Whether ``path`` is ``folder``, or in it at any depth, by their texts."""
+    return path == folder or path.startswith(f"{folder.rstrip(os.sep)}{os.sep}")
 
 
 def _tutorials() -> list[str]:
@@ -107,9 +118,9 @@ def _course() -> list[str]:
 def _without(path: str, secret: list[str]) -> list[str]:
     """The paths at or below ``path`` that together are all of it but the secret ones."""
     real = os.path.realpath(path)
-    if real in secret:
+    if any(is_below(real, each) for each in secret):
         return []
-    if not any(each.startswith(f"{real}{os.sep}") for each in secret):
+    if not any(is_below(each, real) for each in secret):
         return [path]
     return [part for name in sorted(os.listdir(path)) for part in _without(os.path.join(path, name), secret)]
 
