@@ -15,7 +15,7 @@ from systems import linux, takes_long
 
 import cramhy_runtime
 from cramhy_runtime.grading import ExerciseError, Grader
-from cramhy_runtime.grading.exercise import Exercise
+from cramhy_runtime.grading.exercise import Exercise, own_exercises
 from cramhy_runtime.grading.sandbox import bubblewrap, folders
 
 from . import attacks
@@ -130,7 +130,7 @@ def test_a_submission_reads_no_file_of_others(place):
     (submitted / "attack.py").write_text(f"# {mark}")
     place.grader.grade(place.exercise, submitted)
     given = [submitted / "attack.py", place.exercise.folder / "exercise.toml", place.outside / "of-others", "/proc/self/cgroup"]
-    given += [path for path in Path(attacks.__file__).parents[3].glob("tutorials/exercises/*/*") if path.is_file()]
+    given += [path for folder in own_exercises().values() for path in folder.rglob("*") if path.is_file()]
     assert len(given) > 30
     words = {"MARK": mark[::-1], "ANSWER": ANSWER[::-1], "SECRET": SECRET[::-1]}
     own = Path(cramhy_runtime.__file__).parent
@@ -148,7 +148,7 @@ def test_an_exercise_that_lies_where_modules_are_is_out_of_sight(sandbox, tmp_pa
     (package / "__init__.py").write_text("")
     (package / "part.py").write_text("NUMBER = 4711")
     monkeypatch.setattr(folders, "packages", lambda kept=folders.packages: [*kept(), str(package)])
-    words = {"MARK": "0" * 30, "ANSWER": ANSWER[::-1], "SECRET": SECRET[::-1]}
+    words = {"MARK": SECRET[::-1], "ANSWER": ANSWER[::-1], "SECRET": SECRET[::-1]}
     text = attacks.text("reads_files", PLACES=repr(str(made.folder / "exercise.toml")), ROOTS=repr([str(package.parent)]), **words)
     with Grader(sandbox=sandbox, as_root=True) as grader:  # the watcher is another process: PYTHONPATH tells it where the package is
         report = grader.grade_texts(made, {"attack.py": f"from a_course.part import NUMBER\nprint(NUMBER)\n{text}"})
@@ -234,7 +234,7 @@ def test_the_grader_goes_on_after_each_attack(place):
 GRADING = """
 import sys
 from cramhy_runtime.grading import Grader
-from cramhy_runtime.grading.exercise import Exercise
+from cramhy_runtime.grading.exercise import Exercise, own_exercises
 with Grader(sandbox=sys.argv[1], as_root=True) as grader:
     grader.grade(Exercise.read(sys.argv[2]), sys.argv[3])
 """
