@@ -14,9 +14,12 @@ import pytest
 from systems import linux, takes_long
 
 import cramhy_runtime
-from cramhy_runtime.grading import ExerciseError, Grader
+from cramhy_runtime.cli import grading_commands
+from cramhy_runtime.cli.options import parser
+from cramhy_runtime.grading import ExerciseError, Grader, Report, grader, messages
 from cramhy_runtime.grading.exercise import Exercise, own_exercises
-from cramhy_runtime.grading.sandbox import bubblewrap, folders
+from cramhy_runtime.grading.processes import ForkServer
+from cramhy_runtime.grading.sandbox import bubblewrap, folders, removal
 
 from . import attacks
 
@@ -265,19 +268,19 @@ def test_nothing_is_left_when_the_grader_is_ended(sandbox, tmp_path, end, stays)
     (tmp_path / "attack.py").write_text(attacks.text("starts_processes", MARK=mark, STAYS=stays))
     exercise(tmp_path / "exercise")
     words = [sys.executable, "-c", GRADING, sandbox, str(tmp_path / "exercise"), str(tmp_path / "attack.py")]
-    grader = subprocess.Popen(words, env={**os.environ, "TMPDIR": str(temporary)}, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    grading = subprocess.Popen(words, env={**os.environ, "TMPDIR": str(temporary)}, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
     try:
         assert soon(lambda: processes_named(mark))
-        everything = session_of(grader.pid)
+        everything = session_of(grading.pid)
         assert len(everything) >= 4
-        grader.send_signal(end)
-        grader.wait(30)
+        grading.send_signal(end)
+        grading.wait(30)
         assert soon(lambda: not any(Path(f"/proc/{number}").exists() for number in everything))
         assert processes_named(mark) == []
         assert soon(lambda: not list(temporary.iterdir()))
     finally:
-        grader.kill()
-        grader.wait()
+        grading.kill()
+        grading.wait()
 
 
 @pytest.mark.parametrize("whom", ["watcher", "fork server"])
@@ -287,18 +290,18 @@ def test_nothing_but_a_folder_is_left_when_a_part_of_the_grader_is_killed(place,
     (tmp_path / "attack.py").write_text(attacks.text("starts_processes", MARK=mark, STAYS=1))
     exercise(tmp_path / "exercise")
     words = [sys.executable, "-c", GRADING, place.sandbox, str(tmp_path / "exercise"), str(tmp_path / "attack.py")]
-    grader = subprocess.Popen(words, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    grading = subprocess.Popen(words, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
     try:
         assert soon(lambda: processes_named(mark))
-        everything = session_of(grader.pid)
+        everything = session_of(grading.pid)
         victim = next(each for each in everything if f"grading.{whom.replace(' ', '_')}" in command_of(each))
         os.kill(victim, signal.SIGKILL)
-        grader.wait(60)
+        grading.wait(60)
         assert soon(lambda: not any(Path(f"/proc/{number}").exists() for number in everything))
         assert processes_named(mark) == []
     finally:
-        grader.kill()
-        grader.wait()
+        grading.kill()
+        grading.wait()
 
 
 def command_of(process):
@@ -348,3 +351,88 @@ def test_where_bubblewrap_is_forbidden_it_is_said_why(monkeypatch, tmp_path):
     program.chmod(0o755)
     monkeypatch.setattr(bubblewrap, "WHERE", f"{tmp_path}:/usr/bin:/bin")
     assert bubblewrap.why_not() == "bubblewrap does not work here: bwrap: No permissions to create new namespace."
+
+
+def test_who_wants_bubblewrap_gets_no_points_without_it(monkeypatch, tmp_path):
+    server = ForkServer(["lisp-unit"], "bubblewrap")
+    monkeypatch.setattr(server, "_received", lambda: {"bubblewrap": "bubblewrap does not work here: bwrap: No permissions."})
+    server.ask({"wall": 1})
+    with pytest.raises(ExerciseError) as problem:
+        server.take()
+    assert str(problem.value) == "Submissions shall run in bubblewrap, and cannot: bubblewrap does not work here: bwrap: No permissions."
+    assert server.process is None
+
+
+def options(*words):
+    return parser().parse_args(["grade", "square", "square.lisp", *words])
+
+
+def test_the_command_says_why_it_grades_nothing_or_not_in_bubblewrap(monkeypatch, capsys):
+    monkeypatch.setattr(os, "geteuid", lambda: 0)
+    monkeypatch.delenv("CRAMHY_AS_ROOT", raising=False)
+    assert grading_commands.grade(options()) == 2
+    assert capsys.readouterr().err == f"cramhy: {grader.AS_ROOT}\n"
+    held = ["time", "memory", "file size", "files", "network", "processes", "signals"]
+    asked = []
+    monkeypatch.setattr(grader, "grade", lambda *words: asked.append(words) or Report("A square", [], "", held))
+    monkeypatch.setattr(bubblewrap, "why_not", lambda: "bubblewrap is not installed.")
+    assert grading_commands.grade(options("--as-root", "--seeds", "2")) == 0
+    assert capsys.readouterr().err == "cramhy: the submission ran behind cramhy's own locks. bubblewrap is not installed.\n"
+    assert grading_commands.grade(options("--sandbox", "locks")) == 0
+    assert capsys.readouterr().err == ""
+    held[3:] = ["bubblewrap"]
+    assert grading_commands.grade(options()) == 0
+    missing = "files, network, processes, signals"
+    assert capsys.readouterr().err == f"cramhy: this system has no lock for {missing}. docs/how-to/grading.md says what that means.\n"
+    assert asked == [
+        ("square", "square.lisp", 2, None, True),
+        ("square", "square.lisp", None, "locks", False),
+        ("square", "square.lisp", None, None, False),
+    ]
+
+
+# ------------------------------------------------------------------------------------------------------------------- the parts
+
+
+def test_a_folder_is_removed_whatever_is_in_it(tmp_path):
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    (outside / "file").write_text("stays")
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    text = attacks.text("fills_folders", WHICH="unreadable, links, long_names, deep", OUTSIDE=outside, OWN_MEMORY=True)
+    done = subprocess.run([sys.executable, "-c", text], cwd=folder, capture_output=True, text=True)
+    assert done.stdout.endswith("went on\n"), done.stderr
+    (folder / ".moved-1").mkdir()
+    (folder / "d" / ".moved-2").mkdir()
+    folder.chmod(0o300)
+    removal.remove(str(folder))
+    assert [path.name for path in tmp_path.iterdir()] == ["outside"] and (outside / "file").read_text() == "stays"
+    removal.remove(str(folder))
+
+
+def test_a_folder_is_over_if_it_has_too_much_or_cannot_be_counted(tmp_path):
+    for number in range(3):
+        (tmp_path / f"{number}").mkdir()
+        (tmp_path / f"{number}" / "file").write_bytes(b"x" * 100)
+    os.symlink("/", tmp_path / "link")
+    assert not removal.is_over(str(tmp_path), 1000, 7)
+    assert removal.is_over(str(tmp_path), 250, 7)
+    assert removal.is_over(str(tmp_path), 1000, 6)
+    assert not removal.is_over(str(tmp_path / "nothing"), 0, 0)
+    place = tmp_path
+    for _ in range(removal.DEEPEST + 1):
+        place = place / "a"
+        place.mkdir()
+    assert removal.is_over(str(tmp_path), 10**9, 10**9)
+
+
+def test_a_message_comes_as_it_was_sent_and_an_end_is_an_end():
+    source, sink = os.pipe()
+    for message in ({"text": "ä\ud800"}, [], {"long": "x" * 50_000}):
+        messages.send(sink, message)
+        assert messages.receive(source) == message
+    os.write(sink, b"\0\0\0\0\0\0\0\5{}")
+    os.close(sink)
+    assert messages.receive(source) is None
+    os.close(source)
