@@ -14,7 +14,6 @@ import time
 
 from . import messages
 from .problems import ExerciseError
-from .sandbox import folders, removal
 
 MORE = 20.0
 """Seconds that the watcher gets beside those of a job, before it counts as lost."""
@@ -41,6 +40,8 @@ class ForkServer:
         self.coming = 0  # answers
 
     def _start(self):
+        from .sandbox import folders
+
         self.folder = tempfile.mkdtemp(prefix="cramhy-grading-")
         environment = {name: os.environ[name] for name in KEPT_VARIABLES if name in os.environ}
         environment |= {"PATH": "/usr/bin:/bin", "LANG": "C.UTF-8"}
@@ -59,6 +60,8 @@ class ForkServer:
 
     def close(self):
         """End it, with all that it has started."""
+        from .sandbox import removal
+
         if self.process is None:
             return
         with contextlib.suppress(OSError):
