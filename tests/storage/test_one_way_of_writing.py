@@ -36,7 +36,6 @@ EXCEPT = {
     ("grading/processes.py", "mkdtemp"): "the folder for those of submissions, which goes with the fork server",
     ("grading/watcher.py", "mkdtemp"): "the folder of a submission, which goes after it",
     ("grading/sandbox/removal.py", "open"): "a folder, to remove what is in it",
-    ("grading/sandbox/removal.py", "rename"): "a folder that is removed goes up to the top first",
     ("grading/performing.py", "write_text"): "the files of a submission, in this folder",
     ("grading/tests_inside.py", "write_text"): "as above",
     ("cli/process_environment.py", "open"): "the null device, in place of a stream that is closed",

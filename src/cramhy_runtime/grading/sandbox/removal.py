@@ -46,49 +46,47 @@ def is_over(folder: str, most_bytes: int, most_files: int) -> bool:
 
 
 def remove(folder: str) -> None:
-    """Remove a folder with all that is in it. The folders in it are moved up to its top first, so no path gets long."""
+    """Remove a folder with all that is in it, if it is there. One folder is open at a time, and no path has more than one name."""
     try:
-        top = os.open(folder, _FOLDER)
+        here = os.open(folder, _FOLDER)
     except FileNotFoundError:
         return
+    except PermissionError:
+        os.chmod(folder, 0o700)
+        here = os.open(folder, _FOLDER)
+    left = [_emptied(here)]
+    names: list[str] = []
     try:
-        number = 0
-        os.fchmod(top, 0o700)
-        while names := os.listdir(top):
-            for name in names:
-                number = _remove_one(top, name, number)
+        while left:
+            if left[-1]:
+                names.append(left[-1].pop())
+                os.chmod(names[-1], 0o700, dir_fd=here)
+                here = _instead(here, names[-1])
+                left.append(_emptied(here))
+            else:
+                left.pop()
+                if left:
+                    here = _instead(here, os.pardir)
+                    os.rmdir(names.pop(), dir_fd=here)
     finally:
-        os.close(top)
+        os.close(here)
     os.rmdir(folder)
 
 
-def _remove_one(top: int, name: str, number: int) -> int:
-    """Remove an entry of the folder ``top``; the folders in it become entries of ``top``. The next free number for their names."""
-    if not stat.S_ISDIR(os.lstat(name, dir_fd=top).st_mode):
-        os.unlink(name, dir_fd=top)
-        return number
-    os.chmod(name, 0o700, dir_fd=top)
-    inside = os.open(name, _FOLDER, dir_fd=top)
-    try:
-        for each in os.listdir(inside):
-            if stat.S_ISDIR(os.lstat(each, dir_fd=inside).st_mode):
-                os.chmod(each, 0o700, dir_fd=inside)  # a folder that cannot be written cannot be moved
-                while True:
-                    number += 1
-                    with contextlib.suppress(FileExistsError):
-                        _move(each, inside, f".moved-{number}", top)
-                        break
-            else:
-                os.unlink(each, dir_fd=inside)
-    finally:
-        os.close(inside)
-    os.rmdir(name, dir_fd=top)
-    return number
+def _instead(here: int, name: str) -> int:
+    """Open a folder in or above the open folder ``here``, which is closed."""
+    other = os.open(name, _FOLDER, dir_fd=here)
+    os.close(here)
+    return other
 
 
-def _move(name: str, source: int, new: str, target: int) -> None:
-    """Move a folder to a name that nothing has. Raises `FileExistsError`."""
-    with contextlib.suppress(FileNotFoundError):
-        os.lstat(new, dir_fd=target)
-        raise FileExistsError(new)
-    os.rename(name, new, src_dir_fd=source, dst_dir_fd=target)
+def _emptied(folder: int) -> list[str]:
+    """Remove what is in an open folder but the folders; the names of these."""
+    os.fchmod(folder, 0o700)
+    names = []
+    for name in os.listdir(folder):
+        if stat.S_ISDIR(os.lstat(name, dir_fd=folder).st_mode):
+            names.append(name)
+        else:
+            os.unlink(name, dir_fd=folder)
+    return names
