@@ -177,7 +177,7 @@ def malicious(exercises, submissions):
         ("10 GB of output by Python", "square", python("import os\nwhile True:\n    os.write(1, b'x' * 1000000)"), 0, "printed more than"),
         ("kills the others", "square", python(KILL) + EMPTY_SQUARE, 0, ""),
         ("deletes the exercise", "square", python(DELETE.format(exercises=exercises, submissions=submissions)) + EMPTY_SQUARE, 0, "empty"),
-        ("fills the disk", "square", python(DISK), 0, "wrote too many files"),
+        ("fills the disk", "square", python(DISK), 0, "No space left on device|wrote too many files"),
         ("takes all memory", "square", python("all = []\nwhile True:\n    all.append(bytearray(50_000_000))"), 0, "memory"),
         ("recursion without end", "square", "(in-package :tut)\n(defun draw-square (size) (+ 1 (draw-square size)))", 0, "error"),
         ("network", "square", python("import socket\nsocket.create_connection(('127.0.0.1', 22))"), 0, "cannot be used"),
@@ -243,6 +243,11 @@ def cases(exercises=None, submissions="/nowhere"):
     return found
 
 
+def says(report, words):
+    """Whether a report has the words of a case. Some differ between the sandboxes: ``|`` stands between them."""
+    return any(each in report.text() for each in words.split("|"))
+
+
 def hand_in(case, folder):
     """Write the files of a case into a folder of its own below ``folder``; that folder."""
     place = Path(folder, case.name.replace(" ", "-"))
@@ -263,10 +268,10 @@ def main():
 
     chosen = [case for case in cases() if not sys.argv[1:] or any(word in case.name for word in sys.argv[1:])]
     begun = time.monotonic()
-    with tempfile.TemporaryDirectory() as folder, Grader() as grader:
+    with tempfile.TemporaryDirectory() as folder, Grader(sandbox=os.environ.get("SANDBOX"), as_root=True) as grader:
         reports = grader.grade_all([(Exercise.read(own_exercises()[case.exercise]), hand_in(case, folder)) for case in chosen])
     for case, report in zip(chosen, reports):
-        good = report.points == (report.most if case.points is None else case.points) and case.words in report.text()
+        good = report.points == (report.most if case.points is None else case.points) and says(report, case.words)
         print("ok  " if good else "DIFF", case.name, report.points, f"({case.points})")
         if not good or os.environ.get("SHOW"):
             print(report.text())

@@ -14,9 +14,9 @@ from systems import linux, takes_long
 
 from cramhy_runtime.grading import Grader
 from cramhy_runtime.grading.exercise import Exercise, own_exercises
-from cramhy_runtime.grading.processes import Nursery
+from cramhy_runtime.grading.processes import ForkServer
 
-from .submissions import SHORT, cases, hand_in
+from .submissions import SHORT, cases, hand_in, says
 
 pytestmark = linux
 
@@ -46,7 +46,7 @@ def graded(grader, exercises, case, folder, seconds=None):
 def check(case, exercise, report):
     text = report.text()
     assert report.points == (exercise.points if case.points is None else case.points), text
-    assert case.words in text
+    assert says(report, case.words), text
     assert case.points == 0 or report.held, "nothing has run"
 
 
@@ -93,15 +93,15 @@ def test_many_are_graded_at_once_each_as_if_it_were_alone_and_in_their_order(exe
         reports = grader.grade_all([(Exercise.read(exercises / case.exercise), hand_in(case, tmp_path)) for case in chosen])
         for case, report in zip(chosen, reports, strict=True):
             check(case, Exercise.read(exercises / case.exercise), report)
-        assert len(grader.nurseries) <= at_once * 2  # the exercises build on two lists of systems
+        assert len(grader.fork_servers) <= at_once * 2  # the exercises build on two lists of systems
         assert grader.grade_all([]) == []
 
 
-def test_a_nursery_that_is_lost_costs_one_submission_only(exercises, tmp_path, monkeypatch):
+def test_a_fork_server_that_is_lost_costs_one_submission_only(exercises, tmp_path, monkeypatch):
     chosen = [next(case for case in cases() if case.name == name) for name in ("empty", "solution of dry-pen")]
     handed_in = [(Exercise.read(exercises / case.exercise), hand_in(case, tmp_path)) for case in chosen]
     with Grader(at_once=1) as grader:
-        ask = Nursery.ask
+        ask = ForkServer.ask
         jobs = []
 
         def ask_and_kill(self, job):
@@ -110,7 +110,7 @@ def test_a_nursery_that_is_lost_costs_one_submission_only(exercises, tmp_path, m
             if len(jobs) == 1:
                 self.process.kill()
 
-        monkeypatch.setattr(Nursery, "ask", ask_and_kill)
+        monkeypatch.setattr(ForkServer, "ask", ask_and_kill)
         lost, other = grader.grade_all(handed_in)
     assert lost.points == 0 and "The program ended the process that grades it." in lost.text()
     assert other.points == other.most

@@ -13,9 +13,10 @@ def grade(options):
     from cramhy_runtime.grading import formats
     from cramhy_runtime.grading.grader import grade as graded
     from cramhy_runtime.grading.problems import ExerciseError
+    from cramhy_runtime.grading.sandbox import bubblewrap
 
     try:
-        report = graded(options.exercise, options.submission, options.seeds)
+        report = graded(options.exercise, options.submission, options.seeds, options.sandbox, options.as_root)
     except ExerciseError as problem:
         print(f"cramhy: {problem}", file=sys.stderr)
         return 2
@@ -23,6 +24,8 @@ def grade(options):
     if not all([_write(path, made()) for path, made in wanted if path is not None]):
         return 2
     sys.stdout.write(formats.FORMATS[options.format](report))
+    if report.held and "bubblewrap" not in report.held and options.sandbox is None:
+        print(f"cramhy: the submission ran behind cramhy's own locks. {bubblewrap.why_not()}", file=sys.stderr)
     missing = formats.missing_locks(report)
     if missing:
         print(f"cramhy: this system has no lock for {', '.join(missing)}. docs/how-to/grading.md says what that means.", file=sys.stderr)

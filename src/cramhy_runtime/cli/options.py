@@ -238,10 +238,18 @@ def _add_learn(commands):
 
 
 def _add_grade(commands):
-    grade = commands.add_parser("grade", help="grade a submission: run it in a cage, and tell what failed and how many points it gets")
+    grade = commands.add_parser("grade", help="grade a submission: run it in a sandbox, and tell what failed and how many points it gets")
     grade.add_argument("exercise", metavar="EXERCISE", help="the folder of an exercise, or the name of one of cramhy's, such as square")
     grade.add_argument("submission", metavar="SUBMISSION", help="the file that a student hands in, or the folder with the files")
     grade.add_argument("--seeds", type=_at_least_one, default=None, metavar="N", help="try checks with N seeds (as the exercise says)")
+    grade.add_argument(
+        "--sandbox",
+        choices=["bubblewrap", "locks"],
+        default=None,
+        help="what keeps the submission from this machine: bubblewrap, and nothing is graded where that does not work, or cramhy's own "
+        "locks alone (bubblewrap where it works)",
+    )
+    grade.add_argument("--as-root", action="store_true", help="grade although you are root, which is refused otherwise")
     grade.add_argument("--json", default=None, metavar="FILE", help="write the result into FILE, too, as JSON (no file)")
     grade.add_argument("--junit", default=None, metavar="FILE", help="write the result into FILE, too, in JUnit's XML (no file)")
     grade.add_argument(

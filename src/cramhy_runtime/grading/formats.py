@@ -19,7 +19,7 @@ EXPECTED_LOCKS = ("time", "memory", "file size", "files", "network", "processes"
 
 
 def missing_locks(report: Report) -> list[str]:
-    """The locks of the cage that did not hold while a submission ran; nothing if none ran."""
+    """The locks of the sandbox that did not hold while a submission ran; nothing if none ran."""
     return [lock for lock in EXPECTED_LOCKS if lock not in report.held] if report.held else []
 
 

@@ -1,10 +1,10 @@
 """Grading: a submission is read, run in processes of its own, and judged here.
 
-`Grader` keeps nurseries, so that many submissions are graded quickly, and several at a time. `grade` grades one. The checks are tried one
-after the other, and each with its seeds; the first seed with a fault decides. A check gives all of its points or none.
+`Grader` keeps fork servers, so that many submissions are graded quickly, and several at a time. `grade` grades one. The checks are tried
+one after the other, and each with its seeds; the first seed with a fault decides. A check gives all of its points or none.
 
 To grade is a generator here: it yields a job, and is sent the answer. So one process can have several submissions in hand, and waits for
-whichever nursery answers first (`processes.answers`).
+whichever fork server answers first (`processes.answers`).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .forms import source_faults
 from .here import Here
 from .jobs import job
 from .problems import ExerciseError
-from .processes import Nursery, answers
+from .processes import ForkServer, answers
 from .report import CheckResult, Report
 from .told import Told
 from cramhy_runtime.kernel.typing_names import Any
@@ -30,6 +30,10 @@ LARGEST = 200_000
 KEPT_OUTPUT = 2000
 NOISE = "[(ROSLISP TOP) INFO]"
 """What roslisp prints when a node starts, which says nothing about a submission."""
+AS_ROOT = (
+    "You are root, so a gap in the sandbox would give this machine to whoever hands in. Grade as another user. If this is a container that "
+    "has nothing else in it, say --as-root, Grader(as_root=True) or CRAMHY_AS_ROOT=yes."
+)
 SIGNALS = {
     4: "illegal instruction",
     6: "abort",
@@ -41,13 +45,15 @@ SIGNALS = {
 }
 
 
-def grade(exercise: str | Path, submission: str | Path, seeds: int | None = None) -> Report:
-    """Grade a submission, a file or a folder. exercise: a folder, or the name of one of cramhy's. seeds: see `Grader`.
+def grade(
+    exercise: str | Path, submission: str | Path, seeds: int | None = None, sandbox: str | None = None, as_root: bool = False
+) -> Report:
+    """Grade a submission, a file or a folder. exercise: a folder, or the name of one of cramhy's. The others: see `Grader`.
 
     Raises `ExerciseError` if the exercise cannot be used, or if there is no such submission.
     """
     found = find(str(exercise))
-    with Grader(seeds) as grader:
+    with Grader(seeds, sandbox=sandbox, as_root=as_root) as grader:
         return grader.grade(found, submission)
 
 
@@ -56,19 +62,25 @@ class Grader:
 
     apart: whether a submission runs in a process of its own. If not, nothing protects this process from it (`Here`).
     at_once: how many submissions `grade_all` has in hand at a time, ``None`` for as many as there are processors.
+    sandbox: "bubblewrap", "locks" for cramhy's own locks alone, or ``None`` for bubblewrap where it works.
+    as_root: whether to grade although the user is root; the variable CRAMHY_AS_ROOT says it, too. Else `ExerciseError` is raised then.
     """
 
-    def __init__(self, seeds: int | None = None, apart: bool = True, at_once: int | None = None):
-        self.seeds, self.apart = seeds, apart
+    def __init__(
+        self, seeds: int | None = None, apart: bool = True, at_once: int | None = None, sandbox: str | None = None, as_root: bool = False
+    ):
+        if apart and not as_root and getattr(os, "geteuid", lambda: 1)() == 0 and not os.environ.get("CRAMHY_AS_ROOT"):
+            raise ExerciseError(AS_ROOT)
+        self.seeds, self.apart, self.sandbox = seeds, apart, sandbox
         self.at_once = (at_once or os.cpu_count() or 1) if apart else 1
-        self.nurseries: dict[tuple[int, tuple[str, ...]], Nursery | Here] = {}
+        self.fork_servers: dict[tuple[int, tuple[str, ...]], ForkServer | Here] = {}
 
     def __enter__(self) -> Grader:
         return self
 
     def __exit__(self, *problem: object) -> None:
-        for nursery in self.nurseries.values():
-            nursery.close()
+        for fork_server in self.fork_servers.values():
+            fork_server.close()
 
     def grade(self, exercise: Exercise, submission: str | Path) -> Report:
         """The `Report` of a submission, a file or a folder."""
@@ -88,7 +100,7 @@ class Grader:
     def _all(self, work: list[tuple[Exercise, dict[str, str | None]]]) -> list[Report]:
         """The report of each pair of an exercise and the texts of a submission. Each slot has one of them in hand."""
         reports: dict[int, Report] = {}
-        asked: dict[Nursery | Here, tuple[int, int, _Grading]] = {}  # for each nursery with a job: the slot, the number, the grading
+        asked: dict[ForkServer | Here, tuple[int, int, _Grading]] = {}  # for each fork server with a job: the slot, the number, the grading
         numbers = iter(range(len(work)))
 
         def go_on(slot, number, grading, answer):
@@ -101,20 +113,20 @@ class Grader:
                     number = next(numbers, None)
                     grading, answer = number is not None and self._grading(*work[number]), None
                 else:
-                    nursery = self._nursery(slot, work[number][0])
-                    nursery.ask(next_job)
-                    asked[nursery] = slot, number, grading
+                    fork_server = self._fork_server(slot, work[number][0])
+                    fork_server.ask(next_job)
+                    asked[fork_server] = slot, number, grading
                     return
 
         for slot, number in zip(range(self.at_once), numbers):
             go_on(slot, number, self._grading(*work[number]), None)
         while asked:
-            for nursery, answer in answers(list(asked)):
-                go_on(*asked.pop(nursery), answer)
+            for fork_server, answer in answers(list(asked)):
+                go_on(*asked.pop(fork_server), answer)
         return [reports[number] for number in range(len(work))]
 
     def _grading(self, exercise: Exercise, submitted: dict[str, str | None]) -> _Grading:
-        """Yield the jobs of a submission, each for its answer, ``None`` if its nursery was lost; the `Report`."""
+        """Yield the jobs of a submission, each for its answer, ``None`` if its fork server was lost; the `Report`."""
         missing = [name for name in exercise.submission if submitted.get(name) is None]
         if missing:
             words = [
@@ -168,11 +180,11 @@ class Grader:
             return judging.of_tests(check, told), output, told.held, False
         return judging.of_run(check, work, values, told), output, told.held, False
 
-    def _nursery(self, slot: int, exercise: Exercise) -> Nursery | Here:
+    def _fork_server(self, slot: int, exercise: Exercise) -> ForkServer | Here:
         key = slot, (*exercise.systems, "lisp-unit", "fiveam")
-        if key not in self.nurseries:
-            self.nurseries[key] = Nursery(list(key[1])) if self.apart else Here()
-        return self.nurseries[key]
+        if key not in self.fork_servers:
+            self.fork_servers[key] = ForkServer(list(key[1]), self.sandbox) if self.apart else Here()
+        return self.fork_servers[key]
 
 
 def _unfinished(told, answer, exercise):
@@ -186,7 +198,9 @@ def _unfinished(told, answer, exercise):
         "long": "took too long, and was stopped.",
         "output": f"printed more than {limits['output']:g} kB, and was stopped.",
         "memory": f"used more than {limits['memory']:g} MB of memory, and was stopped.",
+        "threads": "started too many threads, and was stopped.",
         "disk": "wrote too many files, and was stopped.",
+        "sandbox": f"was not tried, because there was no sandbox for it. Grade it again. ({answer.get('why')})",
     }
     if answer["ended"] in reasons:
         return f"{what} {reasons[answer['ended']]}"

@@ -1,7 +1,8 @@
 """Grading without processes: a submission runs in an image of this process, for a student's own check in a browser.
 
-There is no cage and no limit of processor time, so a submission can do what this process can do, and an endless loop does not end unless
-the turtle's time does. Points that count come from the nursery's processes. The verdict is the same for a submission that means no harm.
+There is no sandbox and no limit of processor time, so a submission can do what this process can do, and an endless loop does not end unless
+the turtle's time does. Points that count come from the fork server's processes. The verdict is the same for a submission that means no
+harm.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from .performing import lay_out, perform
 
 
 class Here:
-    """Takes the place of a `Nursery`: it performs a job when the answer is taken, in an image of its own."""
+    """Takes the place of a `ForkServer`: it performs a job when the answer is taken, in an image of its own."""
 
     def close(self):
         """There is nothing to end."""
@@ -25,7 +26,7 @@ class Here:
         self.job = job
 
     def take(self):
-        """What came of the job, as from a nursery (see `nursery`)."""
+        """What came of the job, as from a fork server (see `fork_server`)."""
         job = self.job
         from cramhy_runtime.session import Image
 

@@ -49,6 +49,7 @@ def job(exercise: Exercise, check: Check, seed: int, submitted: dict[str, str]) 
         "turtle_time": float(exercise.limits["turtle_time"]),
         "output": int(exercise.limits["output"] * 1000),
         "wall": WALL + 4 * exercise.limits["time"],
+        "hidden": [str(exercise.folder.resolve())] if exercise.folder.parts else [],
     }
     return made, values
 

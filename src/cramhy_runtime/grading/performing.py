@@ -1,6 +1,6 @@
 """A submission runs: it is loaded, the plan is called, questions are answered, and all that is told as it comes.
 
-This happens in the process of the submission, which is in a cage, or in an image of this process where the system has no processes (a
+This happens in the process of the submission, which is in a sandbox, or in an image of this process where the system has no processes (a
 browser). Nothing here knows what is right: answers and commands are reported, and ``judging.py`` compares them elsewhere. Only the verdicts
 of tests of lisp-unit, FiveAM and pytest come from here, since such tests call the submission's functions.
 

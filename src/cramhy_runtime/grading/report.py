@@ -27,7 +27,7 @@ class CheckResult(NamedTuple):
 
 
 class Report(NamedTuple):
-    """The result of grading. exercise: its title. output: what the submission printed, cut off. held: the locks of the cage."""
+    """The result of grading. exercise: its title. output: what the submission printed, cut off. held: the locks of the sandbox."""
 
     exercise: str
     checks: list[CheckResult]
@@ -79,7 +79,7 @@ class Report(NamedTuple):
                 for check in self.checks
             ],
             "output": self.output,
-            "cage": self.held,
+            "sandbox": self.held,
         }
 
     def json(self) -> str:

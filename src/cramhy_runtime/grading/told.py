@@ -11,7 +11,7 @@ class Told:
     """The reports of one job, by kind: ``value``, ``run``, ``tests``, ``tampered``, ``faults``, ``error``; ``None`` if there was none.
 
     ``answers``: ("answer" or "error", facts) of each question. ``doing``, ``what``: the step that was begun last. ``done``: whether the
-    job came to its end. ``held``: the locks of the cage.
+    job came to its end. ``held``: the locks of the sandbox.
     """
 
     def __init__(self, lines, nonce):

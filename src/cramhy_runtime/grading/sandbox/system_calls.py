@@ -1,7 +1,7 @@
 """Seccomp: a filter of the calls that a process makes to Linux, which it makes for itself. Source: seccomp(2), bpf.
 
 A call on the list fails with "operation not permitted", so that a submission gets an error and the student a message. Threads can be
-started, processes cannot. Signals can be sent to the process itself only.
+started, processes cannot. Signals can be sent to the process itself only. It cannot take back that it ends with its parent.
 """
 
 from __future__ import annotations
@@ -12,14 +12,15 @@ import os
 import platform
 import sys
 
-from .call_numbers import ARCHITECTURES, CALLS, CLONE, CLONE3, KILL, PRLIMIT, TGKILL
+from . import linux
+from .call_numbers import ARCHITECTURES, CALLS, CLONE, CLONE3, KILL, PRCTL, PRLIMIT, TGKILL
 
 _LOAD, _EQUAL, _AT_LEAST, _AND, _RETURN = 0x20, 0x15, 0x35, 0x54, 0x06
 _ALLOW, _ERROR = 0x7FFF0000, 0x00050000
 _NUMBER, _ARCHITECTURE, _FIRST, _SECOND = 0, 4, 16, 24  # where the data of a call are; arguments have 64 bits, the lower half first
 _CLONE_THREAD = 0x10000
 _X32 = 0x40000000
-_NO_NEW_PRIVILEGES, _SET_SECCOMP, _FILTER = 38, 22, 2
+_SET_SECCOMP, _FILTER = 22, 2
 
 
 class _Step(ctypes.Structure):
@@ -38,11 +39,11 @@ def close():
     steps = _filter(list(ARCHITECTURES).index(machine), ARCHITECTURES[machine], os.getpid())
     program = _Program(len(steps), (_Step * len(steps))(*(_Step(*step) for step in steps)))
     try:
-        system = ctypes.CDLL(None, use_errno=True)
+        linux.prctl(linux.NO_NEW_PRIVILEGES, 1)
+        linux.call("prctl", _SET_SECCOMP, _FILTER, ctypes.byref(program), 0, 0)
     except OSError:
         return False
-    system.prctl(_NO_NEW_PRIVILEGES, 1, 0, 0, 0)
-    return system.prctl(_SET_SECCOMP, _FILTER, ctypes.byref(program), 0, 0) == 0
+    return True
 
 
 def _filter(column, architecture, own):
@@ -57,4 +58,5 @@ def _filter(column, architecture, own):
     for place in (KILL[column], TGKILL[column]):
         steps += [(_EQUAL, 0, 3, place), (_LOAD, 0, 0, _FIRST), (_EQUAL, 1, 0, own), refused, number]
     steps += [(_EQUAL, 0, 3, PRLIMIT[column]), (_LOAD, 0, 0, _FIRST), (_EQUAL, 1, 0, 0), refused]
+    steps += [(_EQUAL, 0, 3, PRCTL[column]), (_LOAD, 0, 0, _FIRST), (_EQUAL, 0, 1, linux.PARENT_DEATH_SIGNAL), refused]
     return [*steps, allowed]

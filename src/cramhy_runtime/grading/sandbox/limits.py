@@ -5,7 +5,7 @@ from __future__ import annotations
 MEGABYTE = 1024 * 1024
 FOR_STACKS = 64 * 64
 """Megabytes of addresses beside the memory: each task of a plan has a stack, which takes 64 of them and hardly any memory. So that limit is
-a wide one, and the nursery looks at the memory that is really used."""
+a wide one, and the fork server looks at the memory that is really used."""
 LARGEST_FILE = 4 * MEGABYTE
 OPEN_FILES = 64
 
