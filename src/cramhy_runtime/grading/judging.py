@@ -127,10 +127,14 @@ def same(one, other, within):
 
 
 def _number(text):
-    if "/" in text:
-        above, below = text.split("/")
-        return int(above) / int(below) if int(below) else math.nan
-    return float(re.sub("[DFS]", "E", text))
+    """The number that a text means; not-a-number, which is equal to nothing, if no float is that large."""
+    try:
+        if "/" in text:
+            above, below = text.split("/")
+            return int(above) / int(below)
+        return float(re.sub("[DFS]", "E", text))
+    except (ArithmeticError, ValueError):
+        return math.nan
 
 
 # --------------------------------------------------------------------------------------------------------------- the turtle
