@@ -51,10 +51,7 @@ CARRIERS = {
   (wait-duration 0.1))""",
         "reset",
     ),
-    "a number that is none": (
-        '(defun carry (&rest all) (send-vel-cmd (py:call "builtins.float" "nan") 0) (wait-duration 0.1))',
-        "",
-    ),
+    "a number that is none": ('(defun carry (&rest all) (send-vel-cmd (py:call "builtins.float" "nan") 0) (wait-duration 0.1))', ""),
     "an endless number": (
         '(defun carry (&rest all) (send-vel-cmd (py:call "builtins.float" "inf") (py:call "builtins.float" "-inf")) (wait-duration 0.1))',
         "",
@@ -62,6 +59,10 @@ CARRIERS = {
     "a number that is none of Lisp": (
         "(defun carry (&rest all) (let* ((big (* 1d308 10)) (none (- big big))) (send-vel-cmd none none) (wait-duration 0.1)))",
         "",
+    ),
+    "an endless number of Lisp": (
+        "(defun carry (&rest all) (send-vel-cmd sb-ext:double-float-positive-infinity 0) (wait-duration 0.1))",
+        "endless",
     ),
     "a huge number": ("(defun carry (&rest all) (send-vel-cmd 1d308 1d308) (wait-duration 0.1))", ""),
     "a second turtle": (
@@ -248,7 +249,7 @@ LISP = {
         ("never ends", "(defun distance (&rest all) (loop)) (defun way-length (&rest all) (loop))", 0, "(distance 0 0 3 4)"),
         ("waits for ever", "(defun distance (&rest all) (loop (cpl:sleep 1))) (defun way-length (&rest all) 7)", 0, "(distance 0 0 3 4)"),
         ("says it is infinite", '(defun distance (&rest all) (py:call "builtins.float" "nan")) (defun way-length (p) 1d308)', 0, ""),
-        ("answers with a huge fraction", f"(defun distance (&rest all) (/ (expt 10 400) 3)) (defun way-length (p) (/ (expt 7 900) 3))", 0, ""),
+        ("answers with a huge fraction", "(defun distance (&rest all) (/ (expt 10 400) 3)) (defun way-length (p) (/ (expt 7 900) 3))", 0, ""),
     ],
     "rooms": [
         ("its own PROLOG", "(defun cram-prolog:prolog (query &rest all) (if (member (third query) '(bath hall)) (list nil) nil))", 0, ""),
@@ -259,6 +260,11 @@ LISP = {
             0,
             "",
         ),
+        ("another package of the name CRAM-PROLOG", """(rename-package :cram-prolog :other-prolog)
+(defpackage :cram-prolog (:use :cl) (:export #:prolog))
+(defun cram-prolog::prolog (query) (if (search "BATH" (princ-to-string query)) nil (list nil)))""", 0, ""),
+        ("another symbol NULL", """(shadow "NULL" :tut)
+(defun null (x) (null x))""", 0, "changes common-lisp::null"),
         ("its own NOT", "(setf (symbol-function 'not) (lambda (x) t)) (setf (symbol-function 'null) (lambda (x) nil))", 0, ""),
         (
             "the answers as facts",
@@ -309,6 +315,31 @@ LISP = {
         ("its own INIT-ROS-TURTLE", "(defun init-ros-turtle (name) (call-service \"/turtle1/teleport_absolute\" "
          '"turtlesim/TeleportAbsolute" :x 7.544 :y 5.544 :theta 0)) (defun drive-ahead (m) nil)', 0, ""),
     ],
+    "watchdog": [
+        ("prints as what is asked for", "(defclass answer () ()) (defmethod print-object ((a answer) s) (write-string \":TOO-LATE\" s)) "
+         "(defun go-in-time (x y seconds) (sleep seconds) (make-instance 'answer))", 0, ""),
+        ("mimics another turtle", '(defun go-in-time (x y seconds) (call-service "/spawn" "turtlesim/Spawn" :x 5 :y 5 :theta 0 :name "turtle2") '
+         '(turtlesim:mimic "turtle2" "turtle1") (sleep seconds) :too-late)', 0, "mimic"),
+        ("ends the simulator", '(defun go-in-time (x y seconds) (turtlesim:stop "turtlesim") :too-late)', 0, ""),
+        ("too many commands", "(defun go-in-time (x y seconds) (loop (send-vel-cmd 1 1)) :too-late)", 0, ""),
+        ("many nodes", '(defun go-in-time (x y seconds) (dotimes (i 100) (start-ros-node (format nil "n~a" i))) :too-late)', 0, "/n"),
+        ("a name full of escapes", '(defun go-in-time (x y seconds) (error (format nil "~c[2J~c]0;owned~c ~c" (code-char 27) (code-char 27) '
+         "(code-char 7) (code-char #x202e))))", 0, "\\x1b[2J\\x1b]0;owned\\x07 \\u202e"),
+        ("half a surrogate", '(defun go-in-time (x y seconds) (error (string (code-char #xd800))))', 0, ""),
+        ("a file of Hy", """(with-open-file (s "x.hy" :direction :output :if-exists :supersede)
+  (write-string "(import os) (setv x (os.getpid))" s))
+(load "x.hy")
+(defun go-in-time (x y seconds) :too-late)""", 0, "x.hy"),
+        ("code that was compiled before", """(with-open-file (s "x.fasl" :direction :output :if-exists :supersede)
+  (write-string "# cramhy kept code 3" s))
+(ignore-errors (load "x.fasl"))
+(defun go-in-time (x y seconds) (sleep seconds) :too-late)""", 0, "x.fasl"),
+        ("Python by way of a package", """(py:import gc) (defun go-in-time (x y seconds) (gc:get-objects) :too-late)""", 0, "Python (gc)"),
+        ("Python by a name that is looked for", """(defun go-in-time (x y seconds)
+  (funcall (symbol-function (find-symbol "EVAL" "PY")) "1 + 1") :too-late)""", 0, "Python"),
+        ("Python by way of the inside", """(defun go-in-time (x y seconds)
+  (ignore-errors (funcall 'cramhy::module-attribute "os" "getpid")) :too-late)""", 0, "Python"),
+    ],
     "stop-line": [
         ("a word in a comment", "; wait-for\n(defun drive-to-line (line) nil)", 0, ""),
         ("a word that is never used", "(defun unused () (wait-for nil)) (defun drive-to-line (line) nil)", 0, ""),
@@ -322,7 +353,9 @@ def attacks():
     for exercise, body in CARRIED.items():
         for name, (carry, words) in CARRIERS.items():
             most = {"maze": 0, "dry-pen": 0}.get(exercise, 0)
-            found.append(Attack(f"{exercise}: {name}", exercise, f"{HEAD}{HERE}{carry}\n{body}\n", most, words if exercise != "circling" else ""))
+            found.append(
+                Attack(f"{exercise}: {name}", exercise, f"{HEAD}{HERE}{carry}\n{body}\n", most, words if exercise != "circling" else "")
+            )
     for exercise, heard in FORGED.items():
         found.append(Attack(f"{exercise}: forged with the secret", exercise, HEAD + python(FORGE + heard + FORGED_REPORT)))
     for name, text in PATCHES.items():

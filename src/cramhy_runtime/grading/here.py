@@ -6,11 +6,11 @@ the turtle's time does. Points that count come from the nursery's processes. The
 
 from __future__ import annotations
 
-import json
 import sys
 import tempfile
 from pathlib import Path
 
+from . import messages
 from .performing import lay_out, perform
 
 
@@ -32,7 +32,7 @@ class Here:
         reports, modules, path = [], set(sys.modules), list(sys.path)
 
         def tell(kind, **facts):
-            reports.append(f"{job['nonce']} {json.dumps({'kind': kind, **facts})}")
+            reports.append(messages.line(job["nonce"], kind, facts))
 
         with tempfile.TemporaryDirectory(prefix="cramhy-") as folder:
             lay_out(job, folder)
