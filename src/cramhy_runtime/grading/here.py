@@ -38,7 +38,7 @@ class Here:
             lay_out(job, folder)
             try:
                 with Image():
-                    perform(job, folder, tell)
+                    perform(job, folder, tell, apart=False)
             finally:
                 sys.path[:] = path
                 for name in [Path(name).stem for name in job["files"] if name.endswith(".py")]:

@@ -36,8 +36,11 @@ def lay_out(job, folder):
         place.write_text(text, encoding="utf-8", newline="")
 
 
-def perform(job, folder, tell):
-    """Do what ``job`` says. folder: where its files are, as text. tell: see above. The last report is "done", unless something was lost."""
+def perform(job, folder, tell, apart=True):
+    """Do what ``job`` says. folder: where its files are, as text. tell: see above. The last report is "done", unless something was lost.
+
+    apart: whether this process is the submission's own, and ends with it.
+    """
     from cramhy_runtime.session.session import Session
     from cramhy_runtime.testing.watched import WatchedKernel
 
@@ -46,9 +49,10 @@ def perform(job, folder, tell):
     )
     recording = Recording(tuple(job["start"]), job["troubles"], job["seed"])
     recording.watch()
-    sys.dont_write_bytecode = True  # code that is kept beside a submission would be code that it could write
     uses = Uses(tell, job["files"], folder)
-    listen_to_audit(uses)
+    if apart:
+        sys.dont_write_bytecode = True  # code that is kept beside a submission would be code that it could write
+        listen_to_audit(uses)
     carry_out(job, Path(folder), tell, made, recording, uses)
 
 
@@ -166,7 +170,7 @@ def _steps(job, folder, tell, made, recording, uses):
     if job["tests"]:
         tell("stage", doing="tests", what=job["tests"]["name"])
         try:
-            with exercise():
+            with exercise() if not job["tests"]["name"].endswith(".py") else nullcontext():  # pytest brings a kernel of its own
                 results = tests_inside.run(job["tests"], folder, job["canary"], guard)
         except tests_inside.Tampered as problem:
             tell("tampered", text=str(problem))

@@ -23,6 +23,6 @@ def fault(hidden, plain, expected=""):
 
 
 def said(faults, hidden=False, answers=False):
-    """The sentences for a student, each once. faults: a list of `Fault`. hidden: of the check. answers: whether it shows what it expected."""
+    """The sentences for a student, each once. faults: a list of `Fault`. hidden, answers: whether nothing is shown, or all."""
     words = [each.hidden if hidden else each.whole if answers else each.plain for each in faults]
     return list(dict.fromkeys(words))
