@@ -238,6 +238,14 @@ LISP = {
             "",
         ),
         (
+            "its own order of numbers",
+            """(sb-ext:unlock-package :common-lisp)
+(setf (symbol-function 'cl:<) (lambda (&rest all) t))
+(defun distance (&rest all) 5) (defun way-length (points) (if (cddr points) 10 5))""",
+            0,
+            "changes common-lisp::<",
+        ),
+        (
             "compiler macros for the checks",
             """(define-compiler-macro lisp-unit::number-equal (&rest all) t)
 (define-compiler-macro < (&rest all) t)

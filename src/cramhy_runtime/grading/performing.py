@@ -105,12 +105,13 @@ def _called(job, made):
     defines them.
     """
     package, own, found = made.package.name, (job["package"] or "").upper(), {}
-    for text in (*job["asks"], *([job["do"]] if job["do"] is not None else [])):
-        found |= {
-            place: symbol
-            for place, symbol in words_in(text, package).items()
-            if symbol.package is not None and own not in symbol.package.names
-        }
+    texts = [(text, package) for text in (*job["asks"], *([job["do"]] if job["do"] is not None else []))]
+    if job["tests"] and job["tests"]["name"].endswith(".lisp"):
+        texts.append((job["tests"]["text"], "COMMON-LISP-USER"))  # its own package is not there yet, and uses Common Lisp, too
+    for text, home in texts:
+        for place, symbol in words_in(text, home).items():
+            if symbol.package is not None and own not in symbol.package.names:
+                found[place] = symbol
     for text in (*job["prelude"], *job["before"]):
         found |= words_in(text, package)
     return found
