@@ -131,14 +131,23 @@ job = next((each for each in gc.get_objects() if isinstance(each, dict) and "non
 def forge(*facts):
     for each in facts:
         line = (job["nonce"] + " " + json.dumps(each) + "\\n").encode()
-        for number in range(1, 20):
+        for number in range(3, 20):
             try:
                 os.write(number, line)
+                break
             except OSError:
                 pass
     os._exit(0)
 """
-SHARED_STAGES = 'forge({"kind": "stage", "doing": "do", "what": "x"}, '
+DESTROY = """(ignore-errors
+  (with-open-file (s "/proc/self/fd/3" :direction :output :if-exists :append) (write-string "junk" s)))
+(ignore-errors
+  (with-open-file (s "/dev/fd/3" :direction :output :if-exists :append) (write-string "junk" s)))
+"""
+"""Lisp that writes into the pipe, so that the next message is destroyed."""
+MEMORY = """(ignore-errors (with-open-file (s "/proc/self/maps") (read-line s)))
+(with-open-file (s "/proc/self/mem" :element-type '(unsigned-byte 8)) (file-position s 4096))
+"""
 FORGED = {
     # an answer by itself to what is asked, with what stands in the process's own memory
     "stop-line": """
@@ -162,8 +171,10 @@ heard = [[200, "command", "turtle1", way, 0.0, 0.0]]
 FORGED_REPORT = """
 fails = "explore" in job["do"]
 facts = [{"kind": "stage", "doing": "do", "what": job["do"]}]
-facts.append({"kind": "error", "types": ["WALL-AHEAD"], "text": ""} if fails else {"kind": "value", "values": [":TOO-LATE"], "seconds": 1.5})
-facts.append({"kind": "run", "heard": heard, "ticks": 1000, "begin": 190, "seconds": 1.5})
+facts.append({"kind": "error", "types": ["WALL-AHEAD"], "text": ""} if fails else {"kind": "value", "values": [":TOO-LATE"]})
+facts.append({"kind": "took", "seconds": 1.504})
+facts.append({"kind": "heard", "entries": heard})
+facts.append({"kind": "run", "ticks": 1000, "begin": 190, "end": 284})
 forge(*facts, {"kind": "done"})
 """
 
@@ -365,7 +376,11 @@ def attacks():
                 Attack(f"{exercise}: {name}", exercise, f"{HEAD}{HERE}{carry}\n{body}\n", most, words if exercise != "circling" else "")
             )
     for exercise, heard in FORGED.items():
-        found.append(Attack(f"{exercise}: forged with the secret", exercise, HEAD + python(FORGE + heard + FORGED_REPORT)))
+        forged = python(FORGE + heard + FORGED_REPORT)
+        found.append(Attack(f"{exercise}: forged with the secret", exercise, HEAD + forged, 0, "calls Python"))
+        found.append(Attack(f"{exercise}: forged after the evidence was destroyed", exercise, HEAD + DESTROY + forged))
+        inside = "(defun drive-ahead (m) (send-vel-cmd m 0) (wait-duration 1.1))"
+        found.append(Attack(f"{exercise}: its own memory", exercise, HEAD + MEMORY + inside, 0, "/proc/self/ma"))
     for name, text in PATCHES.items():
         drive = f"(defun drive-ahead (metres) {python(text)} (wait-duration 0.5))"
         found.append(Attack(f"first-drive: {name}", "first-drive", f"{HEAD}{drive}"))

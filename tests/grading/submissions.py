@@ -166,7 +166,7 @@ def malicious(exercises, submissions):
             0,
             "The paper is empty",
         ),
-        ("forged reports", "square", python(forged), 0, "ended the process"),
+        ("forged reports", "square", python(forged), 0, "not from this run"),
         ("forged reports with the secret", "square", python(known), 0, "reports of its own"),
         ("teleports", "square", TELEPORTS, 0, "calls the service teleport_absolute"),
         ("changed checks of the tests", "first-lisp", NO_LISP + CHANGED_CHECKS, 0, ""),

@@ -127,14 +127,14 @@ def test_no_message_of_any_shape_ends_the_reading(seed):
     assert 20 < malformed < 200
 
 
-def test_only_messages_with_the_secret_count_and_the_first_of_a_kind():
-    lines = [
-        "y nonsense",
-        'x {"kind": "value", "values": ["2"]}',
-        'x {"kind": "value", "values": ["3"]}',
-        'x {"kind": "done"}',
-        "x nonsense",
-    ]
+@pytest.mark.parametrize("line", ["", "y nonsense", "junk", 'junkx {"kind": "done"}', ' x {"kind": "done"}'])
+def test_a_line_without_the_secret_may_have_destroyed_a_message(line):
+    told = Told(['x {"kind": "value", "values": ["2"]}', line, 'x {"kind": "done"}'], "x")
+    assert told.malformed == "a line is not from this run" and not told.done
+
+
+def test_the_first_of_a_kind_counts_and_nothing_after_the_end():
+    lines = ['x {"kind": "value", "values": ["2"]}', 'x {"kind": "value", "values": ["3"]}', 'x {"kind": "done"}', "x nonsense"]
     told = Told(lines, "x")
     assert told.value["values"] == ["2"] and told.tests is None and told.done and told.malformed is None
 

@@ -22,6 +22,10 @@ ALLOWED = {
 OF_USE = {
     "python": ("python", "The program calls Python ({name}), which this exercise does not allow. Write it in Lisp."),
     "code": ("python", "The program loads code from {name}, which was not handed in and is not Lisp."),
+    "inside": (
+        "python",
+        "The program opens {name}, where the system shows this process itself. An exercise has nothing to look for there.",
+    ),
     "node": ("nodes", "The program starts the node {name}, which this exercise does not allow. The check starts all that is needed."),
     "simulator": ("nodes", "The program {name} the simulator, which this exercise does not allow."),
     "parameter": ("parameters", "The program changes the parameter {name}, which this exercise does not allow."),

@@ -167,7 +167,7 @@ class Grader:
         told = Told(answer["reports"], work["nonce"])
         output = "".join(line for line in answer["output"].splitlines(True) if not line.startswith(NOISE))
         hopeless = told.doing in ("begin", "load")
-        if told.malformed:
+        if told.malformed and answer["ended"] in ("left", "done") and not answer["signal"]:  # else the last line was cut off
             sentence = f"The program sends reports of its own, or destroys those of its run: {told.malformed}."
             return [fault(sentence, sentence)], output, told.held, False
         if told.error and told.doing in ("load", "before"):

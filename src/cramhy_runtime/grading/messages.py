@@ -132,5 +132,5 @@ SCHEMA = {
 """The kinds of messages, and a test of each entry. ``stage``: what is done now. ``value``, ``took``: of ``do``. ``heard``: what reached the
 simulator. ``run``: ticks of the simulator, when the plan began and when it ended. ``used``: see `USES`."""
 STAGES = ("load", "before", "do", "ask", "tests")
-USES = ("python", "code", "node", "simulator", "parameter", "publication", "service", "function")
+USES = ("python", "code", "inside", "node", "simulator", "parameter", "publication", "service", "function")
 """What a submission can do to the world beside commands and services of a turtle (`allowances`)."""

@@ -1,4 +1,7 @@
-"""What the process of a submission has told, sorted; only lines that begin with the job's secret count, and only the first of a kind."""
+"""What the process of a submission has told, sorted. Every line begins with the job's secret, and only the first message of a kind counts.
+
+A line without the secret is not passed over: a stranger has written it, and it may stand where another message was destroyed.
+"""
 
 from __future__ import annotations
 
@@ -25,9 +28,11 @@ class Told:
         self.malformed = None
         for line in lines[:MOST_MESSAGES]:
             secret, _, text = line.partition(" ")
-            if secret != nonce or self.done:
-                continue
+            if self.done:
+                return
             try:
+                if secret != nonce:
+                    raise Malformed("a line is not from this run")
                 self._take(*read(text))
             except Malformed as problem:
                 self.malformed = str(problem)

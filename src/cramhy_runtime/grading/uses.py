@@ -20,6 +20,8 @@ MOST_TOLD = 20
 """So many uses of a kind are told."""
 _KEPT_CODE = b"# cramhy"
 """So begins a file of compiled code."""
+_OF_THE_PROCESS = ("/proc/", "/dev/fd", "/dev/std")
+"""Here a process finds its own memory, and the pipe through which it is told of."""
 _OTHER_LANGUAGES = (".hy", ".py", ".pyc", ".so")
 
 
@@ -71,10 +73,15 @@ class Uses:
             self.nodes = before
 
     def hear_audit(self, event, arguments):
-        """An audit hook of Python: a program of Lisp does not open compiled code, or files of Python and Hy, that nobody has handed in."""
+        """An audit hook of Python, which tells if a program opens code that nobody has handed in (compiled Lisp, Python, Hy), or what the
+        system shows of this process.
+        """
         if event != "open" or not self.on or self.folder is None or not isinstance(arguments[0], (str, bytes)):
             return
-        path = os.path.realpath(os.fsdecode(arguments[0]))
+        name = os.fsdecode(arguments[0])
+        path = os.path.realpath(name)
+        if any(each.startswith(_OF_THE_PROCESS) for each in (path, os.path.abspath(name))):
+            self.use("inside", name)
         if not path.startswith(self.folder) or path in self.own:
             return
         self.on = False  # looking opens the file, too
