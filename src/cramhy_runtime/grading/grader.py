@@ -82,9 +82,9 @@ class Grader:
     def grade_all(self, submissions: Iterable[tuple[Exercise, str | Path]]) -> list[Report]:
         """The `Report` of each submission, in their order. submissions: pairs of an exercise and a file or folder.
 
-        The points are those of `grade`, whatever is graded at the same time.
+        The points are those of `grade`, whatever is graded at the same time. A file that is not there costs its own points only.
         """
-        return self._all([(exercise, submitted_files(exercise, Path(place))) for exercise, place in submissions])
+        return self._all([(exercise, _files_or_none(exercise, Path(place))) for exercise, place in submissions])
 
     def _all(self, work: list[tuple[Exercise, dict[str, str | None]]]) -> list[Report]:
         """The report of each pair of an exercise and the texts of a submission. Each slot has one of them in hand."""
@@ -237,11 +237,19 @@ def submitted_files(exercise: Exercise, place: Path) -> dict[str, str | None]:
         raise ExerciseError(f"There is no file or folder {place}.")
     found: dict[str, str | None] = {}
     for name, path in paths.items():
-        if not path.is_file() or (place.is_dir() and place.resolve() not in path.resolve().parents):  # a link to somewhere else
-            continue
         try:
+            if not path.is_file() or (place.is_dir() and place.resolve() not in path.resolve().parents):  # a link to somewhere else
+                continue
             data = path.read_bytes() if path.stat().st_size <= LARGEST else None
             found[name] = None if data is None else data.decode("utf-8-sig")
-        except (OSError, UnicodeDecodeError):
+        except (OSError, RuntimeError, UnicodeDecodeError):  # not to be read, links in a circle, no text
             found[name] = None
     return found
+
+
+def _files_or_none(exercise: Exercise, place: Path) -> dict[str, str | None]:
+    """As `submitted_files`, and an empty dictionary if nothing is there or the folder cannot be looked into."""
+    try:
+        return submitted_files(exercise, place)
+    except (ExerciseError, OSError):
+        return {}
