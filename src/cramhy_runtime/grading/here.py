@@ -10,7 +10,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from . import messages
+from . import schema
 from .performing import lay_out, perform
 
 
@@ -32,7 +32,7 @@ class Here:
         reports, modules, path = [], set(sys.modules), list(sys.path)
 
         def tell(kind, **facts):
-            reports.append(messages.line(job["nonce"], kind, facts))
+            reports.append(schema.line(job["nonce"], kind, facts))
 
         with tempfile.TemporaryDirectory(prefix="cramhy-") as folder:
             lay_out(job, folder)

@@ -18,7 +18,7 @@ from cramhy_runtime.ros import graph
 from cramhy_runtime.session.session import Interruption
 from cramhy_runtime.turtlesim.node import running_simulator
 
-from . import judging, messages
+from . import judging, schema
 from .exercise import Check, Exercise, of_checks
 from .jobs import job
 from .performing import carry_out
@@ -102,7 +102,7 @@ def _tried(exercise: Exercise, check: Check, seed: int, evaluate):
     reports = []
 
     def tell(kind, **facts):
-        reports.append(messages.line(work["nonce"], kind, facts))
+        reports.append(schema.line(work["nonce"], kind, facts))
 
     made = _Evaluator(evaluate, work["turtle_time"])
     recording = Recording(tuple(work["start"]), work["troubles"], seed)

@@ -11,7 +11,7 @@ import re
 
 from . import allowances, drawings, paths
 from .expressions import computed, filled
-from .messages import not_finite
+from .schema import not_finite
 from .replay import Replay, WrongReport
 from .sentences import Fault, fault
 from cramhy_runtime.turtlesim.world import TICK

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cramhy_runtime.turtlesim.node import each_simulator, expect_no_more
 
-from .messages import MOST_HEARD, PART
+from .schema import MOST_HEARD, PART
 from .troubles import Troubles, put
 
 

@@ -138,7 +138,7 @@ def _place(turtle):
 
 
 def _check(heard, ticks, begin):
-    """Raise `WrongReport` unless a simulator may have written this. Each entry by itself is good (`messages`)."""
+    """Raise `WrongReport` unless a simulator may have written this. Each entry by itself is good (`schema`)."""
     if begin > ticks:
         raise WrongReport("The plan begins after the end.")
     before = 0

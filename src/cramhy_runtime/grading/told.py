@@ -6,7 +6,7 @@ A line without the secret is not passed over: a stranger has written it, and it 
 from __future__ import annotations
 
 from .harmless import harmless
-from .messages import MOST_HEARD, MOST_MESSAGES, Malformed, read
+from .schema import MOST_HEARD, MOST_MESSAGES, Malformed, read
 
 ONCE = ("value", "took", "run", "tests", "tampered", "faults")
 MOST_USES = 50

@@ -8,10 +8,10 @@ import random
 
 import pytest
 
-from cramhy_runtime.grading import Grader, messages
+from cramhy_runtime.grading import Grader, schema
 from cramhy_runtime.grading.exercise import find
 from cramhy_runtime.grading.grader import LARGEST
-from cramhy_runtime.grading.messages import Malformed, read
+from cramhy_runtime.grading.schema import Malformed, read
 from cramhy_runtime.grading.told import Told
 
 GOOD = {
@@ -38,7 +38,7 @@ def text(kind, facts):
 
 @pytest.mark.parametrize("kind", GOOD)
 def test_a_message_of_each_kind_is_read(kind):
-    assert set(GOOD) == set(messages.SCHEMA)
+    assert set(GOOD) == set(schema.SCHEMA)
     got, facts = read(text(kind, GOOD[kind]))
     assert got == kind and str(facts) == str(GOOD[kind])
 
@@ -48,7 +48,7 @@ ODD = [None, True, 5, -1, 10**12, 10**400, 1.5, math.nan, math.inf, "x", "y" * 3
 
 
 def fits(kind, name, value):
-    return messages.SCHEMA[kind][name](value)
+    return schema.SCHEMA[kind][name](value)
 
 
 @pytest.mark.parametrize(("kind", "name"), [(kind, name) for kind, facts in GOOD.items() for name in facts])
@@ -56,7 +56,7 @@ def test_an_odd_value_in_any_place_is_malformed_and_not_an_error(kind, name):
     refused = 0
     for value in ODD:
         line = text(kind, {**GOOD[kind], name: value})
-        if len(line) > messages.MOST_LINE or not fits(kind, name, value):
+        if len(line) > schema.MOST_LINE or not fits(kind, name, value):
             refused += 1
             with pytest.raises(Malformed):
                 read(line)
@@ -140,12 +140,12 @@ def test_the_first_of_a_kind_counts_and_nothing_after_the_end():
 
 
 def test_the_number_of_commands_and_their_order_are_bounded():
-    part = text("heard", {"entries": [[5, "kill", "turtle1"]] * messages.PART})
+    part = text("heard", {"entries": [[5, "kill", "turtle1"]] * schema.PART})
     assert "more than 100000 commands" in Told([f"x {part}"] * 300, "x").malformed
     later, earlier = (text("heard", {"entries": [[tick, "kill", "turtle1"]]}) for tick in (9, 5))
     assert "not in the order of time" in Told([f"x {later}", f"x {earlier}"], "x").malformed
     with pytest.raises(Malformed):
-        read(text("heard", {"entries": [[5, "kill", "turtle1"]] * (messages.PART + 1)}))
+        read(text("heard", {"entries": [[5, "kill", "turtle1"]] * (schema.PART + 1)}))
 
 
 BROKEN = ['{"kind":"error"}', '{"kind":"value"}', '{"kind":"value","values":[1]}', '{"kind":"tests","results":[{}]}',

@@ -1,7 +1,7 @@
 """Submissions that try to get points without the work: an attack of each kind on each exercise that it fits.
 
 `attacks` gives for each its name, its exercise, the text, and the most points that it may get: those of checks whose work it does.
-``python -m grading.attacks [PART OF A NAME]``, in the folder ``tests``, tries them. They were written before what stops them.
+``python -m grading.forgeries [PART OF A NAME]``, in the folder ``tests``, tries them. They were written before what stops them.
 """
 
 from __future__ import annotations

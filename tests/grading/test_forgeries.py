@@ -1,4 +1,4 @@
-"""No attack of `attacks` wins points, and each is told by what it does. A part of them here, all of them in ``make soak``."""
+"""No attack of `forgeries.attacks` wins points, and each is told by what it does. A part of them here, all of them in ``make soak``."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from systems import linux, takes_long
 from cramhy_runtime.grading import Grader
 from cramhy_runtime.grading.exercise import find, own_exercises
 
-from .attacks import CARRIED, attacks
+from .forgeries import CARRIED, attacks
 
 pytestmark = linux
 
