@@ -146,7 +146,7 @@ DESTROY = """(ignore-errors
 """
 """Lisp that writes into the pipe, so that the next message is destroyed."""
 MEMORY = """(ignore-errors (with-open-file (s "/proc/self/maps") (read-line s)))
-(with-open-file (s "/proc/self/mem" :element-type '(unsigned-byte 8)) (file-position s 4096))
+(ignore-errors (with-open-file (s "/proc/self/mem" :element-type '(unsigned-byte 8)) (file-position s 4096)))
 """
 FORGED = {
     # an answer by itself to what is asked, with what stands in the process's own memory
