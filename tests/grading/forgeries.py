@@ -379,8 +379,7 @@ def attacks():
         forged = python(FORGE + heard + FORGED_REPORT)
         found.append(Attack(f"{exercise}: forged with the secret", exercise, HEAD + forged, 0, "calls Python"))
         found.append(Attack(f"{exercise}: forged after the evidence was destroyed", exercise, HEAD + DESTROY + forged))
-        inside = "(defun drive-ahead (m) (send-vel-cmd m 0) (wait-duration 1.1))"
-        found.append(Attack(f"{exercise}: its own memory", exercise, HEAD + MEMORY + inside, 0, "/proc/self/ma"))
+        found.append(Attack(f"{exercise}: its own memory", exercise, HEAD + MEMORY))  # bubblewrap does not even show it
     for name, text in PATCHES.items():
         drive = f"(defun drive-ahead (metres) {python(text)} (wait-duration 0.5))"
         found.append(Attack(f"first-drive: {name}", "first-drive", f"{HEAD}{drive}"))

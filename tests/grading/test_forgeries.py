@@ -7,6 +7,7 @@ from systems import linux, takes_long
 
 from cramhy_runtime.grading import Grader
 from cramhy_runtime.grading.exercise import find, own_exercises
+from cramhy_runtime.grading.uses import Uses
 
 from .forgeries import CARRIED, attacks
 
@@ -46,6 +47,37 @@ def tried(chosen):
         for each, report in zip(chosen, reports, strict=True)
         if report.points > each.most or each.words not in report.text()
     }
+
+
+@pytest.mark.parametrize(
+    ("path", "told"),
+    [
+        ("/proc/self/mem", ("inside", "/proc/self/mem")),
+        ("/proc/1/environ", ("inside", "/proc/1/environ")),
+        ("/dev/fd/3", ("inside", "/dev/fd/3")),
+        (b"/proc/self/maps", ("inside", "/proc/self/maps")),
+        ("x.hy", ("code", "x.hy")),
+        ("below/x.py", ("code", "below/x.py")),
+        ("kept", ("code", "kept")),
+        ("words.txt", None),
+        ("a.lisp", None),
+        ("b.py", None),
+        ("/usr/lib/x.py", None),
+        (3, None),
+    ],
+)
+def test_a_program_that_opens_code_or_its_own_process_says_so_before(tmp_path, path, told):
+    (tmp_path / "kept").write_bytes(b"# cramhy kept code 3\n")
+    (tmp_path / "words.txt").write_text("words")
+    found = []
+    uses = Uses(lambda kind, what, name: found.append((what, name)), ["a.lisp", "b.py"], tmp_path)
+    place = str(tmp_path / path) if isinstance(path, str) and not path.startswith("/") else path
+    uses.hear_audit("open", (place, "r", 0))
+    assert found == [], "nobody watches yet"
+    uses.on = True
+    uses.hear_audit("open", (place, "r", 0))
+    uses.hear_audit("compile", (place,))
+    assert found == ([told] if told else []) and uses.on
 
 
 def test_the_list_of_attacks_is_whole():
