@@ -192,7 +192,7 @@ HARD = {
     "digits.py": "x = " + "9" * 5000,
     "hexadecimal digits.py": "x = 0x" + "f" * 20_000,
     "a wrong escape.py": "x = '\\d'",
-    "sums in sums.lisp": "(defun f (a b) " + "(+ a (and b " * 48 + "1" + "))" * 49,
+    "sums in sums.lisp": "(defun f (a b) " + "(+ a (and b " * 24 + "1" + "))" * 24,
     "groups in groups.lisp": "(a b c d e f " * 400 + ")" * 400,
     "open groups.lisp": "(" * 100_000,
     "quotes.lisp": "'" * 100_000,
