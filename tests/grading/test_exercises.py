@@ -6,6 +6,7 @@ import pytest
 
 from cramhy_runtime.grading import jobs
 from cramhy_runtime.grading.exercise import Exercise, find, own_exercises
+from cramhy_runtime.grading.expressions import computed
 from cramhy_runtime.grading.problems import ExerciseError
 
 from .submissions import SOLUTIONS
@@ -18,6 +19,20 @@ title = "One"
 points = 2
 ask = [["(+ 1 2)", "3"]]
 """
+
+
+def test_each_of_ours_says_what_a_solution_may_use():
+    allowed = {name: find(name).allow for name in own_exercises()}
+    assert {name: allow for name, allow in allowed.items() if allow} == dict.fromkeys(["dashes", "house", "storm"], ("set_pen",))
+    assert all("allow = [" in (folder / "exercise.toml").read_text() for folder in own_exercises().values())
+
+
+@pytest.mark.parametrize(
+    "formula", ["1e308 * 10", "hypot(1.7e308, 1.7e308)", "1e308 * 10 - 1e308 * 10", ["1"], None, "(" * 500 + "1" + ")" * 500]
+)
+def test_a_formula_gives_a_finite_number_or_is_told(formula):
+    with pytest.raises(ExerciseError):
+        computed(formula, {})
 
 
 @pytest.mark.parametrize("name", own_exercises())
@@ -66,6 +81,15 @@ def test_a_good_one_is_read(tmp_path):
         ("points = 2", "points = 2\nwalls = 3", "has no do, but asks for walls"),
         ("[[check]]", "[limits]\ntime = 1000\n[[check]]", "must be above 0 and at most 300"),
         ("[[check]]", "[[cheque]]", "which means nothing there"),
+        ("points = 2", "points = nan", "points of check of the exercise is nan. Write a number that is finite."),
+        ("points = 2", "points = 2\nwithin = inf", "within of check of the exercise is inf"),
+        ("points = 2", "points = 2\nvary.x = { from = 1, to = -inf }", "to of x of vary of check of the exercise is -inf"),
+        ('title = "Good"', 'title = "Good"\nallow = ["fly"]', "allow of the exercise has fly, which means nothing. There are set_pen, "),
+        ('title = "Good"', 'title = "Good"\nallow = "kill"', "and not a list of texts, such as"),
+        ("points = 2", 'points = 2\nallow = ["python", "walk"]', 'allow of check 1, "One" has walk'),
+        ("points = 2", "points = 2\nhidden = 1", 'hidden of check 1, "One" is 1, and neither true nor false'),
+        ("points = 2", "points = 2\nhidden = true\nshow_answers = true", "is hidden, and shall show its answers"),
+        ("points = 2", "points = 2\nneeds = [1]", "needs 1, which is not the number of a check above it"),
     ],
 )
 def test_what_is_wrong_with_one_is_told_with_its_place(tmp_path, old, new, words):

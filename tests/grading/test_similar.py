@@ -8,7 +8,9 @@ import pytest
 
 from cramhy_runtime.cli import main
 from cramhy_runtime.grading.exercise import own_exercises
+from cramhy_runtime.grading.forms import source_faults
 from cramhy_runtime.grading.problems import ExerciseError
+from cramhy_runtime.grading.similar import pairs
 from cramhy_runtime.grading.similar.pairs import similar_pairs
 from cramhy_runtime.grading.similar.shapes import shapes_of
 
@@ -177,6 +179,56 @@ def test_the_command_lists_the_pairs(tmp_path, capsys):
 def test_one_submission_alone_is_told(tmp_path):
     with pytest.raises(ExerciseError, match="there are no two submissions"):
         similar_pairs(folder(tmp_path, ann=ANN))
+
+
+HARD = {
+    "parentheses.py": "(" * 5000 + ")" * 5000,
+    "a sum.py": "x = " + "+".join("1" * 20_000),
+    "signs.py": "x = " + "-" * 3000 + "1",
+    "attributes.py": "x" + ".a" * 50_000,
+    "branches.py": "if 1: pass\n" + "elif 1: pass\n" * 20_000,
+    "a null byte.py": "x = 1\0",
+    "half a surrogate.py": "x = '\ud800'",
+    "digits.py": "x = " + "9" * 5000,
+    "hexadecimal digits.py": "x = 0x" + "f" * 20_000,
+    "a wrong escape.py": "x = '\\d'",
+    "sums in sums.lisp": "(defun f (a b) " + "(+ a (and b " * 24 + "1" + "))" * 24,
+    "groups in groups.lisp": "(a b c d e f " * 400 + ")" * 400,
+    "open groups.lisp": "(" * 100_000,
+    "quotes.lisp": "'" * 100_000,
+    "open comments.lisp": "#|" * 100_000,
+    "open names.lisp": "|" * 100_001,
+}
+"""Texts that stop a parser, take all of its stack, or double its work with each level."""
+
+
+@pytest.mark.parametrize("name", HARD)
+@pytest.mark.filterwarnings("error")
+def test_a_text_that_no_parser_likes_is_compared_and_looked_through(name):
+    shapes_of(HARD[name], name)
+    assert source_faults({"uses": ["nothing-like-that"], "avoids": []}, {name: HARD[name]}) == [
+        "The program does not use nothing-like-that."
+    ]
+
+
+def test_names_of_files_and_forms_are_harmless(tmp_path):
+    copy = ANN.replace("corner", "corner\x1b[31m\u202e")
+    for name in ("a\x1b[2J", "b\udcff"):
+        try:
+            (tmp_path / f"{name}.lisp").write_text(copy)
+        except OSError:  # a file system of UTF-8 alone
+            (tmp_path / "b.lisp").write_text(copy)
+    found = similar_pairs(tmp_path)
+    for text in (pairs.as_text(found), pairs.as_json(found)):
+        text.encode()
+        assert "\x1b" not in text and "\u202e" not in text and "\\x1b[2J.lisp" in text.replace("\\\\", "\\")
+
+
+def test_a_file_that_cannot_be_read_is_passed_over(tmp_path):
+    folder(tmp_path, ann=ANN, bob=BOB)
+    (tmp_path / "ann" / "gone.lisp").symlink_to(tmp_path / "nowhere")
+    (tmp_path / "bob" / "folder.lisp").mkdir()
+    assert [(pair.one, pair.other) for pair in similar_pairs(tmp_path)] == [("ann", "bob")]
 
 
 def test_broken_texts_are_compared_as_far_as_they_go(tmp_path):

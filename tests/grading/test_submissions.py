@@ -141,3 +141,19 @@ def test_a_link_to_somewhere_else_is_not_followed(tmp_path, exercises, grader):
     os.symlink(tmp_path / "secret", place / "square.lisp")
     report = grader.grade(Exercise.read(exercises / "square"), place)
     assert report.points == 0 and "The file square.lisp is not there." in report.text() and "secret" not in report.text()
+
+
+def test_a_place_that_is_odd_costs_its_own_points_and_the_class_goes_on(tmp_path, exercises):
+    places = [tmp_path / name for name in ("nothing", "pipe", "folder", "circle", "empty")]
+    for place in places[2:]:
+        place.mkdir()
+    os.mkfifo(places[1])
+    (places[2] / "dry-pen.lisp").mkdir()
+    (places[3] / "dry-pen.lisp").symlink_to("dry-pen.lisp")
+    good = next(case for case in cases() if case.name == "solution of dry-pen")
+    exercise = Exercise.read(exercises / "dry-pen")
+    exercise = exercise._replace(checks=exercise.checks[:1])
+    with Grader(at_once=1) as grader:
+        *odd, last = grader.grade_all([(exercise, place) for place in (*places, hand_in(good, tmp_path))])
+    assert [report.points for report in odd] == [0] * 5 and last.points == 1
+    assert all("The file dry-pen.lisp is not" in report.text() for report in odd)

@@ -70,6 +70,24 @@ def test_changed_libraries_are_seen(library, grader, tmp_path):
     assert report.points == 0 and "tests are made of" in report.text(), report.text()
 
 
+HIDDEN = """
+title = "Hidden"
+submission = ["a.lisp"]
+before = []
+[[check]]
+title = "Secret"
+hidden = true
+ask = [["(double 21)", "42"]]
+"""
+
+
+def test_a_hidden_check_shows_nothing_that_its_run_printed(grader, tmp_path):
+    (tmp_path / "exercise.toml").write_text(HIDDEN)
+    report = grader.grade_texts(Exercise.read(tmp_path), {"a.lisp": '(defun double (x) (format t "asked for ~a" x) (error "~a" x))'})
+    assert report.text() == "Hidden: 0 of 1 points\n\nFAILED  0/1  Secret\n        A question ended with an error.\n"
+    assert report.held and "21" not in report.json()
+
+
 def test_only_some_tests_may_count_and_a_missing_one_is_told(grader, tmp_path):
     _, made = exercise("lisp-unit", tmp_path, 'only = ["DOUBLES"]\n')
     assert grader.grade_texts(made, {"a.lisp": BAD["lisp"]}).points == 2

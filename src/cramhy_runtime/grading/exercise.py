@@ -6,11 +6,12 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from . import paths, troubles
+from . import allowances, paths, troubles
 from .problems import ExerciseError
 
 FILE = "exercise.toml"
@@ -25,18 +26,26 @@ RUN_CRITERIA = {
 """What a check may ask of a run of ``do``."""
 CHECK_KEYS = RUN_CRITERIA | {
     "title", "points", "seeds", "start", "vary", "before", "do", "after", "troubles", "faults", "ask", "within", "tests", "only", "source",
-    "hint",
+    "hint", "allow", "hidden", "show_answers", "needs",
 }  # fmt: skip
+EXERCISE_KEYS = {"title", "submission", "systems", "package", "prelude", "before", "limits", "check", "allow", "show_answers"}
 MOST_SEEDS = 100
 
 
 class Check(NamedTuple):
-    """A check: its title, its points, how many seeds it is tried with, and the table of the file."""
+    """A check: its title, its points, how many seeds it is tried with, and the table of the file.
+
+    hidden: whether a student is told nothing of what it asks. show_answers: whether he is told what was expected. needs: the numbers of
+    the checks that must pass, too, counted from 1.
+    """
 
     title: str
     points: float
     seeds: int
     table: dict[str, Any]
+    hidden: bool = False
+    show_answers: bool = False
+    needs: tuple[int, ...] = ()
 
     @property
     def kind(self) -> str:
@@ -45,7 +54,10 @@ class Check(NamedTuple):
 
 
 class Exercise(NamedTuple):
-    """An exercise. submission: the names of the files to hand in. files: texts of the exercise's own files, by name."""
+    """An exercise. submission: the names of the files to hand in. files: texts of the exercise's own files, by name.
+
+    allow: what a submission may use beside commands for turtle1 (`allowances`).
+    """
 
     folder: Path
     title: str
@@ -57,6 +69,7 @@ class Exercise(NamedTuple):
     limits: dict[str, float]
     checks: list[Check]
     files: dict[str, str]
+    allow: tuple[str, ...] = ()
 
     @property
     def points(self) -> float:
@@ -98,7 +111,8 @@ def whole(number):
 
 
 def _exercise(folder, table):
-    _known(table, {"title", "submission", "systems", "package", "prelude", "before", "limits", "check"}, "the exercise")
+    _known(table, EXERCISE_KEYS, "the exercise")
+    _finite(table, "the exercise")
     submission = _texts(table, "submission")
     if not submission:
         raise ExerciseError('it does not say what is handed in. Write submission = ["square.lisp"].')
@@ -114,7 +128,8 @@ def _exercise(folder, table):
     if not isinstance(table.get("check"), list) or not table["check"]:
         raise ExerciseError("it has no checks. Write one below [[check]].")
     files = {}
-    checks = [_check(folder, entry, number, files) for number, entry in enumerate(table["check"], 1)]
+    shows = _flag(table, "show_answers", "the exercise")
+    checks = [_check(folder, entry, number, files, shows) for number, entry in enumerate(table["check"], 1)]
     before = _texts(table, "before") if "before" in table else list(BEFORE_TURTLE)
     return Exercise(
         folder,
@@ -127,10 +142,11 @@ def _exercise(folder, table):
         limits,
         checks,
         files,
+        tuple(allowances.checked(table.get("allow", []), "the exercise")),
     )
 
 
-def _check(folder, table, number, files):
+def _check(folder, table, number, files, shows=False):
     where = f"check {number}"
     _known(table, CHECK_KEYS, where)
     title = table.get("title")
@@ -164,7 +180,39 @@ def _check(folder, table, number, files):
         raise ExerciseError(f'{where} has a question that is not [form, answer], as in ["(+ 1 2)", "3"].')
     if "tests" in table:
         files[table["tests"]] = _text_of(folder, table["tests"], where)
-    return Check(title, points, seeds, table)
+    allowances.checked(table.get("allow", []), where)
+    hidden, shows = _flag(table, "hidden", where), _flag(table, "show_answers", where, shows)
+    if hidden and table.get("show_answers"):
+        raise ExerciseError(f"{where} is hidden, and shall show its answers. It can do one of both.")
+    return Check(title, points, seeds, table, hidden, shows, _needs(table.get("needs", []), number, where))
+
+
+def _flag(table, name, where, otherwise=False):
+    found = table.get(name, otherwise)
+    if not isinstance(found, bool):
+        raise ExerciseError(f"{name} of {where} is {found!r}, and neither true nor false.")
+    return found
+
+
+def _needs(needs, number, where):
+    """The numbers of checks that must pass, too, as a tuple: of those above, so that nothing needs itself."""
+    needs = needs if isinstance(needs, list) else [needs]
+    for each in needs:
+        if not isinstance(each, int) or isinstance(each, bool) or not 1 <= each < number:
+            raise ExerciseError(f"{where} needs {each!r}, which is not the number of a check above it. The first check has the number 1.")
+    return tuple(needs)
+
+
+def _finite(value, where):
+    """Raise `ExerciseError` if a number is endless or not-a-number: TOML has both, and nothing could be compared with them."""
+    if isinstance(value, dict):
+        for name, each in value.items():
+            _finite(each, f"{name} of {where}")
+    elif isinstance(value, list):
+        for each in value:
+            _finite(each, where)
+    elif isinstance(value, float) and not math.isfinite(value):
+        raise ExerciseError(f"{where} is {value}. Write a number that is finite.")
 
 
 def _is_question(question):

@@ -35,10 +35,15 @@ def computed(formula, values):
     """The number that ``formula`` gives, a number or a text. values: a dictionary from names to numbers. Raises `ExerciseError`."""
     if isinstance(formula, (int, float)):
         return formula
+    if not isinstance(formula, str):
+        raise ExerciseError(f"{formula!r} is neither a number nor a formula.")
     try:
-        return _value(ast.parse(formula.strip(), mode="eval").body, values)
-    except (SyntaxError, ArithmeticError, TypeError, ValueError) as problem:
+        found = _value(ast.parse(formula.strip(), mode="eval").body, values)
+        if math.isfinite(found):
+            return found
+    except (SyntaxError, ArithmeticError, TypeError, ValueError, RecursionError, MemoryError) as problem:
         raise ExerciseError(f"The formula {formula!r} cannot be computed: {problem}.")
+    raise ExerciseError(f"The formula {formula!r} gives {found}, which is not a finite number.")
 
 
 def _value(node, values):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import re
+import warnings
 
 _TOKEN = re.compile(
     r"""(?P<blank>\s+|;[^\n]*|\#\|(?:(?!\|\#).)*(?:\|\#|$))
@@ -19,7 +20,8 @@ _TOKEN = re.compile(
     |(?P<word>(?:\|[^|]*\||\\.|[^\s()\[\]{}"';`,])+)""",
     re.X | re.S,
 )
-MOST_NESTED = 200
+MOST_NESTED = 100
+"""Groups in groups; what lies deeper belongs to the one above. Nobody writes more, and a stack is not endless."""
 
 
 class Text(str):
@@ -58,30 +60,43 @@ def forms_of(text, name):
 
 
 def _forms_of_python(text):
+    """As `forms_of`, for Python. A text that Python cannot take apart, for whatever reason, gives the words of each line."""
     try:
-        tree = ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # about the text of a stranger, such as a wrong escape
+            tree = ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):  # nested too deeply, null bytes, half surrogates, integers without end
         return Group(
             [Group(re.findall(r"\w+|[^\w\s]", line), number) for number, line in enumerate(text.splitlines(), 1) if line.strip()], 1
         )
-    return Group([_of_node(node) for node in tree.body], 1)
+    return Group([_of_node(node, 1) for node in tree.body], 1)
 
 
-def _of_node(node):
+def _of_node(node, depth):
     if isinstance(node, ast.Constant):
-        return Text(node.value) if isinstance(node.value, str) else repr(node.value)
+        return Text(node.value) if isinstance(node.value, str) else _constant(node.value)
     if isinstance(node, ast.Name):
         return node.id
     if isinstance(node, ast.arg):
         return node.arg
     group = Group([type(node).__name__.lower()], getattr(node, "lineno", 0))
+    if depth >= MOST_NESTED:
+        group += [inner.id for inner in ast.walk(node) if isinstance(inner, ast.Name)]
+        return group
     for _, value in ast.iter_fields(node):
         for part in value if isinstance(value, list) else [value]:
             if isinstance(part, ast.AST) and not isinstance(part, ast.expr_context):
-                group.append(_of_node(part))
+                group.append(_of_node(part, depth + 1))
             elif isinstance(part, str):
                 group.append(part)
     return group
+
+
+def _constant(value):
+    try:
+        return repr(value)
+    except ValueError:  # an integer, written in another base, with more digits than Python writes
+        return "0"
 
 
 def words_of(form):

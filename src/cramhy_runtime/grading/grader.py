@@ -13,7 +13,7 @@ import os
 from collections.abc import Generator, Iterable
 from pathlib import Path
 
-from . import judging
+from . import allowances, judging
 from .exercise import Check, Exercise, find
 from .forms import source_faults
 from .here import Here
@@ -21,6 +21,7 @@ from .jobs import job
 from .problems import ExerciseError
 from .processes import ForkServer, answers
 from .report import CheckResult, Report
+from .sentences import fault, said
 from .told import Told
 from cramhy_runtime.kernel.typing_names import Any
 
@@ -93,9 +94,9 @@ class Grader:
     def grade_all(self, submissions: Iterable[tuple[Exercise, str | Path]]) -> list[Report]:
         """The `Report` of each submission, in their order. submissions: pairs of an exercise and a file or folder.
 
-        The points are those of `grade`, whatever is graded at the same time.
+        The points are those of `grade`, whatever is graded at the same time. A file that is not there costs its own points only.
         """
-        return self._all([(exercise, submitted_files(exercise, Path(place))) for exercise, place in submissions])
+        return self._all([(exercise, _files_or_none(exercise, Path(place))) for exercise, place in submissions])
 
     def _all(self, work: list[tuple[Exercise, dict[str, str | None]]]) -> list[Report]:
         """The report of each pair of an exercise and the texts of a submission. Each slot has one of them in hand."""
@@ -127,6 +128,7 @@ class Grader:
 
     def _grading(self, exercise: Exercise, submitted: dict[str, str | None]) -> _Grading:
         """Yield the jobs of a submission, each for its answer, ``None`` if its fork server was lost; the `Report`."""
+        submitted = {name: text if text is not None and _is_text(text) else None for name, text in submitted.items()}
         missing = [name for name in exercise.submission if submitted.get(name) is None]
         if missing:
             words = [
@@ -139,20 +141,27 @@ class Grader:
         for check in exercise.checks:
             wrong: list[str] = []
             if check.kind == "source":
-                wrong = source_faults(check.table["source"], submitted)
+                faults = source_faults(check.table["source"], submitted)
+                wrong = said([fault("The text is not as it should be.", each) for each in faults], check.hidden)
             elif lost is not None:
                 wrong = lost
             else:
                 seeds = self.seeds if self.seeds is not None and check.seeds > 1 else check.seeds
                 for seed in range(1, seeds + 1):
-                    wrong, printed, locks, hopeless = yield from self._try(exercise, check, seed, submitted)
+                    faults, printed, locks, hopeless = yield from self._try(exercise, check, seed, submitted)
+                    wrong = said(faults, check.hidden, check.show_answers)
                     held = held or locks
                     if wrong:
-                        if seeds > 1:
+                        if seeds > 1 and not check.hidden:
                             wrong = [f"With seed {seed}:", *wrong]
-                        output = output or printed
+                        output = output or ("" if check.hidden else printed)
                         lost = wrong if hopeless else None
                         break
+            wrong += [
+                f"This counts only if the check {exercise.checks[number - 1].title!r} passes, too."
+                for number in check.needs
+                if not results[number - 1].passed
+            ]
             results.append(CheckResult(check.title, 0 if wrong else check.points, check.points, wrong, check.table.get("hint")))
         if any(check.kind == "source" for check in exercise.checks) and not any(
             result.passed for check, result in zip(exercise.checks, results) if check.kind != "source"
@@ -165,20 +174,27 @@ class Grader:
         work, values = job(exercise, check, seed, submitted)
         answer = yield work
         if answer is None:
-            return ["The program ended the process that grades it."], "", [], True
+            ended = "The program ended the process that grades it."
+            return [fault(ended, ended)], "", [], True
         told = Told(answer["reports"], work["nonce"])
         output = "".join(line for line in answer["output"].splitlines(True) if not line.startswith(NOISE))
+        hopeless = told.doing in ("begin", "load")
+        if told.malformed and answer["ended"] in ("left", "done") and not answer["signal"]:  # else the last line was cut off
+            sentence = f"The program sends reports of its own, or destroys those of its run: {told.malformed}."
+            return [fault(sentence, sentence)], output, told.held, False
         if told.error and told.doing in ("load", "before"):
             if "TIME-LIMIT" in told.error["types"]:
-                return [f"Loading {told.what} never ended, and was stopped."], output, told.held, told.doing == "load"
-            return [f"{told.what} cannot be used:\n{told.error['text']}"], output, told.held, told.doing == "load"
+                wrong = fault("Loading the program never ended.", f"Loading {told.what} never ended, and was stopped.")
+            else:
+                wrong = fault("The program cannot be used.", f"{told.what} cannot be used:\n{told.error['text']}")
+            return [wrong], output, told.held, told.doing == "load"
         if not told.done:
-            return [_unfinished(told, answer, exercise)], output, told.held, told.doing in ("begin", "load")
-        if check.kind == "ask":
-            return judging.of_answers(check, work, values, told), output, told.held, False
+            return [_unfinished(told, answer, exercise)], output, told.held, hopeless
+        allow = allowances.allowed(exercise, check.table)
         if check.kind == "tests":
-            return judging.of_tests(check, told), output, told.held, False
-        return judging.of_run(check, work, values, told), output, told.held, False
+            return judging.of_tests(check, told, allow), output, told.held, False
+        judge = judging.of_answers if check.kind == "ask" else judging.of_run
+        return judge(check, work, values, told, allow), output, told.held, False
 
     def _fork_server(self, slot: int, exercise: Exercise) -> ForkServer | Here:
         key = slot, (*exercise.systems, "lisp-unit", "fiveam")
@@ -188,7 +204,7 @@ class Grader:
 
 
 def _unfinished(told, answer, exercise):
-    """The sentence for a run that did not come to its end."""
+    """The `Fault` of a run that did not come to its end: it names the question, or the plan, in which that happened."""
     doing = {"load": f"Loading {told.what}", "do": told.what, "ask": told.what, "before": told.what, "tests": "The tests"}
     what = doing.get(told.doing, "The program")
     limits = exercise.limits
@@ -203,10 +219,21 @@ def _unfinished(told, answer, exercise):
         "sandbox": f"was not tried, because there was no sandbox for it. Grade it again. ({answer.get('why')})",
     }
     if answer["ended"] in reasons:
-        return f"{what} {reasons[answer['ended']]}"
-    if answer["signal"]:
-        return f"{what} ended the process by a signal ({SIGNALS.get(answer['signal'], answer['signal'])})."
-    return f"{what} ended the process before it was over."
+        why = reasons[answer["ended"]]
+    elif answer["signal"]:
+        why = f"ended the process by a signal ({SIGNALS.get(answer['signal'], answer['signal'])})."
+    else:
+        why = "ended the process before it was over."
+    kind = {"ask": "A question", "do": "The plan", "tests": "The tests"}.get(told.doing, "The program")
+    return fault(f"{kind} {why}", f"{what} {why}")
+
+
+def _is_text(text):
+    """Whether ``text`` can be written as UTF-8, and is not too large."""
+    try:
+        return len(text.encode()) <= LARGEST
+    except UnicodeEncodeError:
+        return False
 
 
 def submitted_files(exercise: Exercise, place: Path) -> dict[str, str | None]:
@@ -224,11 +251,19 @@ def submitted_files(exercise: Exercise, place: Path) -> dict[str, str | None]:
         raise ExerciseError(f"There is no file or folder {place}.")
     found: dict[str, str | None] = {}
     for name, path in paths.items():
-        if not path.is_file() or (place.is_dir() and place.resolve() not in path.resolve().parents):  # a link to somewhere else
-            continue
         try:
+            if not path.is_file() or (place.is_dir() and place.resolve() not in path.resolve().parents):  # a link to somewhere else
+                continue
             data = path.read_bytes() if path.stat().st_size <= LARGEST else None
             found[name] = None if data is None else data.decode("utf-8-sig")
-        except (OSError, UnicodeDecodeError):
+        except (OSError, RuntimeError, UnicodeDecodeError):  # not to be read, links in a circle, no text
             found[name] = None
     return found
+
+
+def _files_or_none(exercise: Exercise, place: Path) -> dict[str, str | None]:
+    """As `submitted_files`, and an empty dictionary if nothing is there or the folder cannot be looked into."""
+    try:
+        return submitted_files(exercise, place)
+    except (ExerciseError, OSError):
+        return {}

@@ -7,11 +7,11 @@ harm.
 
 from __future__ import annotations
 
-import json
 import sys
 import tempfile
 from pathlib import Path
 
+from . import schema
 from .performing import lay_out, perform
 
 
@@ -33,13 +33,13 @@ class Here:
         reports, modules, path = [], set(sys.modules), list(sys.path)
 
         def tell(kind, **facts):
-            reports.append(f"{job['nonce']} {json.dumps({'kind': kind, **facts})}")
+            reports.append(schema.line(job["nonce"], kind, facts))
 
         with tempfile.TemporaryDirectory(prefix="cramhy-") as folder:
             lay_out(job, folder)
             try:
                 with Image():
-                    perform(job, folder, tell)
+                    perform(job, folder, tell, apart=False)
             finally:
                 sys.path[:] = path
                 for name in [Path(name).stem for name in job["files"] if name.endswith(".py")]:

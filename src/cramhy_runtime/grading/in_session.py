@@ -7,7 +7,6 @@ as they are.
 
 from __future__ import annotations
 
-import json
 import re
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,11 +18,12 @@ from cramhy_runtime.ros import graph
 from cramhy_runtime.session.session import Interruption
 from cramhy_runtime.turtlesim.node import running_simulator
 
-from . import judging
+from . import judging, schema
 from .exercise import Check, Exercise, of_checks
 from .jobs import job
 from .performing import carry_out
 from .recording import Recording
+from .sentences import said
 from .told import Told
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ def _tried(exercise: Exercise, check: Check, seed: int, evaluate):
     reports = []
 
     def tell(kind, **facts):
-        reports.append(f"{work['nonce']} {json.dumps({'kind': kind, **facts})}")
+        reports.append(schema.line(work["nonce"], kind, facts))
 
     made = _Evaluator(evaluate, work["turtle_time"])
     recording = Recording(tuple(work["start"]), work["troubles"], seed)
@@ -118,13 +118,14 @@ def _tried(exercise: Exercise, check: Check, seed: int, evaluate):
             carry_out(work, Path(), tell, made, recording)
     finally:
         conditions.install_debugger(debugger)
-        recording.end()
+        recording.stop()
     if made.interrupted:
         raise Interruption
     told = Told(reports, work["nonce"])
     if told.error and told.doing == "before":
         return [f"{told.what} cannot be used:\n{told.error['text']}"]
-    wrong = judging.of_answers(check, work, values, told) if check.kind == "ask" else judging.of_run(check, work, values, told)
+    judge = judging.of_answers if check.kind == "ask" else judging.of_run
+    wrong = said(judge(check, work, values, told), answers=True)
     return [*(_plainer(sentence) for sentence in wrong), *(_other_drivers() if wrong and check.kind == "do" else ())]
 
 
@@ -175,4 +176,4 @@ def _as_it_is(table):
     simulator = running_simulator()
     if simulator is None:
         return [NO_TURTLE]
-    return judging.of_place(table, {}, _Now(simulator))
+    return said(judging.of_place(table, {}, _Now(simulator)), answers=True)

@@ -1,6 +1,7 @@
 """What came of a run, compared with what an exercise asks for; in the grader's process, and in words for the student.
 
-`sentences` gives one sentence for each thing that is wrong, and nothing if all is right.
+Each function gives a `Fault` for each thing that is wrong, and nothing if all is right. Each comparison says what is right, so that
+not-a-number, which is neither smaller nor larger than anything, is wrong.
 """
 
 from __future__ import annotations
@@ -8,9 +9,12 @@ from __future__ import annotations
 import math
 import re
 
-from . import drawings, paths
+from . import allowances, drawings, paths
 from .expressions import computed, filled
+from .schema import not_finite
 from .replay import Replay, WrongReport
+from .sentences import Fault, fault
+from cramhy_runtime.turtlesim.world import TICK
 
 TOLERANCE = 0.25
 """Metres that a line may be off, if the exercise says nothing else: the course's turtle reaches a goal to a tenth of a metre."""
@@ -20,22 +24,54 @@ NEAR = 0.2
 NUMBER = re.compile(r"[-+]?(?:\d+/\d+|(?:\d+\.\d*|\.\d+|\d+)(?:[dfes][-+]?\d+)?)(?![\w.])", re.I)
 
 
-def of_run(check, job, values, told):
-    """What is wrong with a run of ``do``. told: the reports by kind (`Told`)."""
+def of_run(check, job, values, told, allow=None):
+    """What is wrong with a run of ``do``. told: what its process told (`Told`). allow: what it may use, a set; ``None``: everything."""
     table, form = check.table, job["do"]
     wrong = list(_outcome(table, form, values, told))
     if not told.run:
-        return [*wrong, "The turtle's simulator never started."] if not wrong else wrong
+        return wrong or [fault(NO_RUN, NO_RUN)]
+    wrong += [fault(sentence, sentence) for sentence in _not_finite(told)]
+    if allow is not None:
+        wrong += _only_allowed(allow, told)
+    if told.run["ticks"] > job["turtle_time"] * MOST_TICKS_A_SECOND + 1000:
+        return [*wrong, fault(NO_SIMULATOR, NO_SIMULATOR)]
+    if wrong and (told.error or _not_finite(told) or (allow is not None and allowances.faults(allow, told))):
+        return wrong  # the drawing of such a plan says little more
     try:
-        replay = Replay(tuple(job["start"]), told.run["heard"], told.run["ticks"], told.run["begin"], job["troubles"], job["seed"])
-    except (WrongReport, KeyError, TypeError, OverflowError):
-        return [*wrong, "The report of the run is not one that a simulator makes."]
-    if told.error and wrong:  # the drawing of a plan that failed says little more
-        return wrong
+        replay = Replay(tuple(job["start"]), told.heard, told.run["ticks"], told.run["begin"], job["troubles"], job["seed"])
+    except (WrongReport, TypeError, ArithmeticError, ValueError):
+        return [*wrong, fault(NO_SIMULATOR, NO_SIMULATOR)]
     table = {"teleports": 0, **table}  # who is carried has not driven
     for judge in _JUDGES:
         wrong += judge(table, values, replay, told)
     return wrong
+
+
+NO_RUN = "The turtle's simulator never started."
+NO_SIMULATOR = "The report of the run is not one that a simulator makes."
+MOST_TICKS_A_SECOND = 65
+FASTEST = 1e6
+"""A command with a larger number in it is a mistake. The numbers are m/s and rad/s, or metres."""
+
+
+def _only_allowed(allow, told):
+    return [fault(sentence, sentence) for sentence in allowances.faults(allow, told)]
+
+
+def _not_finite(told):
+    """A sentence if a turtle was told a number that is none: nothing that it did then was driving."""
+    for entry in told.heard:
+        found = not_finite(entry)
+        if found is not None:
+            what = f"{entry[2]} a velocity" if entry[1] == "command" else f"the service {entry[1]} a number"
+            return [
+                f"The program tells {what} that is {found}. Such a number comes from a division such as 0/0 or 1/0 of floats, or from one "
+                "that has grown too large. Print the numbers before they are sent, and look at what is divided."
+            ]
+        large = next((number for number in entry[3:] if abs(number) > FASTEST), None)
+        if large is not None:
+            return [f"The program tells {entry[2] or 'the simulator'} a number that is far too large: {large:g}."]
+    return []
 
 
 def _outcome(table, form, values, told):
@@ -44,15 +80,24 @@ def _outcome(table, form, values, told):
     if told.error:
         types = told.error["types"]
         if "TIME-LIMIT" in types:
-            yield f"{form} was not over when the turtle's time was."
+            yield fault("The plan was not over when the turtle's time was.", f"{form} was not over when the turtle's time was.")
         elif wanted is None:
-            yield f"{form} ended with an error:\n{told.error['text']}"
+            yield fault("The plan ended with an error.", f"{form} ended with an error:\n{told.error['text']}")
         elif wanted.upper() not in types:
-            yield f"{form} should fail with {wanted}, and failed with {types[0] if types else 'something else'}."
+            failed = f"failed with {types[0] if types else 'something else'}"
+            yield Fault(
+                "The plan failed in another way than it should.",
+                f"{form} {failed}, which is not the failure that it should end with.",
+                f"{form} should fail with {wanted}, and {failed}.",
+            )
     elif wanted is not None:
-        yield f"{form} should fail with {wanted}, and did not fail."
+        yield Fault(
+            "The plan should fail, and did not.",
+            f"{form} should fail, and did not.",
+            f"{form} should fail with {wanted}, and did not fail.",
+        )
     elif told.value is None:
-        yield f"{form} gave no value."
+        yield fault("The plan gave no value.", f"{form} gave no value.")
     elif "value" in table:
         yield from _compared(form, table["value"], values, told.value["values"], table.get("within", 1e-6))
 
@@ -62,44 +107,64 @@ def of_place(table, values, now):
     return [sentence for judge in (_paper, _at) for sentence in judge(table, values, now, None)]
 
 
-def of_answers(check, job, values, told):
-    """What is wrong with the answers to questions."""
-    wrong = []
-    answers = list(told.answers)
+def of_answers(check, job, values, told, allow=None):
+    """What is wrong with the answers to questions. allow: as of `of_run`."""
+    wrong = _only_allowed(allow, told) if allow is not None else []
     for place, (form, (_, expected)) in enumerate(zip(job["asks"], check.table["ask"])):
-        if place >= len(answers):
-            wrong.append(f"{form} was not answered.")
+        if place >= len(told.answers):
+            wrong.append(fault("A question was not answered.", f"{form} was not answered."))
             break
-        kind, facts = answers[place]
-        if kind == "error":
-            wanted = expected.removeprefix("fails ") if expected.startswith("fails ") else None
-            if wanted is None:
-                wrong.append(f"{form} ended with an error:\n{facts['text']}")
-            elif wanted.upper() not in facts["types"]:
-                wrong.append(f"{form} should fail with {wanted}, and failed with {facts['types'][0]}.")
-        elif expected.startswith("fails "):
-            wrong.append(f"{form} should fail with {expected.removeprefix('fails ')}, and gave {_shown(facts['values'])}.")
-        else:
+        kind, facts = told.answers[place]
+        failing = expected.startswith("fails ")
+        wanted = expected.removeprefix("fails ")
+        if kind == "error" and "TIME-LIMIT" in facts["types"]:
+            wrong.append(endless(form))
+            break  # there is no time for the others
+        if kind == "error" and not failing:
+            wrong.append(fault("A question ended with an error.", f"{form} ended with an error:\n{facts['text']}"))
+        elif kind == "error" and wanted.upper() not in facts["types"]:
+            failed = f"failed with {facts['types'][0] if facts['types'] else 'something else'}"
+            wrong.append(
+                Fault(
+                    "A question failed in another way than it should.",
+                    f"{form} {failed}, which is not the failure that it should end with.",
+                    f"{form} should fail with {wanted}, and {failed}.",
+                )
+            )
+        elif kind != "error" and failing:
+            gave = f"gave {_shown(facts['values'])}"
+            wrong.append(
+                Fault("A question should fail.", f"{form} should fail, and {gave}.", f"{form} should fail with {wanted}, and {gave}.")
+            )
+        elif kind != "error":
             wrong += _compared(form, expected, values, facts["values"], check.table.get("within", 1e-6))
     return wrong
 
 
-def of_tests(check, told):
-    """What is wrong according to tests."""
+def endless(form):
+    """What to say of a question that does not end within the turtle's time."""
+    return fault("A question never ended.", f"{form} never ended, and was stopped. Is there a loop or a recursion in it that does not end?")
+
+
+def of_tests(check, told, allow=None):
+    """What is wrong according to tests. allow: as of `of_run`."""
+    wrong = _only_allowed(allow, told) if allow is not None else []
     if told.tampered:
-        return [told.tampered["text"]]
+        return [*wrong, fault(told.tampered["text"], told.tampered["text"])]
     if told.error:
-        return [f"The tests ended with an error:\n{told.error['text']}"]
+        return [*wrong, fault("The tests ended with an error.", f"The tests ended with an error:\n{told.error['text']}")]
     if told.tests is None:
-        return ["The tests did not end."]
+        return [*wrong, fault("The tests did not end.", "The tests did not end.")]
     results = told.tests["results"]
     if not results:
-        return ["No test was run."]
+        return [*wrong, fault("No test was run.", "No test was run.")]
     missing = {name.upper() for name in check.table.get("only", ())} - {result["name"].upper() for result in results}
-    wrong = [f"There is no test {name}." for name in sorted(missing)]
-    return wrong + [
-        f"The test {result['name'].lower()} failed:\n{result['text']}".rstrip(":\n") for result in results if not result["passed"]
-    ]
+    wrong += [fault("A test is missing.", f"There is no test {name}.") for name in sorted(missing)]
+    for result in results:
+        if not result["passed"]:
+            named = f"The test {result['name'].lower()} failed"
+            wrong.append(Fault("A test failed.", f"{named}.", f"{named}:\n{result['text']}".rstrip(":\n")))
+    return wrong
 
 
 # ------------------------------------------------------------------------------------------------------------------ values
@@ -108,7 +173,11 @@ def of_tests(check, told):
 def _compared(form, expected, values, given, within):
     wanted = filled(expected, values)
     if not same(wanted, given[0] if given else "NIL", within):
-        yield f"{form} should give {wanted}, and gave {_shown(given)}."
+        yield Fault(
+            "An answer is wrong.",
+            f"{form} gave {_shown(given)}, which is not right.",
+            f"{form} should give {wanted}, and gave {_shown(given)}.",
+        )
 
 
 def _shown(values):
@@ -127,10 +196,14 @@ def same(one, other, within):
 
 
 def _number(text):
-    if "/" in text:
-        above, below = text.split("/")
-        return int(above) / int(below) if int(below) else math.nan
-    return float(re.sub("[DFS]", "E", text))
+    """The number that a text means; not-a-number, which is equal to nothing, if no float is that large."""
+    try:
+        if "/" in text:
+            above, below = text.split("/")
+            return int(above) / int(below)
+        return float(re.sub("[DFS]", "E", text))
+    except (ArithmeticError, ValueError):
+        return math.nan
 
 
 # --------------------------------------------------------------------------------------------------------------- the turtle
@@ -147,14 +220,19 @@ def _paper(table, values, replay, told):
     target = paths.lines(paper["way"], values, begin)
     drawn = replay.drawing()
     if not drawn:
-        yield "The paper is empty: the turtle has drawn nothing."
+        yield fault(EMPTY, EMPTY)
         return
     slack = paper.get("slack", SLACK)
     found = drawings.difference(target, drawn, paper.get("tolerance", TOLERANCE))
-    if found.missing > slack:
-        yield f"{found.missing:.1f} m of the drawing are missing, the first near {_point(found.missing_at)}."
-    if found.much > slack:
-        yield f"{found.much:.1f} m of the drawing should not be there, the first near {_point(found.much_at)}."
+    if not found.missing <= slack:
+        missing = f"{found.missing:.1f} m of the drawing are missing"
+        yield Fault("A part of the drawing is missing.", f"{missing}.", f"{missing}, the first near {_point(found.missing_at)}.")
+    if not found.much <= slack:
+        much = f"{found.much:.1f} m of the drawing should not be there, the first near {_point(found.much_at)}."
+        yield fault("There is too much in the drawing.", much)
+
+
+EMPTY = "The paper is empty: the turtle has drawn nothing."
 
 
 def _point(place):
@@ -167,19 +245,27 @@ def _at(table, values, replay, told):
     goal = table["at"]
     place = replay.place(goal.get("turtle", "turtle1"))
     if place is None:
-        yield f"There is no {goal.get('turtle', 'turtle1')} at the end."
+        missing = f"There is no {goal.get('turtle', 'turtle1')} at the end."
+        yield fault(missing, missing)
         return
     x, y = (float(computed(goal[name], values)) if name in goal else place[index] for index, name in enumerate("xy"))
     near = goal.get("within", NEAR)
-    if math.dist((x, y), place[:2]) > near:
-        yield f"The turtle ends at {_point(place)}. It should end at {_point((x, y))}, to {near} m."
+    if not math.dist((x, y), place[:2]) <= near:
+        ends = f"The turtle ends at {_point(place)}"
+        yield Fault(
+            "The turtle ends at another place.",
+            f"{ends}, which is {math.dist((x, y), place[:2]):.1f} m from where it should be.",
+            f"{ends}. It should end at {_point((x, y))}, to {near} m.",
+        )
     if "heading" in goal:
         wanted = math.radians(computed(goal["heading"], values))
-        off = abs(math.remainder(place[2] - wanted, math.tau))
-        if off > math.radians(goal.get("degrees", 10)):
-            yield (
-                f"The turtle looks to {math.degrees(place[2]):.0f} degrees at the end. It should look to {math.degrees(wanted):.0f}. "
-                "(0 is to the right, 90 is up.)"
+        off = abs(math.remainder(place[2] - wanted, math.tau)) if math.isfinite(place[2]) else math.inf
+        if not off <= math.radians(goal.get("degrees", 10)):
+            looks = f"The turtle looks to {math.degrees(place[2]):.0f} degrees at the end"
+            yield Fault(
+                "The turtle looks elsewhere at the end.",
+                f"{looks}, which is not right. (0 is to the right, 90 is up.)",
+                f"{looks}. It should look to {math.degrees(wanted):.0f}. (0 is to the right, 90 is up.)",
             )
 
 
@@ -190,30 +276,44 @@ def _visits(table, values, replay, told):
     for number, goal in enumerate(table["visits"], 1):
         x, y = (float(computed(part, values)) for part in goal[:2])
         near = computed(goal[2], values) if len(goal) > 2 else NEAR
-        while place < len(way) and math.dist((x, y), way[place][:2]) > near:
+        while place < len(way) and not math.dist((x, y), way[place][:2]) <= near:
             place += 1
         if place == len(way):
-            yield f"The turtle did not come to place {number}, {_point((x, y))}, in its turn."
+            yield Fault(
+                "The turtle did not come to all places in their order.",
+                f"The turtle did not come to place {number} in its turn.",
+                f"The turtle did not come to place {number}, {_point((x, y))}, in its turn.",
+            )
             return
 
 
 def _seconds(table, values, replay, told):
-    if "seconds" not in table or told.value is None:
+    """The plan's time: its clock says it, and the simulator's ticks must agree."""
+    if "seconds" not in table:
         return
-    took = told.value["seconds"]
+    took = told.took["seconds"] if told.took else math.nan
+    ticked = (told.run["end"] - told.run["begin"]) * TICK
+    if not abs(took - ticked) <= CLOCKS_APART:
+        yield fault(NO_SIMULATOR, NO_SIMULATOR)
+        return
     low, high = _range(table["seconds"], values)
     if not low <= took <= high:
-        yield f"The plan took {took:.1f} s of the turtle's time. It should take {_between(low, high)} s."
+        yield _off(f"The plan took {took:.1f} s of the turtle's time", took, low, high, " s", "It should take")
 
 
-def _counted(name, count, words):
+CLOCKS_APART = 0.1
+"""Seconds between what the plan's clock and the simulator's ticks say."""
+
+
+def _counted(name, count, words, wanted):
+    """A judge of a number. count: gives it for a `Replay`. words, wanted: sentences with {} for the number and for what it should be."""
+
     def judge(table, values, replay, told):
         if name in table:
             found = count(replay)
             low, high = _range(table[name], values)
             if not low <= found <= high:
-                shown = f"{found:.1f}" if isinstance(found, float) else found
-                yield words.format(shown, _between(low, high))
+                yield _off(words.format(f"{found:.1f}" if isinstance(found, float) else found), found, low, high, "", wanted)
 
     return judge
 
@@ -222,7 +322,13 @@ def _services(table, values, replay, told):
     for name, wanted in table.get("services", {}).items():
         found, (low, high) = replay.services.get(name, 0), _range(wanted, values)
         if not low <= found <= high:
-            yield f"The service {name} was called {found} times. It should be {_between(low, high)}."
+            yield _off(f"The service {name} was called {found} times", found, low, high, "", "It should be")
+
+
+def _off(words, found, low, high, unit, wanted):
+    """The `Fault` of a number outside of its range."""
+    side = "too much" if found > high else "too little"
+    return Fault(f"A number is {side}.", f"{words}, which is {side}.", f"{words}. {wanted} {_between(low, high)}{unit}.")
 
 
 def _range(wanted, values):
@@ -242,13 +348,14 @@ _JUDGES = (
     _visits,
     _seconds,
     _services,
-    _counted("distance", Replay.distance, "The turtle went {} m. It should go {} m."),
-    _counted("commands", lambda replay: replay.commands, "The plan sent {} commands. It should send {}."),
-    _counted("walls", lambda replay: replay.walls, "The turtle was at a wall in {} ticks. It should be {}."),
+    _counted("distance", Replay.distance, "The turtle went {} m", "In metres it should go"),
+    _counted("commands", lambda replay: replay.commands, "The plan sent {} commands", "It should send"),
+    _counted("walls", lambda replay: replay.walls, "The turtle was at a wall in {} ticks", "It should be"),
     _counted(
         "teleports",
-        lambda replay: sum(replay.services.get(name, 0) for name in ("teleport_absolute", "teleport_relative", "reset")),
-        "The turtle was carried {} times, by teleport or reset. It should be {}.",
+        lambda replay: sum(replay.services.get(name, 0) for name in allowances.CARRYING),
+        "The turtle was carried {} times, by teleport or reset",
+        "It should be",
     ),
-    _counted("turtles", lambda replay: len(replay.turtles), "There are {} turtles at the end. It should be {}."),
+    _counted("turtles", lambda replay: len(replay.turtles), "There are {} turtles at the end", "It should be"),
 )

@@ -10,11 +10,14 @@ A job is a dictionary of plain data, made by ``jobs.py``. ``tell(kind, **facts)`
 from __future__ import annotations
 
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 from . import tests_inside
 from .recording import Recording
+from .uses import Uses, listen_to_audit, words_in
 
+MOST_VALUES = 20
 MOST_TEXT = 2000
 """So many characters of a value or an error are reported."""
 SETTLING = 0.1
@@ -33,8 +36,11 @@ def lay_out(job, folder):
         place.write_text(text, encoding="utf-8", newline="")
 
 
-def perform(job, folder, tell):
-    """Do what ``job`` says. folder: where its files are, as text. tell: see above. The last report is "done", unless something was lost."""
+def perform(job, folder, tell, apart=True):
+    """Do what ``job`` says. folder: where its files are, as text. tell: see above. The last report is "done", unless something was lost.
+
+    apart: whether this process is the submission's own, and ends with it.
+    """
     from cramhy_runtime.session.session import Session
     from cramhy_runtime.testing.watched import WatchedKernel
 
@@ -43,30 +49,78 @@ def perform(job, folder, tell):
     )
     recording = Recording(tuple(job["start"]), job["troubles"], job["seed"])
     recording.watch()
-    carry_out(job, Path(folder), tell, made, recording)
+    uses = Uses(tell, job["files"], folder)
+    if apart:
+        sys.dont_write_bytecode = True  # code that is kept beside a submission would be code that it could write
+        listen_to_audit(uses)
+    carry_out(job, Path(folder), tell, made, recording, uses)
 
 
-def carry_out(job, folder, tell, made, recording):
-    """As `perform`, in the session ``made``, of which ``load``, ``evaluate_text`` and ``package`` are used. folder: a path."""
+def carry_out(job, folder, tell, made, recording, uses=None):
+    """As `perform`, in the session ``made``, of which ``load``, ``evaluate_text`` and ``package`` are used. folder: a path.
+
+    uses: notices what the submission does beside commands, a `Uses`; ``None``: nobody does.
+    """
     try:
-        _steps(job, folder, tell, made, recording)
+        _prepare(job, made)
+        if uses is not None:
+            uses.keep_functions(_called(job, made))
+        with uses.watching() if uses is not None else nullcontext():
+            _steps(job, folder, tell, made, recording, uses)
     except _Ended:
         pass
+    if uses is not None:
+        uses.look_at_functions()
+        if recording.simulator is not None:
+            uses.look_at_simulator(recording.simulator)
     if recording.simulator is not None:
-        begin = recording.troubles.begin
-        tell("run", heard=recording.heard, ticks=recording.ticks, begin=recording.ticks if begin is None else begin)
+        recording.tell(tell)
     tell("done")
 
 
-def _steps(job, folder, tell, made, recording):
-    from cramhy_runtime import kernel
-
+def _prepare(job, made):
+    """Load what the exercise builds upon."""
     for system in job["systems"]:
         made.load(system)
     if job["package"]:
         made.package = job["package"].upper()
     for form in job["prelude"]:
         made.evaluate_text(form)
+
+
+def _reading():
+    """Makes contexts in which forms of the exercise are read as now, before the submission can have changed how Lisp reads."""
+    from cramhy_runtime.ground.dynamic import binding
+    from cramhy_runtime.languages.commonlisp.reader.readtables import READTABLE
+    from cramhy_runtime.languages.commonlisp.reader.tokens import READ_BASE
+
+    table = READTABLE.value.copy()
+    return lambda: binding(READTABLE, table.copy(), READ_BASE, 10)
+
+
+def _called(job, made):
+    """What the forms of the exercise name, as of `words_in`: these functions are not the submission's to change.
+
+    In the forms that are evaluated for the verdict, those of the exercise's own package are what the student writes, unless the prelude
+    defines them.
+    """
+    package, own, found = made.package.name, (job["package"] or "").upper(), {}
+    texts = [(text, package) for text in (*job["asks"], *([job["do"]] if job["do"] is not None else []))]
+    if job["tests"] and job["tests"]["name"].endswith(".lisp"):
+        texts.append((job["tests"]["text"], "COMMON-LISP-USER"))  # its own package is not there yet, and uses Common Lisp, too
+    for text, home in texts:
+        for place, symbol in words_in(text, home).items():
+            if symbol.package is not None and own not in symbol.package.names:
+                found[place] = symbol
+    for text in (*job["prelude"], *job["before"]):
+        found |= words_in(text, package)
+    return found
+
+
+def _steps(job, folder, tell, made, recording, uses):
+    from cramhy_runtime import kernel
+
+    exercise = _reading() if uses is not None else nullcontext
     guard = tests_inside.Guard() if job["tests"] else None
     for name in job["load"]:
         tell("stage", doing="load", what=name)
@@ -77,36 +131,48 @@ def _steps(job, folder, tell, made, recording):
                 _attempt(tell, lambda name=name: __import__(Path(name).stem))
         else:
             _attempt(tell, lambda name=name: made.load(str(folder / name)))
+    if uses is not None:
+        uses.look_at_functions()
     for form in job["before"]:
-        tell("stage", doing="before", what=form)
-        _attempt(tell, lambda form=form: made.evaluate_text(form))
+        tell("stage", doing="before", what=form[:MOST_TEXT])
+        with uses.paused() if uses is not None else nullcontext(), exercise():
+            _attempt(tell, lambda form=form: made.evaluate_text(form))
+    if uses is not None:
+        uses.keep_functions(_called(job, made))
+        if recording.simulator is not None:
+            uses.keep_simulator(recording.simulator)
     if job["do"] is not None:
-        tell("stage", doing="do", what=job["do"])
+        tell("stage", doing="do", what=job["do"][:MOST_TEXT])
         kernel.sleep(SETTLING)
         faults = _plan_faults(job["faults"])
-        recording.begin()
+        recording.plan_begins()
         begun = kernel.now()
         if faults:  # of which an ordinary kernel knows nothing
             kernel.active().faults.extend(faults)
         try:
-            values = _attempt(tell, lambda: made.evaluate_text(job["do"]), go_on=True)
+            with exercise():
+                values = _attempt(tell, lambda: made.evaluate_text(job["do"]), go_on=True)
         finally:
             if faults:
                 kernel.active().faults.clear()
         took = kernel.now() - begun
+        recording.plan_ends()
+        tell("took", seconds=round(took, 4))
         kernel.sleep(job["after"])
         if values is not None:
-            tell("value", values=[printed(value) for value in values], seconds=round(took, 4))
+            tell("value", values=[printed(value) for value in values[:MOST_VALUES]])
         tell("faults", happened=[fault.happened is not None for fault in faults])
     for form in job["asks"]:
-        tell("stage", doing="ask", what=form)
-        values = _attempt(tell, lambda form=form: made.evaluate_text(form), go_on=True)
+        tell("stage", doing="ask", what=form[:MOST_TEXT])
+        with exercise():
+            values = _attempt(tell, lambda form=form: made.evaluate_text(form), go_on=True)
         if values is not None:
-            tell("answer", values=[printed(value) for value in values])
+            tell("answer", values=[printed(value) for value in values[:MOST_VALUES]])
     if job["tests"]:
         tell("stage", doing="tests", what=job["tests"]["name"])
         try:
-            results = tests_inside.run(job["tests"], folder, job["canary"], guard)
+            with exercise() if not job["tests"]["name"].endswith(".py") else nullcontext():  # pytest brings a kernel of its own
+                results = tests_inside.run(job["tests"], folder, job["canary"], guard)
         except tests_inside.Tampered as problem:
             tell("tampered", text=str(problem))
         except SystemExit:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from cramhy_runtime.turtlesim.node import each_simulator, expect_no_more
 
+from .schema import MOST_HEARD, PART
 from .troubles import Troubles, put
-
-MOST_HEARD = 100_000
 
 
 class TooMuch(Exception):
@@ -16,26 +15,34 @@ class TooMuch(Exception):
 class Recording:
     """The record of the first simulator that starts after `watch`. start: (x, y, heading) of turtle1. troubles, seed: as of `Troubles`.
 
-    ``heard``: [tick, kind, turtle, values...] in the order of arrival. ``ticks``: how many have passed. ``begin``: that at which the plan
-    began.
+    ``heard``: [tick, kind, turtle, values...] in the order of arrival. ``ticks``: how many have passed. ``begin``, ``end``: those at which
+    the plan began and ended, ``None`` before.
     """
 
     def __init__(self, start, troubles, seed):
         self.start, self.troubles = start, Troubles(troubles, seed)
         self.heard = []
         self.ticks = 0
+        self.begin = self.end = None
         self.simulator = None
 
     def watch(self):
         """Record the first simulator: at once if it runs already, and then it must be as it begins."""
         each_simulator(self._meet)
 
-    def end(self):
+    def stop(self):
         """Leave the simulator alone."""
         expect_no_more(self._meet)
         if self.simulator is not None:
             self.simulator.listener = None
             self.simulator.unobserve(self._see)
+
+    def tell(self, tell):
+        """Tell what was heard, in parts, and the ticks."""
+        for place in range(0, len(self.heard), PART):
+            tell("heard", entries=self.heard[place : place + PART])
+        begin = self.ticks if self.begin is None else self.begin
+        tell("run", ticks=self.ticks, begin=begin, end=self.ticks if self.end is None else self.end)
 
     def _meet(self, simulator):
         if self.simulator is not None:
@@ -45,11 +52,15 @@ class Recording:
         simulator.listener = self._hear
         simulator.observe(self._see)
 
-    def begin(self):
+    def plan_begins(self):
         """The plan begins now."""
-        self.troubles.begin = self.ticks
+        self.begin = self.troubles.begin = self.ticks
         if self.simulator is not None:
             self.troubles.act(self.ticks, self.simulator.turtles)
+
+    def plan_ends(self):
+        """The plan has ended now."""
+        self.end = self.ticks
 
     def _hear(self, kind, turtle, values):
         if len(self.heard) >= MOST_HEARD:

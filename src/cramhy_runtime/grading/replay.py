@@ -14,7 +14,6 @@ from cramhy_runtime.turtlesim.world import TICK, Turtle
 
 from .troubles import Troubles, put
 
-_ARGUMENTS = {"command": 3, "set_pen": 5, "teleport_absolute": 3, "teleport_relative": 2, "spawn": 3, "kill": 0, "clear": 0, "reset": 0}
 MOST_TURTLES = 20
 
 
@@ -45,6 +44,7 @@ class Replay:
 
     def __init__(self, start, heard, ticks, begin, troubles=(), seed=1):
         _check(heard, ticks, begin)
+        self.ticks = ticks
         self.paper = _Paper()
         self.walls = self.commands = 0
         self.services = {}
@@ -116,7 +116,7 @@ class Replay:
         return found
 
     def place(self, name="turtle1"):
-        """Where a turtle is at the end, (x, y, heading), or ``None``."""
+        """Where a turtle is at the end, (x, y, heading), or ``None``. Numbers that are not finite stay so, and are near to nothing."""
         return self.way[name][-1] if name in self.turtles and self.way.get(name) else None
 
     def distance(self, name="turtle1"):
@@ -126,8 +126,11 @@ class Replay:
 
 
 def _upright(point):
-    """A point of the world (y up) for one on the screen; one far off the paper becomes one beside it."""
-    return min(max(point[0], -1.0), EXTENT + 1), min(max(EXTENT - point[1], -1.0), EXTENT + 1)
+    """A point of the world (y up) for one on the screen; one far off the paper becomes one beside it. Not-a-number stays what it is."""
+    x, y = point[0], EXTENT - point[1]
+    if x != x or y != y:
+        return math.nan, math.nan
+    return min(max(x, -1.0), EXTENT + 1), min(max(y, -1.0), EXTENT + 1)
 
 
 def _place(turtle):
@@ -135,19 +138,11 @@ def _place(turtle):
 
 
 def _check(heard, ticks, begin):
-    """Raise `WrongReport` unless a simulator may have written this."""
-    if not all(isinstance(number, int) and not isinstance(number, bool) for number in (ticks, begin)) or not 0 <= begin <= ticks:
-        raise WrongReport("The ticks are wrong.")
-    if not isinstance(heard, list):
-        raise WrongReport("There is no list of commands.")
+    """Raise `WrongReport` unless a simulator may have written this. Each entry by itself is good (`schema`)."""
+    if begin > ticks:
+        raise WrongReport("The plan begins after the end.")
     before = 0
-    for entry in heard:
-        if not isinstance(entry, list) or len(entry) < 3 or not isinstance(entry[0], int) or not before <= entry[0] <= ticks:
+    for tick, *_ in heard:
+        if not before <= tick <= ticks:
             raise WrongReport("A command has no place in time.")
-        before, kind, name, *values = entry
-        if kind not in _ARGUMENTS or not isinstance(name, str) or len(values) != _ARGUMENTS[kind]:
-            raise WrongReport("There is no such command.")
-        if not all(isinstance(value, (int, float)) for value in values):
-            raise WrongReport("A command has something else than numbers.")
-        if kind == "set_pen" and not all(isinstance(value, int) and 0 <= value <= 255 for value in values):
-            raise WrongReport("There is no such pen.")
+        before = tick

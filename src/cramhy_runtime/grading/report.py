@@ -7,18 +7,26 @@ import textwrap
 from typing import NamedTuple
 
 from .exercise import whole
+from .harmless import harmless
 
 WIDTH = 100
 
 
-class CheckResult(NamedTuple):
-    """A check: its title, the points it gave and those it could give, and what is wrong, as sentences."""
-
+class _CheckResult(NamedTuple):
     title: str
     points: float
     most: float
     wrong: list[str]
     hint: str | None = None
+
+
+class CheckResult(_CheckResult):
+    """A check: its title, the points it gave and those it could give, and what is wrong, as sentences. All texts become `harmless`."""
+
+    __slots__ = ()
+
+    def __new__(cls, title: str, points: float, most: float, wrong: list[str], hint: str | None = None) -> CheckResult:
+        return super().__new__(cls, harmless(title), points, most, [harmless(each) for each in wrong], hint and harmless(hint))
 
     @property
     def passed(self) -> bool:
@@ -26,13 +34,23 @@ class CheckResult(NamedTuple):
         return not self.wrong
 
 
-class Report(NamedTuple):
-    """The result of grading. exercise: its title. output: what the submission printed, cut off. held: the locks of the sandbox."""
-
+class _Report(NamedTuple):
     exercise: str
     checks: list[CheckResult]
     output: str
     held: list[str]
+
+
+class Report(_Report):
+    """The result of grading. exercise: its title. output: what the submission printed, cut off. held: the locks of the sandbox.
+
+    All texts become `harmless`, so they are that wherever the report is written.
+    """
+
+    __slots__ = ()
+
+    def __new__(cls, exercise: str, checks: list[CheckResult], output: str, held: list[str]) -> Report:
+        return super().__new__(cls, harmless(exercise), checks, harmless(output), [harmless(each) for each in held])
 
     @property
     def points(self) -> float:

@@ -11,6 +11,7 @@ from itertools import combinations
 from pathlib import Path
 from typing import NamedTuple
 
+from ..harmless import harmless
 from ..problems import ExerciseError
 from .shapes import Shape, shapes_of
 
@@ -18,6 +19,8 @@ ENDINGS = (".lisp", ".hy", ".py")
 COMMON = 0.5
 """A list that more than this share of the submissions have says nothing about two of them. Small folders: at least five."""
 SHOWN = 5
+MOST_HEAD = 100
+"""Characters of the first words of a list, which may be as long as a program likes."""
 LARGEST = 500_000
 
 
@@ -85,9 +88,13 @@ def _submissions(folder, together=False):
 def _submission(name, paths):
     shapes = {}
     for path in paths:
-        if not path.is_file() or path.stat().st_size > LARGEST:
+        try:
+            if not path.is_file() or path.stat().st_size > LARGEST:
+                continue
+            text = path.read_text(encoding="utf-8", errors="replace")
+        except OSError:  # it may not be read, or it is gone
             continue
-        for mark, shape in shapes_of(path.read_text(encoding="utf-8", errors="replace"), path.name).items():
+        for mark, shape in shapes_of(text, path.name).items():
             shapes.setdefault(mark, (path.name, shape))
     return _Submission(name, shapes)
 
@@ -103,8 +110,9 @@ def _compared(one, other, owners):
         if any(file == name and begin <= shape.line and shape.size < size for name, begin, size in covered) and len(parts) >= 1:
             continue  # it is in one that is listed, or too near to it to tell more
         covered.append((file, shape.line, shape.size))
-        parts.append(Part(f"{file}:{shape.line}", f"{file_of_other}:{shape_of_other.line}", shape.head, shape.size))
-    return Pair(one.name, other.name, round(min(share, 1.0), 3), parts[:SHOWN])
+        places = [harmless(f"{name}:{line}") for name, line in ((file, shape.line), (file_of_other, shape_of_other.line))]
+        parts.append(Part(*places, harmless(shape.head)[:MOST_HEAD], shape.size))
+    return Pair(harmless(one.name), harmless(other.name), round(min(share, 1.0), 3), parts[:SHOWN])
 
 
 def _weight(shapes, owners):

@@ -46,10 +46,9 @@ class Shape(NamedTuple):
 def shapes_of(text, name):
     """The shapes of a program, a dictionary from marks to `Shape`; of several alike the first. name: of the file."""
     top = forms_of(text, name)
-    own = _own_names(top)
-    found = {}
+    shaper, found = _Shaper(_own_names(top)), {}
     for form in top:
-        _visit(form, own, found)
+        _visit(form, shaper, found)
     return found
 
 
@@ -99,40 +98,68 @@ def _words(parts):
     return [part.rpartition(":")[2] for part in parts if not isinstance(part, (Group, Text)) and not part.startswith("&")]
 
 
-def _visit(form, own, found):
+def _visit(form, shaper, found):
     if not isinstance(form, Group) or (form and isinstance(form[0], str) and form[0] in _QUOTING):
         return
     size = sum(1 for _ in words_of(form))
     if size >= LEAST:
-        mark = hashlib.sha256(_shape(form, own, {}).encode()).hexdigest()[:16]
+        mark = hashlib.sha256(shaper.shape(form, {}).encode(errors="backslashreplace")).hexdigest()[:16]
         head = " ".join(word for word in list(form)[:2] if isinstance(word, str))
         found.setdefault(mark, Shape(mark, size, form.line, f"({head} ...)"))
     for part in form:
-        _visit(part, own, found)
+        _visit(part, shaper, found)
 
 
-def _shape(form, own, places):
-    if isinstance(form, Text):
-        return "text"
-    if not isinstance(form, Group):
+class _Shaper:
+    """Makes shapes of the forms of one program. own: the names that it defines or binds.
+
+    The arguments of an operator without order are sorted by what they look like without new places, so that the same arguments get the same
+    places in any order. Each form is looked at once for that: else the work would double with each level of such operators.
+    """
+
+    def __init__(self, own):
+        self.own = own
+        self.without_places = _Known({})
+
+    def shape(self, form, places):
+        """The shape of a form as text. places: of the names so far, by name; new ones are added."""
+        known = getattr(places, "shapes", None)
+        if known is not None and id(form) in known:
+            return known[id(form)]
+        found = self._shape(form, places)
+        if known is not None and isinstance(form, Group):
+            known[id(form)] = found
+        return found
+
+    def _shape(self, form, places):
+        if isinstance(form, Text):
+            return "text"
+        if not isinstance(form, Group):
+            return self._word(form, places)
+        if form and isinstance(form[0], str) and form[0] in _UNORDERED:
+            settled = places if isinstance(places, _Known) else _Known(places)
+            rest = sorted(form[1:], key=lambda part: (self.shape(part, self.without_places), self.shape(part, settled)))
+            return f"({form[0]} {' '.join([self.shape(part, places) for part in rest])})"
+        parts = form[:]
+        if len(parts) > 3 and isinstance(parts[0], str) and parts[0] in ("defun", "defn") and isinstance(parts[3], Text):
+            del parts[3]  # documentation is words
+        return f"({' '.join([self.shape(part, places) for part in parts])})"
+
+    def _word(self, form, places):
         word = form.rpartition(":")[2] or form
         if word.startswith("&"):
             return word
-        if word in own or form in own or (word.startswith("?") and len(word) > 1):
+        if word in self.own or form in self.own or (word.startswith("?") and len(word) > 1):
             return f"#{places.setdefault(word, len(places) + 1)}"
         return "number" if _NUMBER.match(word) else _SYNONYMS.get(word, word)
-    if form and isinstance(form[0], str) and form[0] in _UNORDERED:
-        # sorted by what they look like without new places, so that the same arguments get the same places in any order
-        rest = sorted(form[1:], key=lambda part: (_shape(part, own, _Known({})), _shape(part, own, _Known(places))))
-        return f"({form[0]} {' '.join(_shape(part, own, places) for part in rest)})"
-    parts = form[:]
-    if len(parts) > 3 and isinstance(parts[0], str) and parts[0] in ("defun", "defn") and isinstance(parts[3], Text):
-        del parts[3]  # documentation is words
-    return f"({' '.join(_shape(part, own, places) for part in parts)})"
 
 
 class _Known(dict):
-    """Places that are known already; all others are one."""
+    """Places that are known already; all others are one. ``shapes``: of the forms that were looked at with these places, by identity."""
+
+    def __init__(self, places):
+        super().__init__(places)
+        self.shapes = {}
 
     def setdefault(self, word, place):
         return self.get(word, 0)

@@ -31,6 +31,18 @@ MISSING = object()
 _builtin = {name: getattr(builtins, name) for name in ("getattr", "hasattr", "list", "tuple", "dict", "set", "str", "repr", "eval", "exec")}
 
 
+class Watch:
+    """``function``: ``None``, or called with a name before Lisp uses Python. Nothing of a Lisp program reaches Python without that."""
+
+    __slots__ = ("function",)
+
+    def __init__(self):
+        self.function = None
+
+
+watch = Watch()
+
+
 def plain(value):
     """``value`` as Python code wants it: a text as ``str``."""
     if value.__class__ in WRITABLE_STRINGS:
@@ -58,6 +70,9 @@ def split(arguments):
 
 def guarded(function, *arguments, **keywords):
     """Call ``function``, an exception of which is signalled as a condition."""
+    if watch.function is not None:
+        named = function in (_find, importlib.import_module)
+        watch.function(arguments[0] if named else getattr(function, "__qualname__", "an object"))
     try:
         return function(*arguments, **keywords)
     except (Condition, kernel.KernelError):

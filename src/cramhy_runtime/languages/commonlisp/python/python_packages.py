@@ -88,7 +88,7 @@ def module_attribute(module, attribute):
 
 def set_module_attribute(value, module, attribute):
     """What ``setf`` of a symbol of a module's package expands to."""
-    setattr(importlib.import_module(module), attribute, python_calls.plain(value))
+    guarded(setattr, importlib.import_module(module), attribute, python_calls.plain(value))
     return value
 
 
