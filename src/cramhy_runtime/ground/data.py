@@ -416,11 +416,18 @@ def _answers_for_itself(cls: type) -> bool:
 
     Numbers of such libraries do not: they are true like all numbers.
     """
-    if not hasattr(cls, "__bool__"):
-        return False
-    if cls.__name__ in ("bool", "bool_", "NAType"):  # numpy.bool has another name before numpy 2; pandas.NA is no answer, and says so
-        return True
-    return hasattr(cls, "dtype") and hasattr(cls, "shape") and not any(base.__name__ == "generic" for base in cls.__mro__)
+    answer = OWN_ANSWERS.get(cls)
+    if answer is None:
+        answer = hasattr(cls, "__bool__") and (
+            cls.__name__ in ("bool", "bool_", "NAType")  # numpy.bool has another name before numpy 2; pandas.NA refuses to answer
+            or hasattr(cls, "dtype")
+            and hasattr(cls, "shape")
+            and not any(base.__name__ == "generic" for base in cls.__mro__)
+        )
+        if len(OWN_ANSWERS) >= 500:  # classes that nobody else keeps must not stay for ever
+            OWN_ANSWERS.clear()
+        OWN_ANSWERS[cls] = answer
+    return answer
 
 
 def plain_truth(value: Any) -> Any:
@@ -474,6 +481,8 @@ CHARACTERS: dict[str, Character] = _Characters()
 
 TRUE_CLASSES = frozenset({bool, int, float, complex, str, bytes, list, tuple, dict, set, Cons, Symbol, Keyword, Character})
 """Classes whose objects are true in Lisp, whatever they are, but for ``False``. See `truth`."""
+OWN_ANSWERS: dict[type, bool] = {}
+"""What `_answers_for_itself` found out of other classes."""
 
 
 def is_ratio(thing: object) -> bool:

@@ -27,7 +27,7 @@ from cramhy_runtime.kernel.tasks import shield
 from cramhy_runtime.ground.condition_types import Condition
 from cramhy_runtime.ground.python_exceptions import from_python
 from cramhy_runtime.ground.conditions import SimpleTypeError, error, program_error
-from cramhy_runtime.ground.data import TRUE_CLASSES, MultipleValues, Symbol, lisp_list, one, plain_truth, truth
+from cramhy_runtime.ground.data import OWN_ANSWERS, TRUE_CLASSES, MultipleValues, Symbol, lisp_list, one, plain_truth, truth
 from cramhy_runtime.ground.equality import eql
 from cramhy_runtime.ground import functions
 from cramhy_runtime.ground.source_places import circumstance, locate
@@ -250,13 +250,11 @@ class ValueFluent(Fluent[T]):
         if self.test is None:
             old = self.stored
             kind = type(new)
-            if old is new and kind not in COLLECTIONS and kind.__name__ != "ndarray":
-                return new
-            if kind not in TRUE_CLASSES:
+            if kind not in TRUE_CLASSES and OWN_ANSWERS.get(kind, True):
                 new = plain_truth(new)
                 kind = type(new)
             if kind is type(old):
-                if old is not new and (old == new if kind is int else eql(old, new)):
+                if (kind not in COLLECTIONS and kind.__name__ != "ndarray") if old is new else old == new if kind is int else eql(old, new):
                     return new
             elif (old is False or new is False) and eql(old, new):  # of two classes only False is nil
                 return new
