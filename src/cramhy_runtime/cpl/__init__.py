@@ -68,6 +68,7 @@ from .forms.python_forms import (
     try_all,
     try_each_in_order,
     try_in_order,
+    wait_for,
     whenever,
     with_scheduling,
     with_task,
@@ -82,7 +83,7 @@ from .current import current_task
 from .tasks.ending import cleanup_time_limit
 from .tasks.tasks import Task, ToplevelTask, evaporate
 from .tree.tree_report import describe_task_tree, task_tree_text
-from .tasks.waiting import sleep, wait_for
+from .tasks.waiting import sleep
 
 __all__ = [
     "Attempt", "attempts", "checkpoint", "cleanup", "cleanup_time_limit", "CommonLispErrorEnvelope", "CompositeFailure", "CREATED",

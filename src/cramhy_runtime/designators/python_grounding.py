@@ -28,6 +28,9 @@ from functools import partial
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, overload
 
 from cramhy_runtime.kernel.images import per_image
+from types import CoroutineType
+
+from cramhy_runtime.ground.unstarted import plain_function, ran
 from cramhy_runtime.ground.data import Keyword, Symbol
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.printing import define_printer, print_unreadable
@@ -72,7 +75,7 @@ class Grounding:
     """A Python function that grounds designators, as an object in its rule."""
 
     def __init__(self, function: Callable[..., Any], what: str):
-        self.function, self.what = function, what
+        self.function, self.what = plain_function(function, f"the {what}", yields=True), what
         self.name: str = getattr(function, "__name__", "function")
 
     @property
@@ -102,6 +105,8 @@ class Grounding:
     def solutions(self, designator: Any) -> Iterator[Any]:
         """Iterate over the solutions of the function for ``designator``, as Lisp data."""
         result = self.called(designator, lambda: self.function(designator))
+        if result.__class__ is CoroutineType:
+            ran(result, f"the {self.what}")
         if result is None:
             return
         if not hasattr(result, "__next__"):

@@ -400,8 +400,47 @@ def all_values(value: Any) -> tuple[Any, ...]:
 
 
 def truth(value: object) -> bool:
-    """Whether ``value`` is true in Lisp: everything but ``nil``, so ``0`` and ``""`` are true; Python's ``False`` is false."""
-    return value is not None and value is not False
+    """Whether ``value`` is true in Lisp: everything but ``nil``, so ``0`` and ``""`` are true; Python's ``False`` is false.
+
+    The truth values and the arrays of other libraries answer for themselves: ``numpy.False_`` is false, and an array of several elements
+    raises numpy's ValueError. All that asks for truth on behalf of plans asks here; hot code looks at `TRUE_CLASSES` first, without a call.
+    """
+    if value is None or value is False:
+        return False
+    cls = value.__class__
+    return cls in TRUE_CLASSES or not _answers_for_itself(cls) or bool(value)
+
+
+def _answers_for_itself(cls: type) -> bool:
+    """Whether objects of ``cls`` are truth values or arrays of a library, as numpy, pandas and torch have them.
+
+    Numbers of such libraries do not: they are true like all numbers.
+    """
+    answer = OWN_ANSWERS.get(cls)
+    if answer is None:
+        answer = hasattr(cls, "__bool__") and (
+            cls.__name__ in ("bool", "bool_", "NAType")  # numpy.bool has another name before numpy 2; pandas.NA refuses to answer
+            or hasattr(cls, "dtype")
+            and hasattr(cls, "shape")
+            and not any(base.__name__ == "generic" for base in cls.__mro__)
+        )
+        if len(OWN_ANSWERS) >= 500:  # classes that nobody else keeps must not stay for ever
+            OWN_ANSWERS.clear()
+        OWN_ANSWERS[cls] = answer
+    return answer
+
+
+def plain_truth(value: Any) -> Any:
+    """``value``, or Python's ``True`` or ``False`` for a truth value of another library. Lisp's own code compares with nothing else.
+
+    An array without dimensions is one if its elements are truth values.
+    """
+    cls = value.__class__
+    if cls in TRUE_CLASSES or value is None or not _answers_for_itself(cls):
+        return value
+    if cls.__name__ in ("bool", "bool_"):
+        return bool(value)
+    return bool(value) if value.shape == () and str(value.dtype).removeprefix("torch.") == "bool" else value
 
 
 def boolean(flag: object) -> bool | None:
@@ -439,6 +478,11 @@ class _Characters(dict):
 
 CHARACTERS: dict[str, Character] = _Characters()
 """All characters that there are, by their one-character strings."""
+
+TRUE_CLASSES = frozenset({bool, int, float, complex, str, bytes, list, tuple, dict, set, Cons, Symbol, Keyword, Character})
+"""Classes whose objects are true in Lisp, whatever they are, but for ``False``. See `truth`."""
+OWN_ANSWERS: dict[type, bool] = {}
+"""What `_answers_for_itself` found out of other classes."""
 
 
 def is_ratio(thing: object) -> bool:

@@ -30,6 +30,7 @@ from cramhy_runtime.cpl.fluents.fluents import Fluent
 from ..designators.classes import Designator
 from ..designators.python_grounding import kind_goals
 from ..designators.python_kinds import Kind
+from cramhy_runtime.ground.unstarted import plain_function
 from cramhy_runtime.ground.condition_types import Condition
 from cramhy_runtime.ground.python_exceptions import from_python
 from cramhy_runtime.ground.data import MultipleValues, Symbol, list_from
@@ -86,6 +87,7 @@ def process_module(*given: Any, matches: Body | None = None, name: Any = None) -
     plain = len(given) == 1 and not isinstance(given[0], type)
 
     def define(body: Callable[[D], T]) -> Module[D, T]:
+        plain_function(body, "a process module")
         module = Module(to_lisp(name) if name is not None else _symbol(body.__name__), body)
         claim(module.symbol, body, "process module")
         with reasoning():

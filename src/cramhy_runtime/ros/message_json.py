@@ -21,7 +21,7 @@ import json
 import math
 import reprlib
 
-from cramhy_runtime.ground.data import DoubleFloat, LispString
+from cramhy_runtime.ground.data import DoubleFloat, LispString, truth
 from cramhy_runtime.ground.numbers import is_real, single
 from cramhy_runtime.utilities.generated_functions import generated_function
 from . import messages
@@ -341,7 +341,7 @@ class _Form(NamedTuple):
 
 
 _FINITE = "if isfinite(value := {0}) else"
-_TRUE = "(value := {0}) is not None and value is not False"
+_TRUE = "(value := {0}) is True or truth(value)"
 _TEXT = "value if (value := {0}).__class__ is str and value.isascii() else string(value)"
 
 _as_data = _Form(
@@ -356,7 +356,14 @@ _as_data = _Form(
     octets="octets({0})",
     floats="floats({0})",
     message=lambda parts: ["return {", *(f"    {name!r}: {value}," for name, value in parts), "}"],
-    scope={"isfinite": math.isfinite, "moment": _write_moment, "octets": _write_bytes, "string": _write_string, "floats": _write_floats},
+    scope={
+        "isfinite": math.isfinite,
+        "truth": truth,
+        "moment": _write_moment,
+        "octets": _write_bytes,
+        "string": _write_string,
+        "floats": _write_floats,
+    },
     encoders={},
 )
 _as_text = _Form(
@@ -452,7 +459,7 @@ def _plain(field, value):
             raise _wrong(field.base, value)
         return value
     if field.base == "bool":
-        return value is not None and value is not False
+        return truth(value)
     if field.base == "string":
         if not (value is None or isinstance(value, (str, LispString))):
             raise _wrong("string", value)

@@ -12,6 +12,7 @@ import struct
 
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
+from cramhy_runtime.ground.data import truth
 from .messages import part_class
 from .wire import NONFINITE, as_float, lisp_float
 
@@ -91,7 +92,7 @@ def _write_one(base: str, value: Any, put: Callable[[bytes], object]) -> None:
 
 def _number(base: str, value: Any) -> Any:
     if base == "bool":
-        return value is not None and value is not False
+        return truth(value)
     if base in ("float32", "float64"):
         return as_float(value) if value in NONFINITE or value.__class__ is not float else value
     if base == "byte":

@@ -12,7 +12,7 @@ import math
 
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import FloatingPointOverflow, SimpleError, TypeError_
-from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, LispString, Symbol
+from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, LispString, Symbol, truth
 from cramhy_runtime.ground.numbers import is_real, single
 from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.packages import intern
@@ -115,7 +115,7 @@ def _integer(bits, signed):
 
 
 def _bool(value):
-    return True if value is not None and value is not False else None
+    return True if truth(value) else None
 
 
 def _string(value):

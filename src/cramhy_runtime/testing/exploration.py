@@ -10,8 +10,10 @@ how to repeat it. Exploring schedules under a seed is the idea of systematic con
 
 from __future__ import annotations
 
+from cramhy_runtime.ground.data import one, truth
+from cramhy_runtime.ground.unstarted import ran
 from .plans import plan_of, with_lisp
-from .runs import TIME_LIMIT, observe
+from .runs import TIME_LIMIT, check_expected, is_expected, names, observe
 from .schedules import Schedule, without_defaults
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar, subscripted
 
@@ -20,7 +22,7 @@ if TYPE_CHECKING:
 
     from cramhy_runtime.kernel.signatures import Backend, BackendName
     from .plans import Plan
-    from .runs import Outcome
+    from .runs import Expected, Outcome
     from .schedules import Decision
 
 T = TypeVar("T", default=Any)
@@ -70,19 +72,24 @@ def explore(
     backend: BackendName | Backend = "auto",
     replay: Sequence[int] | None = None,
     time_limit: float | None = TIME_LIMIT,
+    expect: Expected = None,
 ) -> Exploration[T]:
     """Run ``plan`` under many schedules and check that the result does not depend on the order of tasks. Returns an `Exploration`.
 
     schedules: the number of runs, each in a fresh kernel. The first is first come, first served; the others use the seeds 1, 2, ...
-    check: without it all runs must end alike (`Outcome.same`). ``check(value)`` gets the plan's first value; if the value is wrong, it
-    raises an AssertionError or returns false (a Python function may return None for right). An error that leaves the plan counts as wrong.
-    A check with the attribute ``of_outcome = True`` gets the `Outcome` instead. backend: as for `kernel.start`. replay: a schedule, to
+    check: without it all runs must end alike (`Outcome.same`), and well. ``check(value)`` gets the plan's first value; if the value is
+    wrong, it raises an AssertionError or returns what Python or numpy takes for false. A function that only asserts may return None; that
+    of a lambda is a no. An error that leaves the plan counts as wrong. A check with the attribute ``of_outcome = True`` gets the `Outcome`
+    instead. expect: the class of the error with which the plan has to end each time, or a tuple of classes; without it such an error
+    is raised.
+    backend: as for `kernel.start`. replay: a schedule, to
     run only that one. time_limit: seconds of virtual time for each run. Raises `DependsOnLuck`, and ValueError if ``replay`` does not fit.
     """
     function = plan_of(plan)
     if isinstance(check, str):
         check = _lisp_check(check)
-    explorer = _Explorer(function, check, backend, time_limit)
+    check_expected(expect)
+    explorer = _Explorer(function, check, backend, time_limit, expect)
     if replay is not None:
         outcome, schedule = explorer.run(replay)
         if schedule.misfit is not None:
@@ -106,8 +113,7 @@ def _lisp_check(text: str) -> Callable[[object], bool]:
     predicate = with_lisp(lambda: plan_of(text)())
 
     def check(value):
-        result = predicate(value)
-        return result is not None and result is not False
+        return truth(one(predicate(value)))
 
     return check
 
@@ -116,9 +122,14 @@ class _Explorer(Generic[T]):
     """The runs of one exploration."""
 
     def __init__(
-        self, function: Callable[[], T], check: Callable[[Any], object] | None, backend: BackendName | Backend, time_limit: float | None
+        self,
+        function: Callable[[], T],
+        check: Callable[[Any], object] | None,
+        backend: BackendName | Backend,
+        time_limit: float | None,
+        expect: Expected,
     ):
-        self.function, self.check, self.backend, self.time_limit = function, check, backend, time_limit
+        self.function, self.check, self.backend, self.time_limit, self.expect = function, check, backend, time_limit, expect
         self.expected: Outcome[T] | None = None
         self.runs = 0
 
@@ -134,14 +145,22 @@ class _Explorer(Generic[T]):
     def wrong(self, outcome: Outcome[T]) -> str | None:
         """A text that says what is wrong with ``outcome``, or ``None``."""
         if self.check is None:
-            return None if outcome.same(self.expected) else "the result is another one"
+            return self._unexpected(outcome) if outcome.same(self.expected) else "the result is another one"
         if getattr(self.check, "of_outcome", False):
             return self._checked(outcome)
         return self._checked(outcome.value) if outcome.error is None else f"it ended with {outcome}"
 
+    def _unexpected(self, outcome: Outcome[T]) -> None:
+        """Raise the error of a plan that fails whoever goes first, unless that is expected; or tell that it does not come."""
+        if outcome.error is not None and not is_expected(outcome.error, self.expect):
+            raise outcome.error
+        if outcome.error is None and self.expect is not None:
+            raise AssertionError(f"The plan was to end with {names(self.expect)}, but it ended well, with {outcome}.")
+
     def _checked(self, value: object) -> str | None:
         try:
-            return "the check says no" if self.check(value) is False else None
+            answer = ran(self.check(value), "a check")
+            return None if answer or answer is None and getattr(self.check, "__name__", "") != "<lambda>" else "the check says no"
         except AssertionError as problem:
             return f"the check says: {problem or 'no'}"
 

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from .plans import Plan
     from .traces import Trace
 
+    Expected = type[BaseException] | tuple[type[BaseException], ...] | None
+
 T = TypeVar("T", default=Any)
 TIME_LIMIT = 3600.0  # s of virtual time after which a plan has lost its end
 
@@ -139,19 +141,47 @@ def run(
     schedule: Sequence[int] | Schedule | None = None,
     faults: Sequence[Fault] = (),
     time_limit: float | None = TIME_LIMIT,
+    expect: Expected = None,
 ) -> Outcome[T]:
-    """Run ``plan`` once in a fresh kernel and return its `Outcome`. An error of the plan is not raised, but is in the outcome.
+    """Run ``plan`` once in a fresh kernel and return its `Outcome`. An error of the plan is raised.
 
-    The arguments are those of `virtual_time`. A fault that did not happen is an AssertionError, since such a test would test
-    nothing. Leftovers (see `assert_nothing_left`) are an AssertionError, too.
+    expect: the class of the error with which the plan has to end, or a tuple of classes. Then that error is in the outcome, and a plan
+    that ends well is an AssertionError. The other arguments are those of `virtual_time`. A fault that did not happen is an
+    AssertionError, since such a test would test nothing. Leftovers (see `assert_nothing_left`) are an AssertionError, too.
     """
+    check_expected(expect)
     outcome = observe(plan_of(plan), backend, seed, schedule=schedule, faults=faults, time_limit=time_limit)
     missed = [fault for fault in faults if fault.happened is None]
     if missed:
         points = "\n".join(f"  {point}" for point in outcome.points) or "  (none)"
         raise AssertionError(f"Did not happen: {'; '.join(map(str, missed))}. The park points of the run:\n{points}")
     complain(outcome.left)
+    if outcome.error is not None and not is_expected(outcome.error, expect):
+        raise outcome.error
+    if outcome.error is None and expect is not None:
+        raise AssertionError(f"The plan was to end with {names(expect)}, but it ended well, with {outcome}.")
     return outcome
+
+
+def check_expected(expect: object) -> None:
+    """Raise TypeError unless ``expect`` is ``None``, a class of exceptions, or a tuple of such classes."""
+    classes = expect if isinstance(expect, tuple) else (expect,)
+    if expect is not None and not (classes and all(isinstance(each, type) and issubclass(each, BaseException) for each in classes)):
+        raise TypeError(
+            f"expect= takes a class of exceptions, or a tuple of classes, as in expect=cpl.PlanFailure; it was given {expect!r}."
+        )
+
+
+def is_expected(problem: BaseException, expect: Expected) -> bool:
+    """Whether an error that left a plan is one of ``expect``, itself or in the envelope that CRAM puts around errors of Lisp."""
+    if expect is None:
+        return False
+    return isinstance(problem, expect) or isinstance(problem, CommonLispErrorEnvelope) and isinstance(opened(problem), expect)
+
+
+def names(expect: Expected) -> str:
+    """The names of the expected classes, for a sentence."""
+    return " or ".join(each.__name__ for each in (expect if isinstance(expect, tuple) else (expect,)) if each is not None)
 
 
 def observe(function: Callable[[], T], *arguments: Any, **options: Any) -> Outcome[T]:

@@ -127,6 +127,16 @@ def opened(condition: BaseException) -> BaseException:
     return problem
 
 
+MISTAKES = (AssertionError, NameError, SyntaxError, MemoryError)
+"""Exceptions of Python that say that the program is wrong, or cannot go on. No other attempt makes up for them."""
+
+
+def is_mistake(failure: BaseException) -> bool:
+    """Whether ``failure``, the end of a branch, is one of `MISTAKES`. Forms that try several ways pass it on at once."""
+    error = failure.error if isinstance(failure, CommonLispErrorEnvelope) else failure
+    return isinstance(error, MISTAKES) or isinstance(error.__cause__, MISTAKES)
+
+
 def python_exception(condition: BaseException) -> BaseException:
     """The exception that Python code sees for ``condition``: the error in an envelope, or the exception that Python itself raised."""
     error = opened(condition)

@@ -27,7 +27,7 @@ from cramhy_runtime.kernel.tasks import shield
 from cramhy_runtime.ground.condition_types import Condition
 from cramhy_runtime.ground.python_exceptions import from_python
 from cramhy_runtime.ground.conditions import SimpleTypeError, error, program_error
-from cramhy_runtime.ground.data import MultipleValues, Symbol, lisp_list, one, truth
+from cramhy_runtime.ground.data import OWN_ANSWERS, TRUE_CLASSES, MultipleValues, Symbol, lisp_list, one, plain_truth, truth
 from cramhy_runtime.ground.equality import eql
 from cramhy_runtime.ground import functions
 from cramhy_runtime.ground.source_places import circumstance, locate
@@ -120,7 +120,7 @@ class Fluent(Notation[T_co]):
 
     def _notify(self, value: Any) -> None:
         if not self.nets and not self.callbacks:  # as a rule only tasks wait
-            if value is not None and value is not False:
+            if value is not None and value is not False and (value.__class__ in TRUE_CLASSES or truth(value)):
                 for task in self.waiters:
                     task.kernel.unpark(task)
         elif self.callbacks or self.sheltered:
@@ -215,6 +215,10 @@ def _shown(fluent):
     return f"the fluent {princ_to_string(fluent.name)}"
 
 
+COLLECTIONS = frozenset({list, dict, set, bytearray})
+"""Collections of Python that change in place, beside the arrays of numpy."""
+
+
 class ValueFluent(Fluent[T]):
     """A fluent that stores a value. Assign with `set` or ``fluent.value = x``."""
 
@@ -222,7 +226,7 @@ class ValueFluent(Fluent[T]):
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::VALUE-FLUENT"
 
     def __init__(self, name: Name | None = None, value: T = None, test: Same[T] | Symbol | None = None):  # type: ignore[assignment]
-        self.stored = value
+        self.stored = plain_truth(value)
         self.test = None if test is None else function_of(test)
         super().__init__(name)
 
@@ -235,22 +239,26 @@ class ValueFluent(Fluent[T]):
         """Store ``new`` without a pulse, unless the test says that nothing changed. Returns whether it was stored."""
         if truth(eql(self.stored, new)) if self.test is None else self._same(new):
             return False
-        self.stored = new
+        self.stored = plain_truth(new)
         return True
 
     def set(self, new: T) -> T:
-        """Store ``new`` and pulse, unless the test says that nothing changed. Returns ``new``."""
+        """Store ``new`` and pulse, unless the test says that nothing changed. Returns ``new``.
+
+        A collection of Python that is stored once more pulses: it may have changed in place.
+        """
         if self.test is None:
             old = self.stored
-            if old is new:
-                return new
             kind = type(new)
+            if kind not in TRUE_CLASSES and OWN_ANSWERS.get(kind, True):
+                new = plain_truth(new)
+                kind = type(new)
             if kind is type(old):
-                if old == new if kind is int else eql(old, new):
+                if (kind not in COLLECTIONS and kind.__name__ != "ndarray") if old is new else old == new if kind is int else eql(old, new):
                     return new
             elif (old is False or new is False) and eql(old, new):  # of two classes only False is nil
                 return new
-        elif self._same(new):
+        elif self._same(new := plain_truth(new)):
             return new
         self.stored = new
         self.pulses += 1
@@ -327,6 +335,8 @@ def peek_value(fluent: Any) -> Any:
 def set_value(new, fluent):
     """``(setf (value fluent) new)``: assign ``new`` to a value fluent. Returns ``new``. For other fluents there is no such method."""
     if isinstance(fluent, ValueFluent):
+        if new.__class__ is list and fluent.stored is new and fluent.test is None:
+            return new  # a vector of Lisp, which is EQL to itself
         return fluent.set(new)
     return no_applicable_method("(COMMON-LISP:SETF CRAM-LANGUAGE-IMPLEMENTATION:VALUE)", 1, new, fluent)
 

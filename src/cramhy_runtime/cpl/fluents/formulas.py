@@ -15,7 +15,7 @@ and all nets of this shape share its code (``utilities/generated_functions.py``)
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import MultipleValues, one
+from cramhy_runtime.ground.data import TRUE_CLASSES, one, plain_truth, truth
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.utilities.generated_functions import generated_function
 from .fluents import Fluent
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     Formula = Callable[[], Any]
 
 FLUENT, NUMBER, OTHER = "fno"
+TRUE = "{0} is not None and {0} is not False and ({0}.__class__ in TRUE_CLASSES or truth({0}))"
+"""The question `truth` in place, for a variable."""
 NUMBERS = (int, float)
 """The kinds whose arithmetic and order are Python's, also between one and the other."""
 MOST = 1000  # makers that are kept; a program needs a few dozen
@@ -50,7 +52,11 @@ def of_users_call(function: Callable[..., Any], arguments: Sequence[Any]) -> For
 
 
 def _users_call(_: str, values: list[str], kinds: str) -> list[str]:
-    return [f"result = function({', '.join(values)})", "return one(result) if type(result) is MultipleValues else result"]
+    return [
+        f"result = function({', '.join(values)})",
+        "if result.__class__ in TRUE_CLASSES: return result",
+        "return plain_truth(one(result))",
+    ]
 
 
 def of_numbers(symbol: str, function: Callable[..., Any], arguments: Sequence[Any]) -> Formula:
@@ -74,7 +80,10 @@ def of_python(symbol: str, arguments: Sequence[Any]) -> Formula:
 
 
 def _python(symbol: str, values: list[str], kinds: str) -> list[str]:
-    return [f"return {f' {symbol} '.join(values)}"]
+    operation = f" {symbol} ".join(values)
+    if symbol in "+-*/":
+        return [f"return {operation}"]
+    return [f"result = {operation}", "return result if result.__class__ is bool else plain_truth(result)"]
 
 
 def of_not(argument: Fluent[object]) -> Formula:
@@ -83,7 +92,7 @@ def of_not(argument: Fluent[object]) -> Formula:
 
 
 def _not(_: str, values: list[str], kinds: str) -> list[str]:
-    return [f"value = {values[0]}", "return True if value is None or value is False else None"]
+    return [f"value = {values[0]}", f"return None if {TRUE.format('value')} else True"]
 
 
 def of_and(arguments: Sequence[Any]) -> Formula:
@@ -92,7 +101,7 @@ def of_and(arguments: Sequence[Any]) -> Formula:
 
 
 def _and(_: str, values: list[str], kinds: str) -> list[str]:
-    each = [[f"result = {value}", "if result is None or result is False:", "    return None"] for value in values]
+    each = [[f"result = {value}", f"if not ({TRUE.format('result')}):", "    return None"] for value in values]
     return ["result = True", *(line for lines in each for line in lines), "return result"]
 
 
@@ -102,7 +111,7 @@ def of_or(arguments: Sequence[Any]) -> Formula:
 
 
 def _or(_: str, values: list[str], kinds: str) -> list[str]:
-    each = [[f"result = {value}", "if result is not None and result is not False:", "    return result"] for value in values]
+    each = [[f"result = {value}", f"if {TRUE.format('result')}:", "    return result"] for value in values]
     return [*(line for lines in each for line in lines), "return None"]
 
 
@@ -125,7 +134,7 @@ def _formula(
                 "formula_of",
                 ["function", *names],
                 ["def formula():", *("    " + line for line in lines(symbol, values, kinds)), "return formula"],
-                {"one": one, "MultipleValues": MultipleValues},
+                {"one": one, "TRUE_CLASSES": TRUE_CLASSES, "truth": truth, "plain_truth": plain_truth},
             )
         _by_classes[lines, symbol, *map(type, arguments)] = maker
     return maker(function, *arguments)

@@ -21,9 +21,10 @@ from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import Cons, list_from, one, truth
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.functions import function_of
+from cramhy_runtime.ground.python_exceptions import from_python
 from ..tree import finished_plans
 from ..tasks.branches import branch_tasks, run, run_forms, run_one
-from ..failures.failure_types import CompositeFailure, opened
+from ..failures.failure_types import CompositeFailure, envelope, is_mistake, opened
 from ..failures.handling import Attempt, composite_failure, observed
 from ..hooks import (
     on_finishing_named_top_level,
@@ -169,8 +170,8 @@ def any_dead(branches: Branches) -> object:
 
 
 def any_done_or_all_dead(branches: Branches) -> object:
-    """``try-all`` is decided."""
-    return branches.done or not branches.living
+    """``try-all`` is decided: by a success, by a mistake in the program, or since nobody is left."""
+    return branches.done or branches.mistake is not None or not branches.living
 
 
 # ---------------------------------------------------------------------------------------------------------- and what comes of it
@@ -194,6 +195,8 @@ def winner(branches: Branches) -> tuple[Any, Any]:
 
 def first_success(branches: Branches) -> tuple[Any, Any]:
     """The values and the failure of ``try-all``."""
+    if branches.mistake is not None:
+        return None, branches.mistake
     for task in branches.tasks:
         if task.status in DONE:
             return task.result, None
@@ -264,7 +267,12 @@ def try_each_in_order(elements: Cons | None, body: Callable[[Any], T]) -> T:
 def _try(thunks):
     failures, attempt = [], Attempt()
     for thunk in thunks:
-        values, failure = attempt.run(thunk)
+        try:
+            values, failure = attempt.run(thunk)
+        except Exception as problem:  # of Python: in a task of its own, as TRY-ALL's, it would be a failure, too
+            if isinstance(problem, types.Condition) or is_mistake(problem) or attempt.task.cancelled_delivered:
+                raise
+            values, failure = None, envelope(from_python(problem))
         if failure is None:
             return values
         if active_tags:

@@ -17,7 +17,7 @@ from cramhy_runtime import kernel
 
 from cramhy_runtime.ground.condition_types import Condition
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, list_from
+from cramhy_runtime.ground.data import TRUE_CLASSES, Cons, list_from, truth
 from ..failures import handling as failures
 from . import operators, policies
 from ..tasks import suspension, waiting
@@ -140,6 +140,48 @@ def join_task(task: AbstractTask[T]) -> T:
 
 
 @overload
+def wait_for(fluent: Fluent[T | None], *, timeout: None = None) -> T: ...
+@overload
+def wait_for(fluent: Fluent[T | None], *, timeout: float | None) -> T | None: ...
+def wait_for(fluent: Any, *, timeout: float | None = None) -> Any:
+    """Wait until the value of ``fluent`` is true and return it. After ``timeout`` seconds of the kernel's clock return ``None``.
+
+    A timeout of 0 only tests. All that is not a fluent is a TypeError: in Lisp an object is its own value, and such a wait is over at
+    once. True is each value but ``None`` and ``False``; numpy's truth values count as Python's. Source: cpl.md 2.10.
+    """
+    if not isinstance(fluent, Fluent):
+        _refuse(fluent, "wait_for")
+    if waiting.user_wait.value is None:
+        value = fluent.read()
+        if value is not None and value is not False and (value.__class__ in TRUE_CLASSES or truth(value)):
+            return value
+        return waiting.wait(fluent, timeout)
+    return waiting.wait_for(fluent, timeout=timeout)
+
+
+def _refuse(thing: object, form: str) -> NoReturn:
+    """Tell why ``thing``, which is not a fluent, was given to ``form``, as far as one can guess."""
+    if isinstance(thing, bool):
+        advice = (
+            f"A comparison of a fluent's value gives {thing} once, and so do `f == x` and `f != x`, which ask whether two fluents are the "
+            f"same one. Write cpl.{form}(f < x), cpl.{form}(cpl.fl_eql(f, x)) or cpl.{form}(~cpl.fl_eql(f, x)) with the fluent f itself."
+        )
+    elif callable(thing):
+        advice = (
+            "Nobody would tell the plan when to call a function again. Keep what it looks at in a fluent, "
+            f"f = cpl.make_fluent(value=...), and write cpl.{form}(cpl.fl_funcall(function, f)) or cpl.{form}(f < 1)."
+        )
+    else:
+        advice = f"Write cpl.{form}(f) with a fluent f, not with f.value, and cpl.make_fluent(value=...) to make one."
+    raise TypeError(f"cpl.{form} takes a fluent, but was given {_short(thing)}, which never changes. {advice}")
+
+
+def _short(thing: object) -> str:
+    text = repr(thing)
+    return f"{text if len(text) <= 60 else text[:57] + '...'} (of the type {type(thing).__name__})"
+
+
+@overload
 def fail(failure: Condition, /) -> NoReturn: ...
 @overload
 def fail(kind: type[Condition], /, **slots: object) -> NoReturn: ...
@@ -178,12 +220,14 @@ def whenever(fluent: Fluent[object], body: Thunk[object] | None = None) -> Itera
 
     With ``body``, a function of no arguments, `whenever` calls it each time, and never returns.
     """
+    if not isinstance(fluent, Fluent):
+        _refuse(fluent, "whenever")
     return _values(fluent) if body is None else waiting.whenever(fluent, body)
 
 
 def _values(fluent: Fluent[object]) -> Iterator[Any]:
     while True:
-        yield waiting.wait_for(fluent)
+        yield wait_for(fluent)
         kernel.checkpoint()
 
 

@@ -18,7 +18,7 @@ from cramhy_runtime import kernel
 
 from cramhy_runtime.ground import condition_types as types
 from cramhy_runtime.ground.conditions import SimpleWarning, error, warn
-from ..failures.failure_types import PlanFailure, opened
+from ..failures.failure_types import PlanFailure, is_mistake, opened
 from ..failures.handling import signal_failure
 from ..current import inside_plan
 from .ending import end_tasks
@@ -37,15 +37,19 @@ if TYPE_CHECKING:
 
 
 class Branches:
-    """A set of tasks started together. ``living``, ``failed`` and ``done`` are numbers of tasks."""
+    """A set of tasks started together. ``living``, ``failed`` and ``done`` are numbers of tasks.
 
-    __slots__ = ("form", "tasks", "living", "failed", "done", "waiter", "ready")
+    ``mistake`` is the first failure that says that the program is wrong (`is_mistake`), if there was one.
+    """
+
+    __slots__ = ("form", "tasks", "living", "failed", "done", "mistake", "waiter", "ready")
 
     def __init__(self, form: str, tasks: list[Task[object]]):
         self.form = form
         self.tasks = tasks
         self.living = len(tasks)
         self.failed = self.done = 0
+        self.mistake: Any = None
         self.waiter: kernel.Task[object] | None = None
         self.ready: Ready | None = None
         try:
@@ -68,6 +72,8 @@ class Branches:
         self.living -= 1
         if task.status is FAILED:
             self.failed += 1
+            if self.mistake is None and is_mistake(task.result):
+                self.mistake = task.result
         else:
             self.done += 1
         if self.waiter is not None and self.ready(self):

@@ -8,7 +8,7 @@ pulses, and can be evaporated and suspended like the untimed one.
 
 from __future__ import annotations
 
-from math import inf
+from math import inf, isnan
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar, overload
 
 from cramhy_runtime import kernel
@@ -16,7 +16,7 @@ from cramhy_runtime.kernel.active import ACTIVE
 from cramhy_runtime.kernel.budget import budget
 
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import is_ratio, truth
+from cramhy_runtime.ground.data import TRUE_CLASSES, truth
 from cramhy_runtime.ground.packages import keyword
 from cramhy_runtime.kernel.images import Cell
 
@@ -52,9 +52,9 @@ def wait_for(fluent: Any, *, timeout: float | None = None, **ignored: Any) -> An
         return generic(fluent) if timeout is None else generic(fluent, TIMEOUT, timeout)
     if isinstance(fluent, Fluent):
         value = fluent.read()
-        if value is not None and value is not False:
+        if value is not None and value is not False and (value.__class__ in TRUE_CLASSES or truth(value)):
             return value
-        return _wait(fluent, timeout)
+        return wait(fluent, timeout)
     return plain_wait_for(fluent)
 
 
@@ -63,10 +63,11 @@ def plain_wait_for(fluent, *, timeout=None, **ignored):
     if not isinstance(fluent, Fluent):
         return fluent if truth(fluent) else error("wait-for called with nil argument.")
     value = fluent.read()
-    return value if truth(value) else _wait(fluent, timeout)
+    return value if truth(value) else wait(fluent, timeout)
 
 
-def _wait(fluent: Fluent[object], timeout: float | None) -> Any:
+def wait(fluent: Fluent[object], timeout: float | None) -> Any:
+    """Park until the value of ``fluent``, which was not true just now, is true; return it, or nil after ``timeout`` seconds."""
     until = None if timeout is None else kernel.now() + in_seconds(timeout)
     if until is not None and timeout <= 0:
         return None
@@ -84,7 +85,7 @@ def _wait(fluent: Fluent[object], timeout: float | None) -> Any:
         while True:
             in_time = me.kernel.park(why, until)
             value = fluent.read()
-            if value is not None and value is not False:
+            if value is not None and value is not False and (value.__class__ in TRUE_CLASSES or truth(value)):
                 return value
             if not in_time and until is not None and kernel.now() >= until:
                 return None
@@ -94,13 +95,18 @@ def _wait(fluent: Fluent[object], timeout: float | None) -> Any:
 
 
 def in_seconds(time: Any) -> float:
-    """``time``, a Lisp real, as seconds of the kernel's clock. Other objects are a type error."""
-    if isinstance(time, bool) or not (isinstance(time, (int, float)) or is_ratio(time)):
+    """``time``, a real number of Lisp, Python or numpy, as seconds of the kernel's clock. Other objects, and NaN, are a type error."""
+    if isinstance(time, (bool, str)) or not (isinstance(time, (int, float)) or hasattr(time, "__float__")):
         return type_error(time, "REAL")
     try:
-        return float(time)
+        seconds = float(time)
     except OverflowError:
         return inf if time > 0 else -inf
+    except (TypeError, ValueError):  # an array of several, say
+        return type_error(time, "REAL")
+    if isnan(seconds):
+        return type_error(time, "REAL", "\n(NaN is not a number: a wait of so many seconds would never end, or end at once.)")
+    return seconds
 
 
 def whenever(fluent: Fluent[object], body: Callable[[], object]) -> NoReturn:
@@ -111,8 +117,8 @@ def whenever(fluent: Fluent[object], body: Callable[[], object]) -> NoReturn:
     while True:
         if user_wait.value is None and isinstance(fluent, Fluent):  # as `wait_for` does
             value = fluent.read()
-            if value is None or value is False:
-                _wait(fluent, None)
+            if not truth(value):
+                wait(fluent, None)
         else:
             wait_for(fluent)
         body()

@@ -24,6 +24,7 @@ from __future__ import annotations
 
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar, overload, subscripted
 
+from cramhy_runtime.ground.unstarted import plain_function, ran
 from cramhy_runtime.ground.data import Cons, Symbol, list_from
 from ..builtins import native_predicates as natives
 from .terms import P, Name, claim, python_arguments, show, to_lisp, what_nil_means
@@ -165,7 +166,7 @@ class Predicate(Name, Generic[F]):
     def holds(self, m: Machine, *terms: object) -> bool:
         """The test for the engine, for a `test`."""
         inputs, _ = self.split(m, terms)
-        return bool(self.called(m, terms, lambda: bool(self.function(*inputs))))
+        return bool(self.called(m, terms, lambda: bool(ran(self.function(*inputs), "a @test"))))
 
 
 _END = object()
@@ -215,6 +216,7 @@ def _define(function: F, kind: str, name: Any) -> Predicate[F]:
     own = getattr(function, "__name__", "")
     if name is None and not own.isidentifier():
         raise TypeError(f"@{kind} needs a name for {function!r}: write {kind}(name=P.a_name)(...).")
+    plain_function(function, f"a @{kind}", yields=kind == "predicate")
     symbol = to_lisp(name) if name is not None else getattr(P, own).symbol
     if symbol.package is not None and symbol.package.built_in:
         raise TypeError(f"{show(symbol)} is a name of cramhy's package {symbol.package.name}. Choose another one: {kind}(name=P.a_name).")

@@ -11,6 +11,7 @@ from collections import deque
 
 from ... import kernel
 from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.unstarted import plain_function
 from cramhy_runtime.ground.condition_types import Condition, Error, SimpleError, SimpleTypeError, shown
 from cramhy_runtime.ground.data import LispString, Symbol
 from cramhy_runtime.ground.functions import function_named
@@ -259,6 +260,7 @@ def register_service_fn(service_name: Text, function: Handler | Symbol, service_
         function = function_named(function)
     if not callable(function):
         return conditions.type_error(function, "FUNCTION", "\nwhen binding FUNCTION")
+    plain_function(function, f"what answers the service {name}")
     here.add_service(LispService(here, name, kind, function))
     event_loop(here)
     return 1

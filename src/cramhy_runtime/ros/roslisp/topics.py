@@ -11,6 +11,7 @@ from collections import deque
 
 from ... import kernel
 from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.unstarted import plain_function
 from cramhy_runtime.ground.condition_types import Condition, Error, SimpleTypeError, formatted, shown
 from cramhy_runtime.ground.data import NO_VALUES, LispString, Symbol
 from cramhy_runtime.ground.printing import format_to_string
@@ -255,6 +256,7 @@ def subscribe(
     here = node.require_node()
     if not callable(callback) or isinstance(callback, Symbol):
         return conditions.type_error(callback, "FUNCTION", "\nwhen binding ROSLISP::CALLBACK")
+    plain_function(callback, f"the callback for {topic}")
     cls = _type_or_warning(topic, topic_type)
     if cls is None:
         return None

@@ -18,7 +18,7 @@ from cramhy_runtime import kernel
 
 from cramhy_runtime.ground.hash_tables import HashTable, make_hash_table, set_gethash
 from cramhy_runtime.ground.conditions import Condition, error, signal_exception, type_error
-from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, Cons, Keyword, Symbol, list_from
+from cramhy_runtime.ground.data import TRUE_CLASSES, WRITABLE_STRINGS, Character, Cons, Keyword, Symbol, list_from, plain_truth
 from cramhy_runtime.ground.data import values as as_values
 from cramhy_runtime.ground.packages import is_symbol, sym, symbol_name
 from cramhy_runtime.ground import python_names
@@ -69,12 +69,13 @@ def split(arguments):
 
 
 def guarded(function, *arguments, **keywords):
-    """Call ``function``, an exception of which is signalled as a condition."""
+    """Call ``function``, an exception of which is signalled as a condition. Truth values of numpy and its like come back as Lisp's."""
     if watch.function is not None:
         named = function in (_find, importlib.import_module)
         watch.function(arguments[0] if named else getattr(function, "__qualname__", "an object"))
     try:
-        return function(*arguments, **keywords)
+        result = function(*arguments, **keywords)
+        return result if result.__class__ in TRUE_CLASSES else plain_truth(result)
     except (Condition, kernel.KernelError):
         raise
     except Exception as problem:
