@@ -178,7 +178,7 @@ def test_a_malformed_message_costs_its_sender_only(exercise, monkeypatch):
     good = ['{"kind":"stage","doing":"do","what":"x"}', '{"kind":"done"}']
     everything = [[line, '{"kind":"done"}'] for line in BROKEN for _ in one.checks] + [good] * len(one.checks)
     source = FromLines(everything)
-    monkeypatch.setattr(grader, "_nursery", lambda slot, exercise: source)
+    monkeypatch.setattr(grader, "_fork_server", lambda slot, exercise: source)
     reports = grader._all([(one, {one.submission[0]: "()"})] * (len(BROKEN) + 1))
     for report in reports[:-1]:
         assert report.points == 0 and "The program sends reports of its own, or destroys those of its run: " in report.text()

@@ -38,15 +38,20 @@ def test_a_text_may_name_its_package():
     assert find_package_or_error("TESTING-USER")
 
 
-def test_an_error_is_an_outcome_and_is_raised_when_the_value_is_asked_for():
-    outcome = testing.run('(top-level (par (sleep 1) (fail "no ~a" \'way)))')
+def test_an_error_is_raised():
+    with pytest.raises(cpl.PlanFailure, match="no WAY"):
+        testing.run('(top-level (par (sleep 1) (fail "no ~a" \'way)))')
+
+
+def test_an_expected_error_is_an_outcome_and_is_raised_when_the_value_is_asked_for():
+    outcome = testing.run('(top-level (par (sleep 1) (fail "no ~a" \'way)))', expect=cpl.PlanFailure)
     assert str(outcome) == "SimplePlanFailure: no WAY" and outcome.stack
     with pytest.raises(cpl.PlanFailure):
         outcome.value
 
 
 def test_a_composite_failure_is_described_with_its_parts():
-    outcome = testing.run('(top-level (try-all (fail "one") (fail "two")))')
+    outcome = testing.run('(top-level (try-all (fail "one") (fail "two")))', expect=cpl.CompositeFailure)
     assert str(outcome) == describe(outcome.error) == "CompositeFailure of [SimplePlanFailure: two; SimplePlanFailure: one]"
 
 
@@ -68,7 +73,7 @@ def test_virtual_time_is_a_block_with_a_clock(backend):
 
 
 def test_a_plan_without_an_end_reaches_the_time_limit():
-    assert str(testing.run("(top-level (loop (sleep 1)))", time_limit=10)).startswith("TimeLimit")
+    assert str(testing.run("(top-level (loop (sleep 1)))", time_limit=10, expect=kernel.TimeLimit)).startswith("TimeLimit")
 
 
 def test_the_same_seed_is_the_same_run_and_that_of_the_command_line():
@@ -114,3 +119,48 @@ def test_assert_nothing_left_names_a_task_that_lives(backend):
         task.cancel()
         task.join()
         testing.assert_nothing_left(clock)
+
+
+class Stuck(cpl.PlanFailure):
+    """The door does not open."""
+
+
+def _stuck():
+    raise Stuck("the door")
+
+
+def _wrong():
+    assert 2 == 3, "two is not three"
+
+
+@pytest.mark.parametrize("plan, error", [(_stuck, Stuck), (_wrong, AssertionError), (lambda: missing, NameError)], ids=str)  # noqa: F821
+@pytest.mark.parametrize("run", [testing.run, testing.explore, lambda plan: testing.explore(plan, 3, lambda value: True)])
+def test_a_failing_plan_does_not_pass(run, plan, error):
+    with pytest.raises((error, testing.DependsOnLuck)):
+        run(plan)
+
+
+def test_what_is_expected_must_come():
+    assert isinstance(testing.run(_stuck, expect=(OSError, Stuck)).error, Stuck)
+    assert testing.explore(_stuck, 3, expect=cpl.PlanFailure).runs == 3
+    with pytest.raises(AssertionError, match="The plan was to end with Stuck, but it ended well, with 5."):
+        testing.run(lambda: 5, expect=Stuck)
+    with pytest.raises(AssertionError, match="two is not three"):
+        testing.run(_wrong, expect=Stuck)
+    with pytest.raises(TypeError, match="expect= takes a class of exceptions, or a tuple of classes, as in expect=cpl.PlanFailure"):
+        testing.run(_stuck, expect="Stuck")
+
+
+@pytest.mark.parametrize("no", [0, "", [], (), {}, False, 0.0], ids=repr)
+def test_a_check_goes_by_the_truth_of_python(no):
+    with pytest.raises(testing.DependsOnLuck, match="the check says no"):
+        testing.explore(lambda: "value", 2, check=lambda value: no)
+
+
+def test_a_check_that_only_asserts_may_return_nothing_but_a_lambda_may_not():
+    def check(value):
+        assert value == "value"
+
+    assert testing.explore(lambda: "value", 2, check=check).runs == 2
+    with pytest.raises(testing.DependsOnLuck, match="the check says no"):
+        testing.explore(lambda: "value", 2, check={}.get)

@@ -30,7 +30,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, over
 from cramhy_runtime.kernel.images import per_image
 from types import CoroutineType
 
-from cramhy_runtime.ground.unstarted import plain_function, ran
+from cramhy_runtime.kernel.unstarted import plain_function, ran
 from cramhy_runtime.ground.data import Keyword, Symbol
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.printing import define_printer, print_unreadable

@@ -16,6 +16,7 @@ import sys
 from cramhy_runtime.kernel.active import checkpoint
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, overload
 
+from .slot_classes import SlotClasses, effective_functions
 from .ports import PORTS
 
 if TYPE_CHECKING:
@@ -49,61 +50,6 @@ STRETCH = range(256)
 
 LONG = 20_000
 """A list of more elements is made in parts, with a checkpoint before each."""
-
-
-class Classes(set):
-    """A set of classes. ``last``: the one that came last, with which compiled code compares first, as that is quicker."""
-
-    __slots__ = ("last",)
-
-    def replace(self, classes):
-        """Have ``classes``, in this order, for elements."""
-        self.clear()
-        self.update(classes)
-        self.last = classes[-1] if classes else None
-
-
-class SlotClasses(dict):
-    """For the function of a symbol: attribute → the set of the classes from whose objects compiled code may take the slot itself.
-
-    They are the classes of whose objects the function reads, or writes, just that attribute. A set is made when compiled code asks for
-    it, as ``symbol.reads.of_speed``. `Symbol.function_changed` keeps the sets right, and so do generic functions.
-    """
-
-    __slots__ = ("symbol", "cell")
-
-    def __init__(self, symbol, cell):
-        self.symbol, self.cell = symbol, cell
-
-    def __getattr__(self, name):
-        if not name.startswith("of_"):
-            raise AttributeError(name)
-        return self[name.removeprefix("of_")]
-
-    def __missing__(self, attribute):
-        self[attribute] = Classes()
-        self.refresh()
-        return self[attribute]
-
-    def refresh(self):
-        """Find out anew what the function does."""
-        accesses = _accesses(getattr(self.symbol, self.cell))
-        for attribute, classes in self.items():
-            classes.replace([cls for cls, other in accesses if other == attribute])
-
-
-def _effective_functions(function, count):
-    """What a call of ``function`` with ``count`` arguments calls, by the class of the first, as far as that is known and decides."""
-    return dict(function.cache) if getattr(function, "by_first_of", None) == count else {}
-
-
-def _accesses(function):
-    """The pairs (class, attribute) for which ``function`` just reads or writes that attribute of an object of that class."""
-    known = getattr(function, "__dict__", None)
-    if known and "slot_of" in known and "traced" not in known:
-        return ((function.slot_of, function.attribute),)
-    accesses = getattr(function, "slot_accesses", None)
-    return () if accesses is None else accesses()
 
 
 class Symbol:
@@ -164,7 +110,7 @@ class Symbol:
         for count, table in ((1, self._unary), (2, self._binary)):
             if table is not None:
                 table.clear()
-                table.update(_effective_functions(self.function, count))
+                table.update(effective_functions(self.function, count))
 
     @property
     def reads(self) -> SlotClasses:
@@ -181,13 +127,13 @@ class Symbol:
     @property
     def unary(self) -> dict[type, Callable[..., Any]]:
         if self._unary is None:
-            self._unary = _effective_functions(self.function, 1)
+            self._unary = effective_functions(self.function, 1)
         return self._unary
 
     @property
     def binary(self) -> dict[type, Callable[..., Any]]:
         if self._binary is None:
-            self._binary = _effective_functions(self.function, 2)
+            self._binary = effective_functions(self.function, 2)
         return self._binary
 
     def __repr__(self) -> str:

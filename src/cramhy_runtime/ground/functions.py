@@ -13,12 +13,13 @@ from __future__ import annotations
 
 from types import FunctionType
 
-from .condition_types import SimpleTypeError
+from .condition_types import SimpleProgramError, SimpleTypeError
 from .condition_types import UndefinedFunction as UndefinedFunctionError
 from .conditions import error, type_error
-from .data import Cons, MultipleValues, Symbol, UndefinedFunction, is_ratio, lisp_list, list_parts, one, values
+from .data import Cons, MultipleValues, Symbol, UndefinedFunction, conses, is_ratio, lisp_list, list_parts, one, values
 from .equality import eql
 from .packages import is_symbol, sym
+from .ports import PORTS
 
 CONSTANTS = VARIABLES = dict.fromkeys(("CALL-ARGUMENTS-LIMIT", "LAMBDA-PARAMETERS-LIMIT", "MULTIPLE-VALUES-LIMIT"), 2**62 - 1)
 LISP_NAMES = "identity constantly complement funcall apply functionp values values-list not"
@@ -229,3 +230,28 @@ def function_named(name):
     if not isinstance(name, Cons) and not is_symbol(name):
         return error(invalid_function_name(name))
     return setf_function(name.cdr.car) if isinstance(name, Cons) else fdefinition(name)
+
+
+def check_shape(lst, least, most, what, lambda_list):
+    """Check that ``lst`` has ``least`` to ``most`` elements (no upper bound: nil), as a destructuring lambda list wants; returns it."""
+    count, cell = 0, lst
+    for each in conses(lst):
+        count, cell = count + 1, each.cdr
+    improper = cell is not None and not (most is None and count >= least)
+    if improper or count < least or (most is not None and count > most):
+        wanted = f"exactly {least}" if least == most else f"at least {least}" if most is None else f"between {least} and {most}"
+        kind = "invalid number of" if improper else "too few" if count < least else "too many"
+        condition = SimpleProgramError(
+            "Error while parsing arguments to ~A:~%  ~A elements in~%    ~:S~%  to satisfy lambda list~%    "
+            "~:S:~%  ~A expected, but got ~A",
+            what,
+            kind,
+            lst,
+            lambda_list,
+            wanted,
+            "a non-list" if improper else count,
+        )
+        if what.startswith(("DEFMACRO", "MACROLET")):
+            condition.position = PORTS.definitions.expansion_place()  # the call is wrong, not the macro
+        return error(condition)
+    return lst

@@ -17,7 +17,7 @@ from cramhy_runtime import kernel
 from cramhy_runtime.ground.catching import CATCHABLE, Case, caught
 from cramhy_runtime.ground.conditions import Error, handler_case, warn
 from cramhy_runtime.ground.data import UNBOUND, Cons, Symbol, UndefinedFunction, lisp_list, one, truth
-from cramhy_runtime.ground.list_shapes import check_shape
+from cramhy_runtime.ground.functions import check_shape
 from cramhy_runtime.ground.source_places import circumstance
 from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.packages import keyword

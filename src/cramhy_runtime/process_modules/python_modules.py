@@ -30,7 +30,7 @@ from cramhy_runtime.cpl.fluents.fluents import Fluent
 from ..designators.classes import Designator
 from ..designators.python_grounding import kind_goals
 from ..designators.python_kinds import Kind
-from cramhy_runtime.ground.unstarted import plain_function
+from cramhy_runtime.kernel.unstarted import plain_function
 from cramhy_runtime.ground.condition_types import Condition
 from cramhy_runtime.ground.python_exceptions import from_python
 from cramhy_runtime.ground.data import MultipleValues, Symbol, list_from

@@ -11,7 +11,7 @@ how to repeat it. Exploring schedules under a seed is the idea of systematic con
 from __future__ import annotations
 
 from cramhy_runtime.ground.data import one, truth
-from cramhy_runtime.ground.unstarted import ran
+from cramhy_runtime.kernel.unstarted import ran
 from .plans import plan_of, with_lisp
 from .runs import TIME_LIMIT, check_expected, is_expected, names, observe
 from .schedules import Schedule, without_defaults
@@ -118,6 +118,13 @@ def _lisp_check(text: str) -> Callable[[object], bool]:
     return check
 
 
+def _may_return_nothing(check: Any) -> bool:
+    """Whether ``None`` from ``check`` can mean that all its assertions held: it is a `def`, or a method, or a part of one."""
+    while hasattr(check, "func"):  # functools.partial
+        check = check.func
+    return hasattr(check, "__code__") and check.__name__ != "<lambda>"
+
+
 class _Explorer(Generic[T]):
     """The runs of one exploration."""
 
@@ -160,7 +167,7 @@ class _Explorer(Generic[T]):
     def _checked(self, value: object) -> str | None:
         try:
             answer = ran(self.check(value), "a check")
-            return None if answer or answer is None and getattr(self.check, "__name__", "") != "<lambda>" else "the check says no"
+            return None if answer or answer is None and _may_return_nothing(self.check) else "the check says no"
         except AssertionError as problem:
             return f"the check says: {problem or 'no'}"
 

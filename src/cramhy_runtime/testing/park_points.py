@@ -13,7 +13,7 @@ import os
 from types import CodeType, FrameType
 
 NAMES = {
-    "cpl/tasks/waiting.py:_wait": "wait-for",
+    "cpl/tasks/waiting.py:wait": "wait-for",
     "cpl/tasks/waiting.py:sleep_star": "sleep",
     "cpl/tasks/parallel_children.py:watch": "with-parallel-childs",
     "cpl/tasks/branches.py:Branches.wait": "branches",

@@ -13,6 +13,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Generic, Type
 from cramhy_runtime.cpl.failures.failure_types import CommonLispErrorEnvelope, CompositeFailure, opened
 from cramhy_runtime.ground.data import Cons, all_values
 from cramhy_runtime.ground.equality import equalp
+from .faults import InjectedError, InjectedFailure
 from .leftovers import complain, leftovers
 from .plans import plan_of
 from .schedules import Schedule
@@ -143,7 +144,7 @@ def run(
     time_limit: float | None = TIME_LIMIT,
     expect: Expected = None,
 ) -> Outcome[T]:
-    """Run ``plan`` once in a fresh kernel and return its `Outcome`. An error of the plan is raised.
+    """Run ``plan`` once in a fresh kernel and return its `Outcome`. An error of the plan is raised, but not one that a fault brought about.
 
     expect: the class of the error with which the plan has to end, or a tuple of classes. Then that error is in the outcome, and a plan
     that ends well is an AssertionError. The other arguments are those of `virtual_time`. A fault that did not happen is an
@@ -156,7 +157,7 @@ def run(
         points = "\n".join(f"  {point}" for point in outcome.points) or "  (none)"
         raise AssertionError(f"Did not happen: {'; '.join(map(str, missed))}. The park points of the run:\n{points}")
     complain(outcome.left)
-    if outcome.error is not None and not is_expected(outcome.error, expect):
+    if outcome.error is not None and not is_expected(outcome.error, expect) and not (faults and brought_about(outcome.error)):
         raise outcome.error
     if outcome.error is None and expect is not None:
         raise AssertionError(f"The plan was to end with {names(expect)}, but it ended well, with {outcome}.")
@@ -177,6 +178,14 @@ def is_expected(problem: BaseException, expect: Expected) -> bool:
     if expect is None:
         return False
     return isinstance(problem, expect) or isinstance(problem, CommonLispErrorEnvelope) and isinstance(opened(problem), expect)
+
+
+def brought_about(problem: BaseException) -> bool:
+    """Whether an error that left a plan is that of a fault, or a composite failure in which there is one."""
+    problem = opened(problem) if isinstance(problem, CommonLispErrorEnvelope) else problem
+    if isinstance(problem, CompositeFailure):
+        return any(map(brought_about, problem.failures or ()))
+    return isinstance(problem, (InjectedFailure, InjectedError)) or isinstance(problem.__cause__, InjectedError)
 
 
 def names(expect: Expected) -> str:

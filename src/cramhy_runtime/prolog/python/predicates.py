@@ -24,7 +24,7 @@ from __future__ import annotations
 
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar, overload, subscripted
 
-from cramhy_runtime.ground.unstarted import plain_function, ran
+from cramhy_runtime.kernel.unstarted import plain_function, ran
 from cramhy_runtime.ground.data import Cons, Symbol, list_from
 from ..builtins import native_predicates as natives
 from .terms import P, Name, claim, python_arguments, show, to_lisp, what_nil_means

@@ -11,7 +11,7 @@ from collections import deque
 
 from ... import kernel
 from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.unstarted import plain_function
+from cramhy_runtime.kernel.unstarted import plain_function
 from cramhy_runtime.ground.condition_types import Condition, Error, SimpleTypeError, formatted, shown
 from cramhy_runtime.ground.data import NO_VALUES, LispString, Symbol
 from cramhy_runtime.ground.printing import format_to_string

@@ -5,7 +5,7 @@ A macro only rearranges forms; the work is done here. Users do not call these by
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.list_shapes import check_shape  # noqa: F401  macros name it here
+from cramhy_runtime.ground.functions import check_shape  # noqa: F401  macros name it here
 
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.hash_tables import need_table

@@ -14,7 +14,8 @@ from operator import attrgetter
 from cramhy_runtime.ground.condition_types import MissingSlot
 from cramhy_runtime.ground.condition_types import shown
 from cramhy_runtime.ground.conditions import Condition, SimpleError, UnboundSlot, ask_value, error, restart_case, type_error
-from cramhy_runtime.ground.data import UNBOUND, Classes, Symbol, boolean, list_from, one, truth
+from cramhy_runtime.ground.slot_classes import Classes
+from cramhy_runtime.ground.data import UNBOUND, Symbol, boolean, list_from, one, truth
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.python_names import python_name
 from .class_objects import ClassSlot, InstanceSlot, StandardObject, effective_slots, find_slot, may_be_unbound

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import SimpleError, SimpleTypeError, error
 from cramhy_runtime.ground.data import Cons, DoubleFloat, Symbol, lisp_list, list_from
-from cramhy_runtime.ground.list_shapes import check_shape
+from cramhy_runtime.ground.functions import check_shape
 from cramhy_runtime.ground.packages import is_symbol, sym
 from ..numbers.arithmetic import is_integer, is_rational, is_real
 
