@@ -66,6 +66,7 @@ class _HyStaysHy(importlib.abc.MetaPathFinder):
 
 
 def pytest_addoption(parser):
+    parser.addini("cramhy_images", "test: what a test defines is gone in the next one; module: it stays (test)", default="test")
     parser.addoption(
         "--lisp-limit", type=float, default=60.0, metavar="SECONDS", help="end a test of lisp-unit or FiveAM that takes longer (60)"
     )
@@ -108,8 +109,34 @@ def virtual_time(request):
         yield clock
 
 
+def _may_define(module):
+    """Whether a module may have defined something when it was imported: not Python's own, and not what the kernel loads for a run."""
+    return not module.startswith("cramhy_runtime.kernel.") and module.partition(".")[0] not in {"greenlet", *sys.stdlib_module_names}
+
+
 @pytest.fixture(autouse=True)
-def _fresh_kernel(request):
+def _image_of_its_own(request):
+    """What a test defines goes with it: facts, classes of designators, process modules. What it imports for the first time stays, since
+    Python will not run those modules again. The setting ``cramhy_images = module`` leaves images to the tests themselves."""
+    images = sys.modules.get("cramhy_runtime.kernel.images")
+    if images is None or request.config.getini("cramhy_images") != "test":
+        yield
+        return
+    from cramhy_runtime import kernel
+
+    modules = set(sys.modules)
+    with kernel.at_hand():
+        image = images.Image(as_now=True)
+    image.enter()
+    yield
+    kernel.stop()
+    if not any(map(_may_define, set(sys.modules) - modules)):
+        image.leave()
+        image.forget()
+
+
+@pytest.fixture(autouse=True)
+def _fresh_kernel(request, _image_of_its_own):
     if "cramhy_runtime.session" not in sys.modules or "cramhy" in request.fixturenames or "session" in request.fixturenames:
         yield
         return

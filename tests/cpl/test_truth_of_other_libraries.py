@@ -27,12 +27,12 @@ class Tensor:
         return self.answer
 
 
-@pytest.mark.parametrize("value", [*NO, Tensor(False)], ids=repr)
+@pytest.mark.parametrize("value", [*NO, Tensor(False)], ids=lambda each: type(each).__name__)
 def test_what_is_not_true(value):
     assert not truth(value)
 
 
-@pytest.mark.parametrize("value", [*YES, Tensor(True)], ids=repr)
+@pytest.mark.parametrize("value", [*YES, Tensor(True)], ids=lambda each: type(each).__name__)
 def test_what_is_true(value):
     assert truth(value)
 

@@ -30,7 +30,7 @@ OF_VALUES = "Write cpl.wait_for(f) with a fluent f, not with f.value, and cpl.ma
     [(f.value < 5, OF_COMPARISONS.format(True)), (f == 3, OF_COMPARISONS.format(False)), (f != 3, OF_COMPARISONS.format(True)),
      (lambda: False, OF_FUNCTIONS), (drive := len, OF_FUNCTIONS), (0, OF_VALUES), (None, OF_VALUES), ("f", OF_VALUES), ([f, f], OF_VALUES),
      (threading.Event(), OF_VALUES)],
-    ids=repr,
+    ids=["comparison", "equal", "unequal", "lambda", "function", "number", "nil", "name", "list", "event"],
 )  # fmt: skip
 def test_a_wait_for_what_is_not_a_fluent_says_what_to_write(thing, advice):
     with pytest.raises(TypeError) as problem:
@@ -52,6 +52,9 @@ def test_a_time_that_is_not_a_number_is_an_error(wait, time):
         pytest.skip("no time limit")
     with pytest.raises(Exception, match="is not of type"):
         cpl.run(lambda: wait(time), clock="virtual", time_limit=100)
+
+
+FORMS = ["try_all", "try_in_order", "try_each_in_order"]
 
 
 async def asynchronous(*arguments):
@@ -87,7 +90,7 @@ def test_predicates_yield_their_solutions():
     assert predicate(generator) and Motion
 
 
-@pytest.mark.parametrize("form", [cpl.try_all, cpl.try_in_order, lambda *ways: cpl.try_each_in_order(ways, lambda way: way())])
+@pytest.mark.parametrize("form", [cpl.try_all, cpl.try_in_order, lambda *ways: cpl.try_each_in_order(ways, lambda way: way())], ids=FORMS)
 @pytest.mark.parametrize("error", [AssertionError, NameError, SyntaxError, MemoryError])
 def test_a_mistake_in_the_program_is_not_tried_another_way(form, error):
     def wrong():
@@ -97,7 +100,7 @@ def test_a_mistake_in_the_program_is_not_tried_another_way(form, error):
         cpl.run(lambda: form(wrong, lambda: cpl.sleep(1)), clock="virtual")
 
 
-@pytest.mark.parametrize("form", [cpl.try_all, cpl.try_in_order, lambda *ways: cpl.try_each_in_order(ways, lambda way: way())])
+@pytest.mark.parametrize("form", [cpl.try_all, cpl.try_in_order, lambda *ways: cpl.try_each_in_order(ways, lambda way: way())], ids=FORMS)
 def test_other_exceptions_are_failures_of_an_attempt(form):
     def fails():
         raise ConnectionError("no signal")

@@ -129,12 +129,20 @@ def _stuck():
     raise Stuck("the door")
 
 
+def _misspelt():
+    return missing  # noqa: F821
+
+
 def _wrong():
     assert 2 == 3, "two is not three"
 
 
-@pytest.mark.parametrize("plan, error", [(_stuck, Stuck), (_wrong, AssertionError), (lambda: missing, NameError)], ids=str)  # noqa: F821
-@pytest.mark.parametrize("run", [testing.run, testing.explore, lambda plan: testing.explore(plan, 3, lambda value: True)])
+@pytest.mark.parametrize(
+    "plan, error", [(_stuck, Stuck), (_wrong, AssertionError), (_misspelt, NameError)], ids=["fails", "asserts", "misspelt"]
+)
+@pytest.mark.parametrize(
+    "run", [testing.run, testing.explore, lambda plan: testing.explore(plan, 3, lambda value: True)], ids=["run", "explore", "check"]
+)
 def test_a_failing_plan_does_not_pass(run, plan, error):
     with pytest.raises((error, testing.DependsOnLuck)):
         run(plan)
