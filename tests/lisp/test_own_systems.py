@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+
 import pytest
 
 from cramhy_runtime.languages.commonlisp.streams import streams
@@ -54,6 +58,18 @@ def test_a_system_in_the_central_registry(lisp, tmp_path, name):
     lisp(f'(makunbound (quote cl-user::*own-two*)) (push #p"{tmp_path}/" asdf:*central-registry*)')
     assert lisp(f'(asdf:load-system "{name}") cl-user::*own-two*') == [1]
     assert lisp.said().count(f"; The system {name} is that of {path}, not the one that cramhy contains.\n") == 1
+
+
+def test_a_library_of_all_lisps_on_the_package_path(tmp_path):
+    path = write(tmp_path, "split-sequence", "(defvar cl-user::*own-four* 4)")
+    text = '(asdf:load-system "split-sequence") cl-user::*own-four* (asdf:load-system "alexandria")'
+    command = [sys.executable, "-m", "cramhy_runtime.cli", "repl"]
+    environment = {**os.environ, "ROS_PACKAGE_PATH": str(tmp_path)}
+    said = subprocess.run(command, input=text, env=environment, cwd=tmp_path, capture_output=True, text=True)
+    told = said.stdout + said.stderr
+    assert told.count("; The system ") == 1 and f"; The system split-sequence is that of {path}, not the one" in told and "\n4\n" in told, (
+        told
+    )
 
 
 def test_of_a_system_that_cramhy_does_not_contain_nothing_is_told(lisp, tmp_path):

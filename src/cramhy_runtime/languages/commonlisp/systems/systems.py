@@ -118,11 +118,18 @@ def choose_file(path):
             stream.flush()
 
 
+OF_ALL_LISPS = {"alexandria", "cl-utilities", "split-sequence"}
+"""Libraries that know nothing of CRAM, of which cramhy contains a rewritten form: a real one on ROS_PACKAGE_PATH comes first. All others
+depend on how cramhy is made; `prefer` takes them from there."""
+
+
 def _ask_registry(name):
-    """If the user's central registry has a system ``name`` that cramhy contains, too, take that one."""
-    if name in preferred or CENTRAL_REGISTRY.value is None or not (name in built_in or f"{name}.asd" in libraries()):
+    """If the user's central registry or ROS_PACKAGE_PATH has a system ``name`` that cramhy contains, too, take that one."""
+    if name in preferred or not (name in built_in or f"{name}.asd" in libraries()):
         return
     path = next((folder / f"{name}.asd" for folder in central_registry() if os.path.isfile(folder / f"{name}.asd")), None)
+    if path is None and name in OF_ALL_LISPS:
+        path = _find_below(f"{name}.asd", True)
     if path is not None:
         load_asd(path)
         choose_file(path.absolute())
