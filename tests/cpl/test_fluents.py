@@ -5,6 +5,7 @@ import gc
 import pytest
 
 from cramhy_runtime import cpl, kernel
+from cramhy_runtime.cpl.tasks import waiting
 from cramhy_runtime.cpl.fluents import operators as op
 from cramhy_runtime.cpl.fluents.fluents import get_update_callback
 from cramhy_runtime.cpl.fluents.nets import CachedNet
@@ -281,9 +282,9 @@ def test_value_changed_goes_on_applying_its_key():
 def test_zero_and_the_empty_string_are_true_for_a_wait():
     assert cpl.wait_for(cpl.make_fluent(value=0)) == 0
     assert cpl.wait_for(cpl.make_fluent(value="")) == ""
-    assert cpl.wait_for(5) == 5
+    assert waiting.wait_for(5) == 5  # as Lisp calls it
     with pytest.raises(Error) as problem:
-        cpl.wait_for(None)
+        waiting.wait_for(None)
     assert problem.value.format_control == "wait-for called with nil argument."
 
 

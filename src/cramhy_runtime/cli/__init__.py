@@ -296,7 +296,7 @@ def _eval(options):
     if not _checked(options):
         return 2
     streams.STANDARD_OUTPUT.value = streams.CONSOLE_ERROR  # standard output is for the answers
-    out = sys.stdout
+    lines, out = sys.stdin, sys.stdout
     with answer_streams.turned_aside() as descriptors, ExitStack() as closings:
         try:
             made = session(options, closings)
@@ -305,7 +305,7 @@ def _eval(options):
         except (Exception, Condition) as problem:
             report(condition_of(problem))
             return 1
-        json_lines.serve(made, out=out, descriptors=descriptors)
+        json_lines.serve(made, lines if descriptors is None else descriptors.requests, out, descriptors)
 
 
 def _run(options):

@@ -39,9 +39,7 @@ def serve(session, lines=None, out=None, descriptors=None):
     """Answer every line of ``lines`` (default: standard input) on ``out``. descriptors: see `answer_streams`, or ``None``."""
     out = out or sys.stdout
     conditions.install_debugger(signalled_here)
-    if lines is None:
-        lines = sys.stdin if descriptors is None else descriptors.requests
-    lines = iter(lines)
+    lines = iter(sys.stdin if lines is None else lines)
     while (line := _next(lines)) is not None:
         if not line.strip():
             continue
