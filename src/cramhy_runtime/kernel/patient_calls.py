@@ -14,7 +14,8 @@ from .active import holds_baton, run_blocking
 from .standard_input import StandardInput, read_line
 
 SLICE = 0.05  # s after which a task looks whether it has been asked to end
-_sleep, _input = time.sleep, builtins.input
+_sleep, own_input = time.sleep, builtins.input
+"""Python's own functions; the prompt itself reads its lines with readline by `own_input`."""
 
 
 def sleep(seconds, /):
@@ -30,7 +31,7 @@ def sleep(seconds, /):
 def ask(prompt="", /):
     """``input``: print PROMPT and return a line without its end. EOFError at the end of the input."""
     if type(sys.stdin) is not StandardInput or not holds_baton():
-        return _input(prompt)
+        return own_input(prompt)
     sys.stdout.write(str(prompt))
     sys.stdout.flush()
     line = read_line(sys.stdin)

@@ -14,6 +14,7 @@ from __future__ import annotations
 import sys
 from contextlib import contextmanager
 
+from cramhy_runtime.kernel.patient_calls import own_input
 from cramhy_runtime.kernel.standard_input import StandardInput
 from cramhy_runtime.kernel.terminals import INTERRUPT, ctrl_c_as_a_key
 from cramhy_runtime.languages.commonlisp.streams import streams
@@ -56,7 +57,7 @@ class ReadlineLines(PlainLines):
 
     def ask(self, prompt):
         """The next line, which Python lets readline edit."""
-        return input(prompt)
+        return own_input(prompt)
 
     def remember(self, text):
         readline, text = _readline(), text.strip("\n")
