@@ -289,7 +289,7 @@ def declaration(designator: Designator, name: str) -> Kind | None:
 
 
 def _attribute(self: Designator, name: str) -> Any:
-    if not name.startswith("_"):
+    if not name.startswith("_") and name not in _OWN:  # one of its own is not filled yet: it is being made
         found = _entry(self, lisp_name(name))
         if found is not None:
             return _value(self, found)

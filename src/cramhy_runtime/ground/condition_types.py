@@ -161,6 +161,16 @@ class Condition(BaseException):
         for name, value in slots.items():
             setattr(self, name, value)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        from .pickling import reduced_condition
+
+        return reduced_condition(self)
+
+    def __copy__(self) -> Condition:
+        made = self.__class__.__new__(self.__class__, *self.args)
+        made.__dict__.update(self.__dict__)
+        return made
+
     def report(self) -> str:
         """The text for the user."""
         return f"Condition {shown_with(class_name(type(self)), 'COMMON-LISP')} was signalled."

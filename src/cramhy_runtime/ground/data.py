@@ -37,6 +37,9 @@ class _Marker:
     def __repr__(self):
         return self.name
 
+    def __reduce__(self):
+        return self.name.strip("#<>").upper()
+
 
 UNBOUND = _Marker("#<unbound>")
 """The value of a symbol or slot that has none."""
@@ -194,12 +197,15 @@ class Symbol:
         return f"{self.package.name}::{self.name}" if self.package else f"#:{self.name}"
 
     def __reduce__(self):
-        return (_symbol_in, (self.name, self.package.name)) if self.package else (Symbol, (self.name,))
+        from .pickling import reduced_symbol
 
+        return reduced_symbol(self)
 
-def _symbol_in(name, package):
-    """What unpickling a symbol calls."""
-    return PORTS.signals.intern(name, package)
+    def __deepcopy__(self, memo):
+        return self
+
+    def __copy__(self):
+        return self
 
 
 class Keyword(Symbol):
@@ -274,6 +280,16 @@ class Cons:
                 return item
             index -= 1
         raise IndexError("list index out of range")
+
+    def __reduce__(self):
+        from .pickling import reduced_list
+
+        return reduced_list(self)
+
+    def __setstate__(self, state):
+        from .pickling import fill
+
+        fill(self, *state)
 
     def __repr__(self):
         parts, cell, limit = [], self, 50
