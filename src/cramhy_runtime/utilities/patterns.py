@@ -40,7 +40,7 @@ ANONYMOUS_SEGMENT = CUT.intern("!?_")
 _counter = itertools.count(1)
 
 
-_COMPARED_BY_LISP = TRUE_CLASSES | {DoubleFloat} | equality.EQUAL_TO_THEMSELVES
+_COMPARED_BY_LISP = (TRUE_CLASSES | {DoubleFloat} | equality.EQUAL_TO_THEMSELVES) - {bytes, tuple}
 """Classes whose objects only ``equal`` compares, though Python finds more of them equal: ``True`` and 1, ``0.0`` and ``-0.0``."""
 
 
@@ -59,10 +59,7 @@ def same_atom(a, b):
         return a == b
     if equality.equal(a, b) is not None:
         return True
-    return kind is b.__class__ and (kind not in _COMPARED_BY_LISP or kind in _IMMUTABLE) and _is_value(kind) and bool(a == b)
-
-
-_IMMUTABLE = (bytes, tuple)
+    return kind is b.__class__ and kind not in _COMPARED_BY_LISP and _is_value(kind) and bool(a == b)
 
 
 def _is_value(cls):
