@@ -15,6 +15,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from .data import UNBOUND, Cons, Symbol
 from .dynamic import binding
 from .classes import class_name, find_class, when_classes_change
+from .pickling import reduced_condition
 from .ports import PORTS
 from .packages import Package, find_package, is_symbol, printed, sym, symbol_name
 
@@ -162,8 +163,6 @@ class Condition(BaseException):
             setattr(self, name, value)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        from .pickling import reduced_condition
-
         return reduced_condition(self)
 
     def __copy__(self) -> Condition:

@@ -196,11 +196,6 @@ class Symbol:
     def __repr__(self) -> str:
         return f"{self.package.name}::{self.name}" if self.package else f"#:{self.name}"
 
-    def __reduce__(self):
-        from .pickling import reduced_symbol
-
-        return reduced_symbol(self)
-
     def __deepcopy__(self, memo):
         return self
 
@@ -280,16 +275,6 @@ class Cons:
                 return item
             index -= 1
         raise IndexError("list index out of range")
-
-    def __reduce__(self):
-        from .pickling import reduced_list
-
-        return reduced_list(self)
-
-    def __setstate__(self, state):
-        from .pickling import fill
-
-        fill(self, *state)
 
     def __repr__(self):
         parts, cell, limit = [], self, 50

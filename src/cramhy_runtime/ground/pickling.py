@@ -8,17 +8,13 @@ Python can import, with the same text.
 
 from __future__ import annotations
 
-import pickle
 import sys
 
-from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+from cramhy_runtime.kernel.typing_names import Any
 
 from .classes import class_name, find_class
 from .data import Cons, Symbol, list_end, list_from, list_parts
 from .packages import ensure_package, find_package
-
-if TYPE_CHECKING:
-    from .condition_types import Condition
 
 
 def reduced_symbol(symbol: Symbol) -> tuple[Any, ...]:
@@ -49,9 +45,19 @@ def new_cons() -> Cons:
     return Cons(None, None)
 
 
-def fill(cell: Cons, items: list[object], end: object) -> None:
-    """Make the list that begins with ``cell`` the one of ``items`` that ends in ``end``."""
+def fill(cell: Cons, state: tuple[list[object], object]) -> None:
+    """Make the list that begins with ``cell`` the one of the items of ``state`` that ends as ``state`` says."""
+    items, end = state
     cell.car, cell.cdr = items[0], list_from(items[1:], end)
+
+
+# Set here, as the classes stand below packages and the names of classes, which these functions need.
+for _class, _method, _function in (
+    (Symbol, "__reduce__", reduced_symbol),
+    (Cons, "__reduce__", reduced_list),
+    (Cons, "__setstate__", fill),
+):
+    setattr(_class, _method, _function)
 
 
 # ----------------------------------------------------------------------------------------------------------------- conditions
@@ -74,7 +80,7 @@ def referenced(known: type, name: Any) -> type:
     return found if isinstance(found, type) and issubclass(found, known) else known
 
 
-def reduced_condition(condition: Condition) -> tuple[Any, ...]:
+def reduced_condition(condition: Any) -> tuple[Any, ...]:
     """What ``pickle`` keeps of ``condition``; see the head of this module."""
     text, state, described = str(condition), {}, False
     for name, value in condition.__dict__.items():
@@ -102,6 +108,8 @@ def described_unless_it_travels(value: object) -> object:
     """``value`` if it can be pickled, else the text that shows it."""
     if value is None or isinstance(value, (str, int, float)):
         return value
+    import pickle  # it takes as long to import as a room
+
     try:
         pickle.dumps(value)
     except Exception:
