@@ -18,6 +18,7 @@ import importlib.util
 import os
 import sys
 from pathlib import Path
+from types import TracebackType
 
 import pytest
 
@@ -161,7 +162,7 @@ def pytest_collect_file(file_path, parent):
         from cramhy_runtime.languages import kept_hy  # with Hy, which teaches Python to import it
 
         kept_hy.watch()
-        return collected_tests.HyModule.from_parent(parent, path=file_path)
+        return HyModule.from_parent(parent, path=file_path)
     if not named:
         from cramhy_runtime.languages.commonlisp.systems import unit_tests
 
@@ -184,6 +185,37 @@ def pytest_make_collect_report(collector):
         if kernel.active() is None:
             fresh_start()
     return (yield)
+
+
+class HyModule(collected_tests.HyModule):
+    """A file of plain Hy with test functions. A form that cannot be compiled is told as ``hy FILE`` tells it."""
+
+    def collect(self):
+        try:
+            return super().collect()
+        except self.CollectError as refused:
+            if not _of_hys_compiler(refused.__cause__):
+                raise
+            problem = refused.__cause__
+        raise self.CollectError(_explained(problem)) from None
+
+
+def _of_hys_compiler(problem):
+    """Whether ``problem`` is about a form of Hy that could not be read or compiled."""
+    errors = sys.modules.get("hy.errors")
+    return errors is not None and isinstance(problem, errors.HyError)
+
+
+def _without_compiler(traceback):
+    """``traceback`` up to the line that imports: without the frames of Python's importer and Hy's compiler."""
+    kept = []
+    while traceback is not None and "importlib" not in traceback.tb_frame.f_code.co_filename:
+        kept.append(traceback)
+        traceback = traceback.tb_next
+    shorter = None
+    for entry in reversed(kept):
+        shorter = TracebackType(shorter, entry.tb_frame, entry.tb_lasti, entry.tb_lineno)
+    return shorter
 
 
 class LispFile(pytest.File):
@@ -258,8 +290,19 @@ def _explained(problem):
         return explanation(condition_of(problem))
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_runtest_makereport(item, call):
-    """A signal that ends the process ends pytest, and is not the failure of a test."""
+    """A signal that ends the process ends pytest, and is not the failure of a test. Frames of Hy's compiler are not shown."""
+    if call.excinfo is None:
+        return
+    problem = call.excinfo.value
     errors = sys.modules.get("cramhy_runtime.kernel.errors")
-    if errors is not None and call.excinfo is not None and isinstance(call.excinfo.value, errors.Terminated):
-        pytest.exit(str(call.excinfo.value), returncode=call.excinfo.value.code)
+    if errors is not None and isinstance(problem, errors.Terminated):
+        pytest.exit(str(problem), returncode=problem.code)
+    if _of_hys_compiler(problem) and (traceback := _without_compiler(call.excinfo.tb)) is not None:
+        problem.__cause__, problem.__suppress_context__ = None, True  # what Hy's parser said to its compiler
+        hint = getattr(problem, "hint", None)
+        hint = hint() if callable(hint) else hint
+        if hint and hint not in getattr(problem, "__notes__", ()):
+            problem.add_note(hint)
+        call.excinfo = pytest.ExceptionInfo.from_exc_info((type(problem), problem, traceback))

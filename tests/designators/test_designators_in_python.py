@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import traceback
+from functools import partial
 from typing import ClassVar
 
 import pytest
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime import designators as desig
+from cramhy_runtime.designators import python_grounding
 from cramhy_runtime.designators import (
     Action,
     DesignatorError,
@@ -405,7 +407,7 @@ def test_why_a_designator_could_not_be_resolved_stands_below_the_traceback():
 Cannot resolve motion designator #<A MOTION
     (TYPE DRIVING)
     (SPED 1)>.
-There is one clause, clause 1 of {NAME}.test-why-a-designator-could-not-be-resolved-stands-below-the-traceback.drive:
+Of 2 clauses this one came furthest, clause 1 of {NAME}.test-why-a-designator-could-not-be-resolved-stands-below-the-traceback.drive:
   (motion-grounding ?designator ?solution)
   holds  (desig-prop ?designator (:type :driving))
   FAILS  (once (desig-prop ?designator (:speed ?_)))
@@ -502,3 +504,84 @@ def test_every_describes_all_things_and_leaves_the_designator_of_one_as_it_is():
     cups = every(cup)
     assert (cups.quantifier, cups.color, cup.quantifier) == (kw.all, "red", kw.a)
     assert repr(cups).startswith("#<ALL ")
+
+
+def test_groundings_hold_for_derived_types_however_they_are_ordered_and_those_of_the_derived_type_come_first():
+    class Going(Motion):
+        speed: float
+
+    class Running(Going):
+        breath: float = 1.0
+
+    motion_grounding(Going)(lambda motion: ["go", motion.speed])
+    assert list(solutions(Running(speed=2.0))) == [["go", 2.0]]
+
+    class Racing(Running):
+        rival: str | None = None
+
+    motion_grounding(Running)(lambda motion: ["run", motion.breath])
+    motion_grounding(lambda motion: ["anything"])
+    assert list(solutions(Going(speed=1.0))) == [["go", 1.0], ["anything"]]
+    assert sorted(solutions(Racing(speed=3.0))) == [["anything"], ["go", 3.0], ["run", 1.0]]
+    assert [each for each in solutions(Racing(speed=3.0)) if each != ["anything"]] == [["run", 1.0], ["go", 3.0]]
+    assert [each for each in solutions(Running(speed=3.0)) if each != ["anything"]] == [["run", 1.0], ["go", 3.0]]
+    assert not isinstance(Motion(type=kw.racing), Going)
+    with pytest.raises(DesignatorError):
+        forget_all = [function for function in list(python_grounding._forgetting)]
+        for function in forget_all:
+            forget(function)
+        reference(Racing(speed=3.0))
+
+
+def test_a_definition_again_replaces_the_one_for_derived_types_too():
+    class Going(Motion):
+        speed: float
+
+    class Running(Going):
+        pass
+
+    for word in ("first", "second"):
+
+        @motion_grounding(Going)
+        def go(motion, word=word):
+            return [word, motion.speed]
+
+    assert list(solutions(Running(speed=1.0))) == [["second", 1.0]] == list(solutions(Going(speed=1.0)))
+    forget(go)
+    assert list(solutions(Running(speed=1.0))) == []
+
+
+def test_two_lambdas_two_partials_and_one_function_for_two_types_are_two_groundings():
+    class Going(Motion):
+        speed: float
+
+    class Near(Location):
+        x: float
+
+    class Far(Location):
+        x: float
+
+    made = [
+        lambda motion: ["a"],
+        lambda motion: ["b"],
+        partial(lambda word, motion: [word], "c"),
+        partial(lambda word, motion: [word], "d"),
+    ]
+    for function in made:
+        motion_grounding(Going)(function)
+    assert list(solutions(Going(speed=1.0))) == [["a"], ["b"], ["c"], ["d"]]
+    forget(made[1])
+    assert list(solutions(Going(speed=1.0))) == [["a"], ["c"], ["d"]]
+
+    def beside(place):
+        return [place.x + 1]
+
+    location_generator(Near)(beside)
+    location_generator(Far)(beside)
+    for step in (2, 3):
+        location_generator(Far)(lambda place, step=step: [place.x + step])
+    location_validator(Far)(lambda place, candidate: candidate != 3)
+    location_validator(Far)(lambda place, candidate: candidate < 4)
+    assert list(solutions(Near(x=1))) == [2] and list(solutions(Far(x=1))) == [2]
+    forget(beside)
+    assert list(solutions(Near(x=1))) == []

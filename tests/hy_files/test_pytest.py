@@ -65,6 +65,18 @@ def test_a_package_whose_assertions_are_rewritten_may_have_modules_in_hy(write, 
     assert code == 0 and "1 passed" in shown, shown
 
 
+def test_a_form_that_cannot_be_compiled_is_told_without_the_frames_of_the_compiler(write, run_pytest):
+    write("test_plan.hy", "(require cramhy *)\n(defn test-a [] (par (if)))\n")
+    write("drives.hy", "(require cramhy *)\n(defn drive []\n  (par (if)))\n")
+    write("test_it.py", "import hy\n\ndef test_it():\n    import drives\n")
+    _, shown = run_pytest("test_plan.hy")
+    assert "The if form is malformed: it ends too early; expected: form.\n  at test_plan.hy:2:" in shown, shown
+    assert "It is written (if test then else)." in shown and "compiler.py" not in shown, shown
+    _, shown = run_pytest("test_it.py")
+    assert "The if form is malformed: it ends too early; expected: form." in shown and "It is written (if test then else)." in shown
+    assert "import drives" in shown and "compiler.py" not in shown and "parser.py" not in shown, shown
+
+
 # ---------------------------------------------------------------------------------------------------- every test is collected
 
 ODD = """\

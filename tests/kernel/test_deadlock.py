@@ -1,6 +1,9 @@
 """Deadlock: said at once, to the main task, with who waits for what, and where."""
 
+import threading
+
 import pytest
+from systems import needs_threads
 
 from cramhy_runtime import kernel
 
@@ -100,3 +103,22 @@ def test_a_cancelled_timer_does_not_hide_a_deadlock(k):
     with pytest.raises(kernel.Deadlock):
         kernel.park("the timer")
     assert kernel.now() == 0.0
+
+
+@needs_threads
+def test_the_text_says_what_to_do_about_threads_of_the_user(k):
+    released = threading.Event()
+    thread = threading.Thread(target=released.wait, args=(30,), name="bumper", daemon=True)
+    thread.start()
+    try:
+        with pytest.raises(kernel.Deadlock) as told:
+            kernel.park("the bumper")
+    finally:
+        released.set()
+        thread.join()
+    assert str(told.value).splitlines()[-1] == (
+        "The program has other threads (bumper). Plans do not wait for threads of Python, and virtual time passes without them. If one of "
+        "them was to set the fluent, let a branch of the plan do its work: cpl.run_blocking(work) returns what it returns, and time stands "
+        "still meanwhile. Or run the plan in wall time, cpl.run(main, clock='wall'), and open `with kernel.outside_source():` in it while "
+        "the thread works."
+    )

@@ -1,5 +1,7 @@
 """The world outside: messages from other threads, and calls that block."""
 
+import contextvars
+
 import pytest
 from outside_world import Barrier, Event, in_a_thread
 from systems import needs_threads
@@ -199,3 +201,24 @@ def test_context_variables_go_along_into_a_task_and_not_back(k):
     assert kernel.spawn(task).join() == "main"
     assert kernel.spawn(task).join() == "main"
     assert place.get() == "main"
+
+
+@pytest.mark.parametrize("clock", ["virtual", "wall"])
+def test_a_call_that_blocks_sees_the_context_variables_of_its_task_and_keeps_its_own(start, clock):
+    start(clock=clock)
+    who = contextvars.ContextVar("who", default="nobody")
+
+    def outside(name):
+        seen = who.get()
+        who.set(f"{name} outside")
+        return seen
+
+    def branch(name):
+        who.set(name)
+        seen = kernel.run_blocking(outside, name)
+        return seen, kernel.run_blocking(who.get), who.get()
+
+    who.set("walter")
+    assert kernel.run_blocking(outside, "main") == "walter" == who.get()
+    assert [task.join() for task in [kernel.spawn(branch, name) for name in "ab"]] == [("a", "a", "a"), ("b", "b", "b")]
+    assert who.get() == "walter"

@@ -387,3 +387,30 @@ def test_one_that_does_not_say_what_it_does():
 def test_the_designator_of_another_kind_is_a_dispatch_error(navigation):
     with cpl.plan(), pytest.raises(Error, match="no applicable method"):
         perform(Object())
+
+
+def test_modules_hold_for_derived_types_after_modules_for_the_derived_type():
+    class Going(Motion):
+        speed: float
+
+    class Parking(Going):
+        lot: str = "a"
+
+    motion_grounding(lambda motion: ["go"])
+
+    @process_module(Going)
+    def base(motion):
+        return "base", motion.speed
+
+    class Docking(Going):
+        port: int = 1
+
+    @process_module(Docking)
+    def dock(motion):
+        return "dock", motion.port
+
+    def main():
+        with process_modules(base, dock):
+            return perform(Going(speed=1.0)), perform(Parking(speed=2.0)), perform(Docking(speed=3.0))
+
+    assert cpl.run(main) == (("base", 1.0), ("base", 2.0), ("dock", 1))

@@ -292,3 +292,55 @@ def test_a_name_that_was_used_before_its_predicate_was_imported_is_told():
     with pytest.warns(UserWarning, match="^P.early_bird was used before the module that has the predicate :early-bird") as warned:
         import_predicates(kw.early_bird)
     assert warned and repr(P.early_bird) == "early-bird"
+
+
+def test_a_default_of_a_predicate_is_refused_where_it_is_defined_for_a_goal_could_mean_two_things():
+    def way(room, steps=1):
+        yield f"{room}-{steps}"
+
+    with pytest.raises(TypeError) as refused:
+        predicate(way)
+    assert str(refused.value) == (
+        f"The @predicate way ({__file__}:{way.__code__.co_firstlineno}) has a default for steps. The arguments of a goal are those of all "
+        "parameters, and then the solution, so nobody could tell whether an argument is steps or the solution. Leave the default out, and "
+        "give the value in the goal."
+    )
+
+    @function
+    def longer(metres, factor=2):
+        return metres * factor
+
+    assert first(longer(3, V.m)).m == 6 and first(longer(3, 5, V.m)).m == 15
+
+
+def test_predicates_are_methods_and_two_classes_may_have_the_same_name():
+    class Robot:
+        def __init__(self, reach):
+            self.reach = reach
+
+        @predicate
+        def can_reach(self):
+            yield self.reach
+
+        @function
+        def half(self, metres):
+            return metres / 2 + self.reach
+
+        @check
+        def near(self, metres):
+            return metres < self.reach
+
+    class Arm(Robot):
+        @predicate
+        def can_reach(self):
+            yield "arm"
+            yield self.reach
+
+    robot, arm = Robot(3), Arm(1)
+    assert findall(V.r, robot.can_reach(V.r)) == [3] and findall(V.r, arm.can_reach(V.r)) == ["arm", 1]
+    assert first(arm.half(4, V.h)).h == 3 and holds(robot.near(2)) and not holds(arm.near(2))
+    assert findall(V.r, Robot.can_reach(arm, V.r)) == [1]
+    with fact_group("robots") as robots:
+        robots.fact(P.robot(robot), P.robot(arm))
+        robots.rule(P.reaches(V.r, V.far), P.robot(V.r), Robot.can_reach(V.r, V.far))
+    assert findall((V.r, V.far), P.reaches(V.r, V.far)) == [(robot, 3), (arm, 1)]

@@ -4,8 +4,10 @@ import math
 
 import pytest
 
-from cramhy_runtime.tf.buffer import FrameBuffer
+from cramhy_runtime.tf.buffer import FrameBuffer, Unavailable
 from cramhy_runtime.tf.stamped import TransformStamped
+from cramhy_runtime.transforms.quaternions import quaternion
+from cramhy_runtime.transforms.vectors import vector
 
 
 @pytest.mark.law("cl-transforms", 39)
@@ -108,15 +110,17 @@ def test_a_frame_seen_from_itself(lisp):
 
 
 def test_times_that_the_buffer_does_not_know(example):
-    known = "What is known of the transform from base to map is from 1.0 to 2.0 s. Without a time the newest is taken."
+    known = "What is known of the transform from base to map is from 1.0 to 2.0 s; {} of that. Without a time the newest is taken."
     for time, kind, text in (
+        ("0.5", "simple-error", "The assertion (NOT (CL-TF::CACHE-EMPTY CL-TF::CACHE)) failed."),
         ("2.5", "extrapolation-error", "The requested time stamp does not point into the cache."),
         ("11.5", "extrapolation-error", "Requested time points to the future. Cannot transform."),
         ("3.5", "simple-error", "The assertion (NOT (CL-TF::CACHE-EMPTY CL-TF::CACHE)) failed."),
     ):
         asked = f'(cached "map" "base" {time})'
         assert example.error(asked, kind) == text
-        assert example.condition(asked).hint == known
+        where = "0.5 s is 0.5 s in the past" if time == "0.5" else f"{time} s is {float(time) - 2:g} s in the future"
+        assert example.condition(asked).hint == known.format(where)
         assert example(f'(can-transform *tf* :target-frame "map" :source-frame "base" :time {time})') == "NIL"
 
 
@@ -306,3 +310,37 @@ def test_python_asks_the_buffer_for_a_time_that_is_none(time):
 def test_what_python_would_stumble_over(lisp, text, kind, hint):
     condition = lisp.condition(text)
     assert lisp.error(text, kind) and getattr(condition, "hint", None) == hint
+
+
+@pytest.mark.parametrize(
+    ("time", "where"),
+    [
+        (0.5, "0.5 s is 0.5 s in the past of that"),
+        (-30.0, "-30.0 s is 31 s in the past of that"),
+        (9.5, "9.5 s is 0.5 s in the future of that"),
+        (40, "40.0 s is 31 s in the future of that"),
+        (5.0, "5.0 s is in a gap of that, between stamps of seconds that are no neighbours"),
+    ],
+)
+def test_python_is_told_whether_a_time_is_past_or_future(time, where):
+    frames = FrameBuffer()
+    for stamp in (1.0, 2.0, 9.0):
+        frames.store(TransformStamped("map", "base", stamp, vector((stamp, 0.0, 0.0)), quaternion((0.0, 0.0, 0.0, 1.0))))
+    with pytest.raises(Unavailable) as caught:
+        frames.lookup("map", "base", time)
+    assert str(caught.value) == (
+        f"The transform from base to map is not known at {float(time)} s. What is known of the transform from base to map is from 1.0 to "
+        f"9.0 s; {where}. Without a time the newest is taken."
+    )
+
+
+@pytest.mark.parametrize("frame", ["map", "base", "/base"])
+@pytest.mark.parametrize(("time", "stamp"), [(None, {"map": 0.0, "base": 2.0}), (0.3, {"map": 0.3, "base": 0.3})])
+def test_the_transform_from_a_frame_to_itself_is_the_identity(frame, time, stamp):
+    frames = FrameBuffer()
+    frames.store(TransformStamped("map", "base", 2.0, vector((7.0, 0.0, 0.0)), quaternion((0.0, 0.0, 0.0, 1.0))))
+    same = frames.lookup(frame, frame, time)
+    assert list(same.translation) == [0.0, 0.0, 0.0] and same.rotation.w == 1.0 and same.stamp == stamp[frame.strip("/")]
+    assert same.frame_id == same.child_frame_id == frame.strip("/")
+    with pytest.raises(Unavailable, match="The frame nowhere is not in the graph"):
+        frames.lookup("nowhere", "nowhere", time)

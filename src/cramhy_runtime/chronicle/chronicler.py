@@ -10,7 +10,7 @@ from cramhy_runtime.kernel.images import Cell
 from .. import kernel
 from cramhy_runtime.ground.condition_types import SimpleWarning
 from cramhy_runtime.ground.conditions import Condition, warn
-from cramhy_runtime.ground.looking_on import looking_on
+from cramhy_runtime.kernel.looking_on import looking_on
 from ..ros import graph
 from ..ros.messages import message_class_exact
 from .service_node import Board

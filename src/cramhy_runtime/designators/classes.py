@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import functools
 import itertools
+from copy import deepcopy
 from weakref import ref
 
 from cramhy_runtime.kernel.images import Cell, per_image
@@ -25,6 +26,8 @@ from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.ground.classes import make_instance
 from cramhy_runtime.ground.packages import is_symbol, keyword, near_names, symbol_name
+from cramhy_runtime.ground.pickling import class_reference, referenced
+from ..utilities.lazy_lists import LazyTail
 from ..utilities.small_functions import current_timestamp
 from .protocol import equate
 from .symbols import DESIG_PROPS
@@ -137,7 +140,74 @@ class Designator:
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.description!r}>"
 
+    # A copy is a designator of its own, which is not equated to the old one. One that was pickled keeps those that it is equated to.
 
+    def __copy__(self) -> Designator:
+        made = blank(self.__class__)
+        _fill(made, {name: value for name, value in _state(self).items() if name not in _EQUATED})
+        return made
+
+    def __deepcopy__(self, memo: dict[int, object]) -> Designator:
+        made = memo[id(self)] = blank(self.__class__)
+        lazy = self._lazy
+        state = {name: value for name, value in _state(self).items() if name not in _EQUATED}
+        _fill(made, {name: value if name == lazy else deepcopy(value, memo) for name, value in state.items()})
+        return made
+
+    def __reduce__(self) -> tuple[object, ...]:
+        state, lazy = _state(self), self._lazy
+        state[lazy] = _computed(state.get(lazy))
+        return blank, class_reference(self.__class__), state
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        _fill(self, state)
+
+
+def blank(cls: type, name: Symbol | None = None) -> Designator:
+    """A designator of the class ``cls``, or of the one with the Lisp name ``name`` if there is one, with nothing in it."""
+    cls = referenced(cls, name)
+    made: Designator = cls.__new__(cls)
+    Designator.__init__(made)
+    return made
+
+
+_EQUATED = ("parent", "successor", "_object_id")
+_OF_THE_PROCESS = ("resolver", "callbacks", "__weakref__", "__dict__")
+
+
+def _state(designator: Designator) -> dict[str, Any]:
+    """The slots of ``designator`` that a copy has, too."""
+    slots = [slot for cls in type(designator).__mro__ for slot in getattr(cls, "__slots__", ()) if slot not in _OF_THE_PROCESS]
+    state = {slot: getattr(designator, slot) for slot in slots if hasattr(type(designator), slot) and _has(designator, slot)}
+    return {**state, **designator.__dict__}
+
+
+def _computed(solutions: Any) -> Any:
+    """The solutions that were asked for already: the others are found by Prolog of this process."""
+    items = []
+    while isinstance(solutions, Cons):
+        items.append(solutions.car)
+        solutions = solutions.cdr
+        if isinstance(solutions, LazyTail) and solutions.generator is None:
+            solutions = solutions.value
+    return list_from(items) if items else solutions
+
+
+def _has(thing: object, slot: str) -> bool:
+    try:
+        object.__getattribute__(thing, slot)
+    except AttributeError:
+        return False
+    return True
+
+
+def _fill(designator: Designator, state: dict[str, object]) -> None:
+    for name, value in state.items():
+        setattr(designator, name, value)
+
+
+Designator._lazy = "solutions"  # type: ignore[attr-defined]
+"""The slot with the lazy list of the solutions."""
 Designator._found = Designator.data  # type: ignore[attr-defined]
 """The slot with the value of an effective designator. Kinds of designators may name another slot."""
 
@@ -182,6 +252,7 @@ class LocationDesignator(Designator, DesignatorIdMixin, EquateNotificationMixin)
 
     __slots__ = ()
     lisp_name = "CRAM-DESIGNATORS::LOCATION-DESIGNATOR"
+    _lazy = "data"
     _found = Designator.current_solution  # its data is the list of the solutions that are left
 
 

@@ -16,15 +16,18 @@
     def reachable(place, candidate):
         return distance(candidate) < 1.2            # True accepts, False refuses, None leaves it to others
 
-The class says for which designators the function is called; without a class it is called for all of the kind. A motion or action
-grounding is a rule of a fact group of its own, so it works together with rules of Lisp, in order, and hints in errors show it.
+The class says for which designators the function is called. It is called for those of derived classes too, after the functions for the
+derived class itself. Without a class it is called for all of the kind. A motion or action grounding is a rule of a fact group of its own,
+so it works together with rules of Lisp, in order, and hints in errors show it.
 Generators and validators are registered with their priority. A second definition of the same name in the same module replaces the first
-one, and `forget` removes a function again. The decorators return the functions unchanged. Source: designators.md 7.1 and 8.
+one; two lambdas have no name, and are two. `forget` removes a function again. The decorators return the functions unchanged. Source:
+designators.md 7.1 and 8.
 """
 
 from __future__ import annotations
 
 from functools import partial
+from itertools import count
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, overload
 
 from cramhy_runtime.kernel.images import per_image
@@ -44,10 +47,10 @@ from ..utilities.lazy_lists import from_iterator
 from . import locations
 from .classes import ActionDesignator, LocationDesignator, MotionDesignator
 from .locations import ACCEPT, MAYBE_REJECT, UNKNOWN
-from .python_kinds import TYPE, Kind, type_name
+from .python_kinds import TYPE, Kind, forget_for_derived, hold_for_derived, type_name
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from .signatures import Generates, Grounds, Judges
 
@@ -58,7 +61,8 @@ L = TypeVar("L", bound=LocationDesignator)
 PYTHON_GROUNDING = sym("CRAMHY::PYTHON-GROUNDING")
 REJECT = kw.reject
 VERDICTS = (ACCEPT, UNKNOWN, MAYBE_REJECT, REJECT)
-_forgetting: dict[Callable[..., object], Callable[[], None]] = per_image({})
+_forgetting: dict[Callable[..., object], dict[Kind | None, Callable[[], None]]] = per_image({})
+"""Function → the kind for which it was defined → what undoes that."""
 
 import_predicates(
     PYTHON_GROUNDING,
@@ -227,15 +231,29 @@ def _decorated(given: Any, cls: type, define: Callable[[Any, Kind | None], None]
 
 def _define_rule(function: Callable[..., Any], kind: Kind | None, what: str) -> None:
     grounding = Grounding(function, f"{what} grounding")
-    name, head = Name(_symbol(function)), sym(f"DESIG::{what.upper()}-GROUNDING")
-    goals = kind_goals(kind) if kind is not None else []
-    with fact_group(name, extends=[head]) as group:
-        group.rule(
-            Goal(to_lisp([Name(head), V.designator, V.solution])),
-            *goals,
-            Goal(to_lisp([Name(PYTHON_GROUNDING), grounding, V.designator, V.solution])),
-        )
-    _forgetting[function] = lambda: remove_fact_group(name)
+    name, head = Name(_symbol(function, kind)), sym(f"DESIG::{what.upper()}-GROUNDING")
+    inherited = Name(USER.intern(f"{name.symbol.name} FOR DERIVED TYPES"))
+
+    def define(group_name: Name, kinds: Iterable[Kind | None]) -> None:
+        with fact_group(group_name, extends=[head]) as group:
+            for each in kinds:
+                group.rule(
+                    Goal(to_lisp([Name(head), V.designator, V.solution])),
+                    *(kind_goals(each) if each is not None else []),
+                    Goal(to_lisp([Name(PYTHON_GROUNDING), grounding, V.designator, V.solution])),
+                )
+
+    define(name, [kind])
+    remove_fact_group(inherited)
+    if kind is not None:
+        hold_for_derived(inherited.symbol, kind, lambda kinds: define(inherited, kinds))
+
+    def forget_it() -> None:
+        forget_for_derived(inherited.symbol)
+        remove_fact_group(name)
+        remove_fact_group(inherited)
+
+    _forgetting.setdefault(function, {})[kind] = forget_it
 
 
 def kind_goals(kind: Kind) -> list[Goal]:
@@ -244,15 +262,28 @@ def kind_goals(kind: Kind) -> list[Goal]:
     return goals + [P.once(P.desig_prop(V.designator, [kw[lisp_name(field)], V._])) for field in kind.required]
 
 
-def _symbol(function: Callable[..., Any]) -> Symbol:
-    """The name of ``function`` in Lisp, made of the names of its module and itself."""
-    module = "" if function.__module__ == "__main__" else f"{function.__module__}."
-    found: Symbol = USER.intern(f"{module}{function.__qualname__}".replace(".<locals>", "").replace("_", "-").upper())
+_anonymous = count(1)
+
+
+def _symbol(function: Callable[..., Any], kind: Kind | None = None) -> Symbol:
+    """The name of ``function`` in Lisp, made of the names of its module and itself.
+
+    A lambda and a partial have none, and a function may be there for several kinds: then a number, or the kind, tells them apart.
+    """
+    named = getattr(function, "func", function)
+    name = getattr(named, "__qualname__", type(named).__qualname__)
+    module = getattr(named, "__module__", None) or ""
+    if named is not function or "<lambda>" in name:
+        name = f"{name}-{next(_anonymous)}"
+    elif kind is not None and next(iter(_forgetting.get(function, (kind,)))) is not kind:
+        name = f"{name} FOR {kind.__qualname__}"
+    prefix = "" if module in ("", "__main__") else f"{module}."
+    found: Symbol = USER.intern(f"{prefix}{name}".replace(".<locals>", "").replace("_", "-").upper())
     return found
 
 
 def _define_generator(function: Callable[..., Any], kind: Kind | None, priority: int) -> None:
-    grounding, name = Grounding(function, "location generator"), _symbol(function)
+    grounding, name = Grounding(function, "location generator"), _symbol(function, kind)
 
     def candidates(location: Any) -> Any:
         if kind is not None and not isinstance(location, kind):
@@ -263,7 +294,7 @@ def _define_generator(function: Callable[..., Any], kind: Kind | None, priority:
     name.function = candidates
     with reasoning():
         locations.register_location_generator(priority, name)
-    _forgetting[function] = lambda: locations.delete_location_generator_function(name)
+    _forgetting.setdefault(function, {})[kind] = lambda: locations.delete_location_generator_function(name)
 
 
 def _iterated(result: Any) -> Iterator[Any]:
@@ -283,7 +314,7 @@ def _lisp_candidates(grounding: Grounding, location: Any, found: Iterator[Any]) 
 
 
 def _define_validator(function: Callable[..., Any], kind: Kind | None, priority: int) -> None:
-    grounding, name = Grounding(function, "location validator"), _symbol(function)
+    grounding, name = Grounding(function, "location validator"), _symbol(function, kind)
 
     def verdict(location: Any, candidate: Any) -> Any:
         if kind is not None and not isinstance(location, kind):
@@ -293,7 +324,7 @@ def _define_validator(function: Callable[..., Any], kind: Kind | None, priority:
     name.function = verdict
     with reasoning():
         locations.register_location_validation_function(priority, name)
-    _forgetting[function] = lambda: locations.delete_location_validation_function(name)
+    _forgetting.setdefault(function, {})[kind] = lambda: locations.delete_location_validation_function(name)
 
 
 def _verdict(answer: Any) -> Keyword:
@@ -313,6 +344,5 @@ def _verdict(answer: Any) -> Keyword:
 
 def forget(function: Callable[..., object]) -> None:
     """Undo the decorator of this module on ``function``. For other functions this does nothing."""
-    taking_out = _forgetting.pop(function, None)
-    if taking_out is not None:
+    for taking_out in _forgetting.pop(function, {}).values():
         taking_out()

@@ -35,7 +35,7 @@ from . import defaults as _defaults  # noqa: F401  the predicates and the genera
 from .classes import ALL, ActionDesignator, Designator, HumanDesignator, LocationDesignator, MotionDesignator, ObjectDesignator, new
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from .signatures import Key, Pair
 
@@ -76,6 +76,7 @@ class Kind(type):
             _check_body(field, value, own, name)
         known = _declared.setdefault((made.designators, made.type_), [])
         known[:] = [made, *(other for other in known if (other.__module__, other.__qualname__) != (made.__module__, made.__qualname__))]
+        _define_for_derived(made)
         return made
 
     def __init__(cls, name: str, bases: tuple[type, ...], body: dict[str, Any], **options: Any):
@@ -129,6 +130,42 @@ class Kind(type):
             return all(_entry(designator, lisp_name(name)) is not None for name in cls.required)
         derived: Any = type.__subclasses__(cls)
         return any(other._fits(designator) for other in derived)
+
+
+_for_derived: dict[Symbol, tuple[Kind, Callable[[list[Kind]], None]]] = per_image({})
+"""The name of a definition for a kind → the kind, and the function that defines the same for kinds derived from it."""
+
+
+def hold_for_derived(name: Symbol, kind: Kind, define: Callable[[list[Kind]], None]) -> None:
+    """Call ``define(derived kinds)`` now, and whenever there are others.
+
+    What is defined for the derived kinds itself comes first: these definitions move behind it.
+    """
+    _for_derived[name] = kind, define
+    _define_for_derived(kind)
+
+
+def forget_for_derived(name: Symbol) -> None:
+    """Undo `hold_for_derived`."""
+    _for_derived.pop(name, None)
+
+
+def _define_for_derived(kind: Kind) -> None:
+    concerned = [(base, define) for base, define in _for_derived.values() if base in kind.__mro__]
+    for base, define in sorted(concerned, key=lambda pair: -len(pair[0].__mro__)):
+        if kinds := _derived(base):
+            define(kinds)
+
+
+def _derived(kind: Kind) -> list[Kind]:
+    """The kinds derived from ``kind``, one for each type but its own, those derived directly first."""
+    found: dict[Any, Any] = {kind.type_: kind}
+    waiting = [kind]
+    while waiting:
+        for other in type.__subclasses__(waiting.pop(0)):
+            found.setdefault(other.type_, other)
+            waiting.append(other)
+    return list(found.values())[1:]
 
 
 def _type_keyword(class_name: str, given: Any) -> Keyword:
@@ -289,7 +326,7 @@ def declaration(designator: Designator, name: str) -> Kind | None:
 
 
 def _attribute(self: Designator, name: str) -> Any:
-    if not name.startswith("_"):
+    if not name.startswith("_") and name not in _OWN:  # one of its own is not filled yet: it is being made
         found = _entry(self, lisp_name(name))
         if found is not None:
             return _value(self, found)

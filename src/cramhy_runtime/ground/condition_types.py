@@ -14,6 +14,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from .data import UNBOUND, Cons, Symbol
 from .dynamic import binding
 from .classes import class_name, find_class, when_classes_change
+from .pickling import reduced_condition
 from .ports import PORTS
 from .packages import Package, find_package, is_symbol, printed, sym, symbol_name
 
@@ -171,6 +172,14 @@ class Condition(BaseException):
         super().__init__(*arguments)
         for name, value in slots.items():
             setattr(self, name, value)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return reduced_condition(self)
+
+    def __copy__(self) -> Condition:
+        made = self.__class__.__new__(self.__class__, *self.args)
+        made.__dict__.update(self.__dict__)
+        return made
 
     def report(self) -> str:
         """The text for the user."""

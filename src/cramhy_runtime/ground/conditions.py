@@ -305,6 +305,8 @@ def signal_error(condition: types.Condition) -> NoReturn:
 
 def nobody_handled(condition: types.Condition) -> NoReturn:
     """What `error` does with a condition that all handlers declined."""
+    if ACTIVE.value is None:
+        raise condition  # there is no task, and no debugger
     if _root.value is not None:
         _root.value(condition)
     invoke_debugger(condition)

@@ -38,6 +38,9 @@ class _Marker:
     def __repr__(self):
         return self.name
 
+    def __reduce__(self):
+        return self.name.strip("#<>").upper()
+
 
 UNBOUND = _Marker("#<unbound>")
 """The value of a symbol or slot that has none."""
@@ -139,13 +142,11 @@ class Symbol:
     def __repr__(self) -> str:
         return f"{self.package.name}::{self.name}" if self.package else f"#:{self.name}"
 
-    def __reduce__(self):
-        return (_symbol_in, (self.name, self.package.name)) if self.package else (Symbol, (self.name,))
+    def __deepcopy__(self, memo):
+        return self
 
-
-def _symbol_in(name, package):
-    """What unpickling a symbol calls."""
-    return PORTS.signals.intern(name, package)
+    def __copy__(self):
+        return self
 
 
 class Keyword(Symbol):

@@ -46,6 +46,9 @@ class Package:
     def __repr__(self):
         return f'#<PACKAGE "{self.name}">' if self.name is not None else "#<PACKAGE (deleted)>"
 
+    def __reduce__(self):
+        return ensure_package, (self.name,)
+
     @property
     def names(self):
         return [self.name, *self.nicknames] if self.name is not None else []

@@ -26,7 +26,7 @@ Where the parts are:
   of the processor
 * `tasks`      a task, its end, the request to end; `cleanup` the cleanup of a task that ends
 * `timers`, `clocks`, `throttle` (of virtual time for spectators), `budget` (the count of checkpoints), `reports` (for people),
-  `unstarted` (calls that ran nothing), `errors`
+  `unstarted` (calls that ran nothing), `looking_on` (spectators), `errors`
 * `waiting`    tasks that wait for a change, made of the functions below
 * `backends`   stacks: threads of the operating system, greenlets, or WebAssembly's; `depth` how deep code may recurse on them
 * `active`     the functions below, which act on the active kernel; `typing_names`, `signatures` the names in their annotations;

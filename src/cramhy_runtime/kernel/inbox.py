@@ -12,6 +12,7 @@ takes. It also stands still while a program outside owes an answer (`time_held`)
 from __future__ import annotations
 
 from _thread import get_ident
+from contextvars import copy_context
 from contextlib import contextmanager
 
 from .budget import SLICE, budget, need_headroom
@@ -87,7 +88,7 @@ class Outside:
         In virtual time the clock stands still until FN has returned. A request to end the task is delivered when FN has
         returned. An interrupt of the main task breaks FN off, if it comes from a signal handler or if FN runs in a helper
         thread (whose result is then lost). Inside of `woken_by` it does not: FN is woken, and returns. Exceptions of FN are
-        raised here.
+        raised here. FN sees the caller's context variables, as in ``asyncio.to_thread``; what it sets is its own.
         """
         me = self.current
         if me.attention:
@@ -100,7 +101,8 @@ class Outside:
         if dynamic is not None:
             dynamic.leave()
         try:
-            return self.backend.run_blocking(self, me, lambda: fn(*args))
+            context = copy_context()
+            return self.backend.run_blocking(self, me, lambda: context.run(fn, *args))
         finally:
             me.state = RUNNING
             self.current = me

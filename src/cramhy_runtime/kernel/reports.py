@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+import threading
 from types import CodeType, FrameType
 from .typing_names import Any, Protocol
 
@@ -200,6 +201,25 @@ def deadlock_text(kernel):
         "Nothing can happen any more: every task waits, and no timer and no outside event can wake one.\n"
         f"{waiting_list(kernel)}\n"
         "Look for the one that should have been woken: a fluent that nobody sets any more, or tasks that wait for each other."
+        f"{_threads_text()}"
+    )
+
+
+def _threads_text():
+    """What to do about threads of the user's, for which no plan waits; empty if there are none."""
+    names = [
+        thread.name
+        for thread in threading.enumerate()
+        if thread is not threading.main_thread() and not thread.name.startswith(("cramhy", "Dummy-"))  # these are ours
+    ]
+    if not names:
+        return ""
+    more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+    return (
+        f"\nThe program has other threads ({', '.join(names[:3])}{more}). Plans do not wait for threads of Python, and virtual time passes "
+        "without them. If one of them was to set the fluent, let a branch of the plan do its work: cpl.run_blocking(work) returns what it "
+        "returns, and time stands still meanwhile. Or run the plan in wall time, cpl.run(main, clock='wall'), and open "
+        "`with kernel.outside_source():` in it while the thread works."
     )
 
 

@@ -29,7 +29,7 @@ from ..cpl.current import inside_plan
 from cramhy_runtime.cpl.fluents.fluents import Fluent
 from ..designators.classes import Designator
 from ..designators.python_grounding import kind_goals
-from ..designators.python_kinds import Kind
+from ..designators.python_kinds import Kind, hold_for_derived
 from cramhy_runtime.kernel.unstarted import plain_function
 from cramhy_runtime.ground.condition_types import Condition
 from cramhy_runtime.ground.python_exceptions import from_python
@@ -37,7 +37,7 @@ from cramhy_runtime.ground.data import MultipleValues, Symbol, list_from
 from cramhy_runtime.ground.classes import register_class
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.prolog.python.ground import reasoning
-from cramhy_runtime.prolog.python.rules import fact_group
+from cramhy_runtime.prolog.python.rules import fact_group, remove_fact_group
 from cramhy_runtime.prolog.python.terms import USER, Goal, Name, P, V, claim, import_predicates, lisp_name, to_lisp, to_python
 from . import asynchronous, executing, executive, modules
 from .matching import AVAILABLE, MATCHING
@@ -107,6 +107,7 @@ def _no_name(name: str) -> Symbol:
 
 
 def _say_what_it_is_for(name: Symbol, kinds: Any, matches: Any) -> None:
+    kinds = list(kinds)
     for kind in kinds:
         if not isinstance(kind, Kind):
             raise TypeError(
@@ -117,13 +118,27 @@ def _say_what_it_is_for(name: Symbol, kinds: Any, matches: Any) -> None:
             raise TypeError(
                 f"{kind.__name__} describes all {kind.__name__.lower()}s. Say so by a function: matches=lambda designator: True."
             )
+    head = Goal(to_lisp([Name(MATCHING), V.designator, Name(name)]))
     with fact_group(Name(USER.intern(f"{name.name} IN PYTHON")), extends=[Name(MATCHING), Name(AVAILABLE)]) as group:
-        head = Goal(to_lisp([Name(MATCHING), V.designator, Name(name)]))
         for kind in kinds:
             group.rule(head, *kind_goals(kind))
         if matches is not None:
             group.rule(head, P.lisp_pred(matches, V.designator))
         group.rule(Goal(to_lisp([Name(AVAILABLE), Name(name)])))
+    for number, kind in enumerate(kinds):
+        _hold_for_derived(name, number, kind, head)
+
+
+def _hold_for_derived(name: Symbol, number: int, kind: Kind, head: Goal) -> None:
+    inherited = USER.intern(f"{name.name} FOR DERIVED TYPES {number}")
+
+    def define(kinds: list[Kind]) -> None:
+        with fact_group(Name(inherited), extends=[Name(MATCHING)]) as group:
+            for derived in kinds:
+                group.rule(head, *kind_goals(derived))
+
+    remove_fact_group(Name(inherited))
+    hold_for_derived(inherited, kind, define)
 
 
 class AsynchronousModule(asynchronous.AsynchronousProcessModule):
@@ -218,8 +233,10 @@ def execute(module: Designation, designator: Designator) -> Any:
     made again afterwards. Several values of a module of Lisp are a tuple. Errors: an unknown module, TypeError for anything but a
     designator, and calls outside of plans. Source: process-modules.md 4.3.
     """
+    module_symbol(module)
+    _checked(designator)
     inside_plan("EXECUTE")
-    return in_python(_asked(executing.pm_execute, module, _checked(designator)))
+    return in_python(_asked(executing.pm_execute, module, designator))
 
 
 @for_python
@@ -229,8 +246,9 @@ def perform(designator: Designator) -> Any:
     Failures: SimplePlanFailure if there is no module or plan function, ReferenceFailure if the designator cannot be resolved, and the
     failures of the module or the plan. Anything but a designator is a TypeError. Source: process-modules.md section 8.
     """
+    _checked(designator)
     inside_plan("PERFORM")
-    return in_python(executive.perform(_checked(designator)))
+    return in_python(executive.perform(designator))
 
 
 @for_python
@@ -239,6 +257,7 @@ def monitor(module: Designation, *designators: Designator) -> Any:
 
     A failure of the module is raised. If the module ends meanwhile, it is an error. Source: process-modules.md 4.4, 6.
     """
+    module_symbol(module)
     inside_plan("MONITOR")
     return in_python(_asked(lambda found: executing.monitor_process_module(found, designators=list_from(designators)), module))
 
@@ -246,6 +265,7 @@ def monitor(module: Designation, *designators: Designator) -> Any:
 @for_python
 def cancel(module: Designation) -> None:
     """End the present run of ``module``, without waiting for that. The caller of the run gets a failure. Source: process-modules.md 4.4."""
+    module_symbol(module)
     inside_plan("CANCEL")
     _running(module).cancel.set(True)
 
@@ -253,6 +273,7 @@ def cancel(module: Designation) -> None:
 @for_python
 def status(module: Designation) -> Fluent[Keyword]:
     """The fluent of the status of ``module``: ``kw.waiting``, ``kw.running``, ``kw.failed``, or ``kw.offline`` when it has ended."""
+    module_symbol(module)
     inside_plan("STATUS")
     found: Fluent[Keyword] = _running(module).status_fluent
     return found
@@ -265,6 +286,7 @@ def running_module(module: Name | Symbol | str) -> modules.AbstractProcessModule
 @for_python
 def running_module(module: Designation) -> Any:
     """The object of a running module. For an `AsynchronousModule` it has `finish` and `fail`. An unknown module is an error."""
+    module_symbol(module)
     inside_plan("RUNNING-MODULE")
     return _running(module)
 

@@ -35,10 +35,13 @@ SECONDS = 10
 
 
 class Unavailable(Exception):
-    """A transform that the buffer cannot give. ``kind``: lookup, connectivity, extrapolation or empty; ``hint``: what to try."""
+    """A transform that the buffer cannot give. ``kind``: lookup, connectivity, extrapolation or empty; ``hint``: what to try.
 
-    def __init__(self, kind: str, text: str, hint: str | None = None):
-        super().__init__(text)
+    ``text`` is that of the original. Python sees ``told`` instead, if it is given.
+    """
+
+    def __init__(self, kind: str, text: str, hint: str | None = None, told: str | None = None):
+        super().__init__(told or text)
         self.kind, self.text, self.hint = kind, text, hint
 
 
@@ -93,9 +96,9 @@ class Link:
         second = floor(time)
         bucket = self.buckets[second % SECONDS]
         if bucket is None:
-            raise Unavailable("empty", "The assertion (NOT (CL-TF::CACHE-EMPTY CL-TF::CACHE)) failed.", self._known())
+            raise self._unknown_at(time, "empty", "The assertion (NOT (CL-TF::CACHE-EMPTY CL-TF::CACHE)) failed.")
         if abs(time - bucket.stamps[-1]) > SECONDS:
-            raise Unavailable("extrapolation", "Requested time points to the future. Cannot transform.", self._known())
+            raise self._unknown_at(time, "extrapolation", "Requested time points to the future. Cannot transform.")
         before = after = None
         if bucket.second == second:
             place = bisect_right(bucket.stamps, time)
@@ -104,19 +107,29 @@ class Link:
             before = bucket.transforms[place - 1] if place else self._beside(second - 1, -1)
             after = bucket.transforms[place] if place < len(bucket.stamps) else self._beside(second + 1, 0)
         if before is None or after is None:
-            raise Unavailable("extrapolation", "The requested time stamp does not point into the cache.", self._known())
+            raise self._unknown_at(time, "extrapolation", "The requested time stamp does not point into the cache.")
         return _between(before, after, time)
 
     def _beside(self, second, place):
         bucket = self.buckets[second % SECONDS]
         return bucket.transforms[place] if bucket is not None and bucket.second == second else None
 
-    def _known(self):
+    def _unknown_at(self, time: float, kind: str, text: str) -> Unavailable:
+        """The exception for a ``time`` that is not known. The original says "future" of the past, too."""
         stamps = [stamp for bucket in self.buckets if bucket is not None for stamp in bucket.stamps]
         way = f"from {self.child} to {self.parent}"
         if stamps == [0]:
-            return f"The transform {way} is a static one, with the stamp 0: it is found when no time is asked for."
-        return f"What is known of the transform {way} is from {min(stamps)} to {max(stamps)} s. Without a time the newest is taken."
+            hint = f"The transform {way} is a static one, with the stamp 0: it is found when no time is asked for."
+            return Unavailable(kind, text, hint, f"The transform {way} is not known at {float(time)} s. {hint}")
+        first, last = float(min(stamps)), float(max(stamps))
+        if time < first:
+            where = f"{float(time)} s is {first - time:g} s in the past of that"
+        elif time > last:
+            where = f"{float(time)} s is {time - last:g} s in the future of that"
+        else:
+            where = f"{float(time)} s is in a gap of that, between stamps of seconds that are no neighbours"
+        hint = f"What is known of the transform {way} is from {first} to {last} s; {where}. Without a time the newest is taken."
+        return Unavailable(kind, text, hint, f"The transform {way} is not known at {float(time)} s. {hint}")
 
 
 def _between(before: TransformStamped, after: TransformStamped, time: float) -> TransformStamped:
@@ -167,7 +180,8 @@ class FrameBuffer:
     def lookup(self, target: str, source: str, time: float | None = None) -> TransformStamped:
         """The transform that takes coordinates in ``source`` into those in ``target`` at ``time`` (seconds; ``None`` or 0: the newest).
 
-        Both frames must be known, and different. Errors: `Unavailable`, and `ValueError` for a time that is none.
+        Both frames must be known. From a frame to itself it is the identity, at any time. Errors: `Unavailable`, and `ValueError` for a
+        time that is none.
         """
         if time is not None and not (is_real(time) and isfinite(time)):
             when = float(time) if is_real(time) else time
@@ -175,6 +189,12 @@ class FrameBuffer:
         from_source, from_target = self._ways(unslash_frame(target), unslash_frame(source))
         up = [link.at(time) for link in from_source]
         down = [link.at(time) for link in from_target]
+        if not up and not down:
+            link = self.links.get(unslash_frame(source))
+            stamp = time or (link.newest.stamp if link is not None else 0.0)
+            return TransformStamped(
+                unslash_frame(target), unslash_frame(source), DoubleFloat(stamp), vector((0.0, 0.0, 0.0)), quaternion((0.0, 0.0, 0.0, 1.0))
+            )
         if len(up) == 1 and not down:
             return up[0]
         stamp = up[-1].stamp if up else down[0].stamp

@@ -14,7 +14,20 @@ import itertools
 from cramhy_runtime.ground import equality
 from cramhy_runtime.kernel.active import checkpoint
 from cramhy_runtime.ground.conditions import error, type_error, warn
-from cramhy_runtime.ground.data import Cons, Keyword, LispString, MultipleValues, Symbol, conses, list_from, one, python_list, truth
+from cramhy_runtime.ground.data import (
+    TRUE_CLASSES,
+    Cons,
+    DoubleFloat,
+    Keyword,
+    LispString,
+    MultipleValues,
+    Symbol,
+    conses,
+    list_from,
+    one,
+    python_list,
+    truth,
+)
 from cramhy_runtime.ground.functions import function_of
 
 from .compiled_patterns import LOOK_CLOSER, Matchers, unfit
@@ -27,8 +40,16 @@ ANONYMOUS_SEGMENT = CUT.intern("!?_")
 _counter = itertools.count(1)
 
 
+_COMPARED_BY_LISP = (TRUE_CLASSES | {DoubleFloat} | equality.EQUAL_TO_THEMSELVES) - {bytes, tuple}
+"""Classes whose objects only ``equal`` compares, though Python finds more of them equal: ``True`` and 1, ``0.0`` and ``-0.0``."""
+
+
 def same_atom(a, b):
-    """CL ``equal`` for atoms, as a Python bool; the engine's innermost test, so the common kinds come first."""
+    """CL ``equal`` for atoms, as a Python bool; the engine's innermost test, so the common kinds come first.
+
+    Values of Python's classes (dates, paths, bytes, frozen dataclasses, named tuples) are the same if they are of one class and equal.
+    Objects that can change have no hash, or that of their identity, and are the same only as the same object.
+    """
     if a is b:
         return True
     kind = a.__class__
@@ -36,7 +57,14 @@ def same_atom(a, b):
         return False
     if (kind is int or kind is str) and kind is b.__class__:
         return a == b
-    return equality.equal(a, b) is not None
+    if equality.equal(a, b) is not None:
+        return True
+    return kind is b.__class__ and kind not in _COMPARED_BY_LISP and _is_value(kind) and bool(a == b)
+
+
+def _is_value(cls):
+    """Whether objects of the class ``cls`` are values: equal by their contents, and never changed."""
+    return cls.__eq__ is not object.__eq__ and cls.__hash__ is not None and cls.__hash__ is not object.__hash__
 
 
 def equal(a, b):

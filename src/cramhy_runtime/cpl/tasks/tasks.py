@@ -31,7 +31,7 @@ from cramhy_runtime.ground.data import NO_VALUES, Cons, Keyword, Symbol, truth
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.source_places import locate
 from cramhy_runtime.ground.dispatch.generic_functions import generic
-from cramhy_runtime.ground.looking_on import only_looked_at
+from cramhy_runtime.kernel.looking_on import only_looked_at
 from cramhy_runtime.kernel.unstarted import UNSTARTED, ran
 from ..current import current_task
 from cramhy_runtime.kernel.reports import DO_NOT_SWALLOW

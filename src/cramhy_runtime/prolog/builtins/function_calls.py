@@ -8,10 +8,12 @@ Plan failures and other conditions that are not errors pass. Source: prolog.md s
 
 from __future__ import annotations
 
+import operator
+
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.catching import CATCHABLE, Case, HandlerExit, caught
 from cramhy_runtime.ground.conditions import Error, SimpleWarning, StorageCondition, type_error, undefined_function, warn
-from cramhy_runtime.ground.data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, lisp_list, truth
+from cramhy_runtime.ground.data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, is_ratio, lisp_list, truth
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.source_places import exception_position
 
@@ -138,17 +140,24 @@ def lisp_pred(m, predicate, arguments):
     return done and truth(value)
 
 
-_COMPARISONS = {sym("<"): int.__lt__, sym(">"): int.__gt__, sym("<="): int.__le__, sym(">="): int.__ge__}
-_FLOAT_COMPARISONS = {sym("<"): float.__lt__, sym(">"): float.__gt__, sym("<="): float.__le__, sym(">="): float.__ge__}
+_COMPARISONS = {sym("<"): operator.lt, sym(">"): operator.gt, sym("<="): operator.le, sym(">="): operator.ge}
 
 
-def compare(m, operator, a, b):
-    """Compare two numbers. Other arguments go to the Lisp function, which signals its error."""
-    if a.__class__ is int and b.__class__ is int:
-        return _COMPARISONS[operator](a, b)
-    if isinstance(a, float) and isinstance(b, float):
-        return _FLOAT_COMPARISONS[operator](a, b)
-    return lisp_pred(m, operator, (a, b))
+def compare(m, name, a, b):
+    """Compare two numbers. For other arguments the Lisp function signals its error; where Lisp is not loaded, it is the same one."""
+    if _is_real(a) and _is_real(b):
+        return _COMPARISONS[name](a, b)
+    function = name if name.function.__class__ is not UndefinedFunction else _REFUSING
+    done, value = call_lisp(function, (a, b), "predicate", name, m)
+    return done and truth(value)
+
+
+def _is_real(thing):
+    return (isinstance(thing, (int, float)) and thing.__class__ is not bool) or is_ratio(thing)
+
+
+_REFUSING = Symbol("REFUSE")
+_REFUSING.function = lambda *arguments: type_error(next(thing for thing in arguments if not _is_real(thing)), "REAL")
 
 
 def lisp_fun_goal(m, *terms):

@@ -22,12 +22,14 @@ that ``extends`` such a predicate can add facts to it. Source: prolog.md 5 and 1
 
 from __future__ import annotations
 
+import functools
+
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar, overload, subscripted
 
 from cramhy_runtime.kernel.unstarted import plain_function, ran
 from cramhy_runtime.ground.data import Cons, Symbol, list_from
 from ..builtins import native_predicates as natives
-from .terms import P, Name, claim, python_arguments, show, to_lisp, what_nil_means
+from .terms import P, Name, claim, lisp_name, python_arguments, show, to_lisp, what_nil_means
 from ..symbols import sym
 from ..terms.terms import Var, deref, import_term, resolve
 
@@ -65,6 +67,10 @@ class Predicate(Name, Generic[F]):
             self.parameters = code.co_varnames[bound : code.co_argcount]
             self.most = None if code.co_flags & 0x04 else len(self.parameters)
             self.least = len(self.parameters) - len(getattr(function, "__defaults__", None) or ())
+
+    def __get__(self, instance: object, owner: type | None = None) -> Any:
+        """As functions in a class: ``robot.can_reach(V.x)`` is the goal whose first argument is ``robot``."""
+        return self if instance is None else functools.partial(self, instance)
 
     @property
     def where(self) -> str:
@@ -217,7 +223,15 @@ def _define(function: F, kind: str, name: Any) -> Predicate[F]:
     if name is None and not own.isidentifier():
         raise TypeError(f"@{kind} needs a name for {function!r}: write {kind}(name=P.a_name)(...).")
     plain_function(function, f"a @{kind}", yields=kind == "predicate")
-    symbol = to_lisp(name) if name is not None else getattr(P, own).symbol
+    if kind == "predicate" and getattr(function, "__defaults__", None):
+        code: Any = getattr(function, "__code__", None)
+        optional = code.co_varnames[code.co_argcount - 1]
+        raise TypeError(
+            f"The @predicate {own} ({code.co_filename}:{code.co_firstlineno}) has a default for {optional}. The arguments of a goal are "
+            f"those of all parameters, and then the solution, so nobody could tell whether an argument is {optional} or the solution. "
+            "Leave the default out, and give the value in the goal."
+        )
+    symbol = to_lisp(name) if name is not None else _own_symbol(function, own)
     if symbol.package is not None and symbol.package.built_in:
         raise TypeError(f"{show(symbol)} is a name of cramhy's package {symbol.package.name}. Choose another one: {kind}(name=P.a_name).")
     claim(symbol, function, kind)
@@ -228,6 +242,13 @@ def _define(function: F, kind: str, name: Any) -> Predicate[F]:
     else:
         natives.test(symbol, group)(lambda m, *terms: made.value(m, *terms) if kind == "function" else made.holds(m, *terms))
     return made
+
+
+def _own_symbol(function: Any, own: str) -> Symbol:
+    """The symbol for the name of ``function``. That of a method has the name of its class in front."""
+    of_class = getattr(function, "__qualname__", own).rpartition("<locals>.")[2].rpartition(".")[0]
+    found: Symbol = P[lisp_name(f"{of_class}.{own}")].symbol if of_class else getattr(P, own).symbol
+    return found
 
 
 def inline(kind: str, function: F) -> Predicate[F]:

@@ -15,6 +15,7 @@ may need one. Source: prolog.md sections 5 and 6.
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Self, overload
 
@@ -32,7 +33,7 @@ from ..builtins import builtins as _builtins, productions as _productions, rete 
 from ..engine.database import functors
 from ..explanations.explanations import Explanation
 from .ground import reasoning
-from .terms import USER, Goal, Name, Variable, goal_form, import_predicates, in_python_names, show, to_lisp, to_python
+from .terms import USER, Goal, Name, Tail, Variable, goal_form, import_predicates, in_python_names, show, to_lisp, to_python
 from cramhy_runtime.utilities.patterns import ANONYMOUS
 from ..symbols import sym
 
@@ -128,6 +129,8 @@ class Answer(Mapping[str, Any]):
 
     def __init__(self, values: Mapping[Symbol, object]):
         self._values = {_variable_name(symbol): value for symbol, value in values.items()}
+        if not _METHODS.isdisjoint(self._values):
+            self.__class__ = _NamedLikeMethods
 
     def __getattr__(self, name: str) -> Any:
         if name == "_values":  # one that is being unpickled
@@ -151,8 +154,36 @@ class Answer(Mapping[str, Any]):
         """An answer is true, even without variables."""
         return True
 
+    def __eq__(self, other: object) -> bool:
+        return dict(self._pairs()) == dict(other._pairs() if isinstance(other, Answer) else other) if isinstance(other, Mapping) else False
+
+    __hash__ = None  # type: ignore[assignment]  # as for all mappings
+
     def __repr__(self) -> str:
-        return f"Answer({', '.join(f'{name}={value!r}' for name, value in self.items())})"
+        return f"Answer({', '.join(f'{name}={value!r}' for name, value in self._pairs())})"
+
+    def _pairs(self) -> list[tuple[str, Any]]:
+        return [(name, self[name]) for name in self._values]
+
+    def in_lisp(self, symbol: Symbol) -> Any:
+        """The value of the variable ``symbol`` as Lisp data; the symbol itself if the answer leaves it open."""
+        return self._values.get(_variable_name(symbol), symbol)
+
+
+_METHODS = frozenset(("keys", "items", "values", "get", "in_lisp"))
+
+
+class _NamedLikeMethods(Answer):
+    """An answer with a variable that is called like one of its methods: the attribute is the value of the variable."""
+
+    __slots__ = ()
+
+    def __getattribute__(self, name: str) -> Any:
+        if name in _METHODS:
+            values = object.__getattribute__(self, "_values")
+            if name in values:
+                return self[name]
+        return super().__getattribute__(name)
 
 
 def _variable_name(symbol: Symbol) -> str:
@@ -201,6 +232,8 @@ def findall(template: object, *goals: Goal) -> list[Any]:
     """The list of ``template`` in each answer, in order, with values in place of its variables. Errors are as in `solve`.
 
     findall(V.who, P.ancestor("tom", V.who))        findall((V.x, V.y), P.parent(V.x, V.y))
+
+    template: a variable, a goal, or a list, tuple, set, dict or dataclass with variables in it; anything else comes back as it is.
     """
     return [_instance(template, answer) for answer in solve(*goals)]
 
@@ -208,9 +241,36 @@ def findall(template: object, *goals: Goal) -> list[Any]:
 def _instance(template: Any, answer: Answer) -> Any:
     if isinstance(template, Variable):
         return answer[template] if template.name in answer else template
-    if isinstance(template, (tuple, list)):
-        return template.__class__([_instance(part, answer) for part in template])
+    if isinstance(template, Goal):
+        return Goal(_instance_of_form(template.form, answer))
+    cls: Any = template.__class__
+    if isinstance(template, dict):
+        return cls([(_instance(key, answer), _instance(value, answer)) for key, value in template.items()])
+    if isinstance(template, (tuple, list, set, frozenset)):
+        parts = [instance for part in template for instance in _instances(part, answer)]
+        return cls(*parts) if hasattr(cls, "_fields") else cls(parts)
+    if hasattr(cls, "__dataclass_fields__") and not isinstance(template, type):
+        made = copy.copy(template)
+        for name in [name for name in cls.__dataclass_fields__ if hasattr(template, name)]:
+            object.__setattr__(made, name, _instance(getattr(template, name), answer))
+        return made
     return template
+
+
+def _instances(part: Any, answer: Answer) -> list[Any]:
+    """The instances of an element of a template: several, if it is the rest of a list."""
+    if part.__class__ is not Tail:
+        return [_instance(part, answer)]
+    rest = _instance(part.rest, answer)
+    return rest if isinstance(rest, list) else [Tail(rest)]
+
+
+def _instance_of_form(form: Any, answer: Answer) -> Any:
+    if isinstance(form, Cons):
+        return Cons(_instance_of_form(form.car, answer), _instance_of_form(form.cdr, answer))
+    if isinstance(form, Symbol) and form.name[:1] == "?":
+        return answer.in_lisp(form)
+    return form
 
 
 def explain(question: object) -> Explanation:

@@ -8,7 +8,8 @@
 * A list or tuple is a list, ``[V.first, *V.rest]`` one whose rest is a variable. ``None``, ``False`` and ``[]`` are the empty list,
   ``nil``: Lisp has one object for them. ``True`` is ``t``, and neither 1 nor 1.0.
 * A function is a symbol with that function, so rules and ``perform`` can call it. Any other object, also a named tuple, stands for
-  itself: two terms with such objects are the same if the objects are the same.
+  itself. Two terms with such objects are the same if the objects are values of one class and equal (dates, paths, bytes, frozen
+  dataclasses), or if they are one object.
 
 ``&``, ``|`` and ``~`` combine goals, and ``<``, ``>``, ``<=`` and ``>=`` compare numbers. As with fluents, ``==`` asks whether two things
 are the same object, and ``and``, ``or``, ``not`` are errors. Python sees lists of Lisp as Python lists (`to_python`).
@@ -21,7 +22,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import BuiltinFunctionType, FunctionType, MethodType
-from cramhy_runtime.kernel.typing_names import Any, NoReturn, annotations_of
+from cramhy_runtime.kernel.typing_names import Any, NoReturn, Self, annotations_of
 
 from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, Cons, Keyword, Symbol, list_from
 from cramhy_runtime.ground.python_names import attribute_symbols
@@ -59,7 +60,7 @@ class Goal:
 
     def __bool__(self) -> NoReturn:
         raise TypeError(
-            f"The goal {self} was asked whether it is true, by if, while, and, or, not, or a comparison like 1 < x < 3. "
+            f"The goal {self!r} was asked whether it is true, by if, while, and, or, not, or a comparison like 1 < x < 3. "
             "Ask holds(goal) for that; goal & goal, goal | goal, ~goal combine goals."
         )
 
@@ -122,10 +123,26 @@ class Variable:
         return make_goal(sym(">="), (self, other))
 
     def __bool__(self) -> NoReturn:
-        raise TypeError(f"The variable {self} was asked whether it is true. It has a value in an answer only.")
+        raise TypeError(f"The variable {self!r} was asked whether it is true. It has a value in an answer only.")
 
     def __repr__(self) -> str:
         return self.symbol.name.lower()
+
+    def __format__(self, how: str) -> NoReturn:
+        raise TypeError(
+            f"The variable {self!r} stands in a text, by an f-string or by format: f'... {{V.{self.name}}} ...'. It has no value yet, "
+            "so the text would have its name. Make the text in a @function, which is called with the value. To show the variable itself, "
+            f"write {{V.{self.name}!r}}."
+        )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return variable_of, (self.symbol,)
+
+    def __copy__(self) -> Variable:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Variable:
+        return self
 
 
 class Tail:
@@ -147,24 +164,30 @@ class Tail:
 
 
 class Variables:
-    """``V``: its attributes are variables."""
+    """``V``: its attributes are variables. It has no others, so a variable may have any name."""
 
-    def __init__(self) -> None:
-        self._made: dict[Symbol, Variable] = {}
+    __slots__ = ()
 
     def __getattr__(self, name: str) -> Variable:
         if name.startswith("__"):
             raise AttributeError(name)
-        return self.of(ANONYMOUS if name == "_" else USER.intern("?" + lisp_name(name)))
+        return variable_of(ANONYMOUS if name == "_" else USER.intern("?" + lisp_name(name)))
 
-    def of(self, symbol: Symbol) -> Variable:
-        """The variable of a symbol of Lisp. Variables of symbols without a package are not remembered."""
-        if symbol.package is None:
-            return Variable(symbol)
-        found = self._made.get(symbol)
-        if found is None:
-            found = self._made[symbol] = Variable(symbol)
-        return found
+    def __reduce__(self) -> str:
+        return "V"
+
+
+_variables: dict[Symbol, Variable] = {}
+
+
+def variable_of(symbol: Symbol) -> Variable:
+    """The variable of a symbol of Lisp. Variables of symbols without a package are not remembered."""
+    if symbol.package is None:
+        return Variable(symbol)
+    found = _variables.get(symbol)
+    if found is None:
+        found = _variables[symbol] = Variable(symbol)
+    return found
 
 
 V = Variables()
@@ -191,6 +214,12 @@ class Name:
 
     def __hash__(self) -> int:
         return hash(self.symbol)
+
+    def __copy__(self) -> Self:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Self:
+        return self
 
     def __repr__(self) -> str:
         return show(self.symbol)
@@ -229,6 +258,9 @@ class Keywords:
     def __getitem__(self, name: str) -> Keyword:
         found: Keyword = KEYWORD.intern(name.upper())
         return found
+
+    def __reduce__(self) -> str:
+        return "kw"
 
 
 P = Names(USER)
@@ -342,7 +374,7 @@ def to_python(thing: Any, empty: Any = None) -> Any:
         return _python_list(thing, empty)
     if isinstance(thing, Symbol):
         if thing.name[:1] == "?":
-            return V.of(thing)
+            return variable_of(thing)
         return getattr(thing.function, "called_from_lisp", thing)
     if kind in WRITABLE_STRINGS:
         return str(thing)
@@ -387,6 +419,8 @@ class _LispFunction:
     """A Python function for Lisp code. It is called with Lisp data, which it converts for the function."""
 
     __slots__ = ("called_from_lisp", "nothing")
+
+    symbol_of = staticmethod(function_symbol)
 
     def __init__(self, function: Callable[..., Any]):
         self.called_from_lisp = function

@@ -36,7 +36,7 @@ from ..streams.streams import BroadcastStream, Stream, StringOutputStream, outpu
 from cramhy_runtime.ground.plain_answers import printers, printers_found
 from cramhy_runtime.ground.plain_answers import printer_for as nearest_printer
 from cramhy_runtime.ground.printing import SUPPRESS, bounded, define_printer, print_suppressed
-from cramhy_runtime.ground.looking_on import only_looked_at
+from cramhy_runtime.kernel.looking_on import only_looked_at
 from cramhy_runtime.kernel.images import Cell
 from . import print_controls as controls
 from cramhy_runtime.ground.float_printing import float_text

@@ -6,7 +6,7 @@ looks on, such as a recorder, gets none: an object that has none yet shows as ``
 
 from __future__ import annotations
 
-from cramhy_runtime import kernel
+from .active import active, current
 
 
 class _Onlooker:
@@ -33,7 +33,7 @@ class looking_on:  # noqa: N801 (reads as a statement)
 
 
 def _this_task():
-    return None if kernel.active() is None else kernel.current()
+    return None if active() is None else current()
 
 
 def only_looked_at():
