@@ -12,6 +12,7 @@ Lisp: see ``ground/equality.py``.
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Sequence
 from itertools import islice
 from operator import index as as_index
@@ -214,6 +215,22 @@ class Keyword(Symbol):
         super().__init__(name, package)
         self.value = self
         self.constant = True
+
+    def __eq__(self, other: object) -> bool:
+        """Whether they are the same object. It warns who compares a keyword with the text of its name, which is never equal."""
+        if self is other:
+            return True
+        if isinstance(other, str) and other.lstrip(":").upper().replace("_", "-") == self.name:
+            written = self.name.lower().replace("-", "_")
+            warnings.warn(
+                f"A keyword is no string: {self!r} == {other!r} is false. Write kw.{written}, from cramhy_runtime.prolog, or :{self.name.lower()}"
+                " in Hy.",
+                RuntimeWarning,
+                stacklevel=2,
+            )
+        return NotImplemented
+
+    __hash__ = Symbol.__hash__
 
     def __repr__(self) -> str:
         return ":" + self.name
