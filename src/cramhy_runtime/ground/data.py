@@ -223,8 +223,8 @@ class Keyword(Symbol):
         if isinstance(other, str) and other.lstrip(":").upper().replace("_", "-") == self.name:
             written = self.name.lower().replace("-", "_")
             warnings.warn(
-                f"A keyword is no string: {self!r} == {other!r} is false. Write kw.{written}, from cramhy_runtime.prolog, or :{self.name.lower()}"
-                " in Hy.",
+                f"A keyword is no string: {self!r} == {other!r} is false. Write kw.{written}, from cramhy_runtime.prolog, "
+                f"or :{self.name.lower()} in Hy.",
                 RuntimeWarning,
                 stacklevel=2,
             )
