@@ -171,7 +171,7 @@ becomes a function of no arguments, so what it assigns is its own unless it says
       (Expression [(get form 0) (get form 1) (Expression (map _property (get form 2)))])
     (and (in name _function-goals) (> (len form) 1) (isinstance (get form 1) Symbol))
       (do (.append functions (get form 1)) form)
-    (isinstance form Sequence) (Expression (lfor part form (_goal part functions)))
+    (isinstance form #(Expression List hy.models.Tuple)) (Expression (lfor part form (_goal part functions)))
     True form))
 
 (defn _property [part]

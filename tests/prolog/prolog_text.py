@@ -1,11 +1,12 @@
 """Prolog as text: reading goals, proving them, and showing the answers the way Lisp prints them."""
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import cl_names, conditions
+from cramhy_runtime.ground import conditions
+from cramhy_runtime.ground.packages import STANDARD_NAMES
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import COMMON_LISP, find_package, make_package, sym
 
-for name in cl_names.NAMES.split():
+for name in STANDARD_NAMES.split():
     if name not in ("nil", "t"):
         COMMON_LISP.export(COMMON_LISP.intern(name.upper()))
 

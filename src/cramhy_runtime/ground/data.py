@@ -12,47 +12,34 @@ Lisp: see ``ground/equality.py``.
 from __future__ import annotations
 
 import sys
+import warnings
 
-from cramhy_runtime.kernel.active import checkpoint
-from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, overload
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar
 
+from .conses import (  # noqa: F401  the data that most of the code takes from here
+    LONG,
+    STRETCH,
+    UNBOUND,
+    UNSUPPLIED,
+    Cons,
+    LazyRest,
+    conses,
+    list_end,
+    list_from,
+    list_parts,
+    lisp_list,
+    new_object,
+    python_list,
+)
 from .slot_classes import SlotClasses, effective_functions
 from .ports import PORTS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable
 
     from .packages import Package
 
 T = TypeVar("T")
-
-
-class _Marker:
-    """A named object that is nothing but itself."""
-
-    __slots__ = ("name",)
-
-    def __init__(self, name):
-        self.name = name
-
-    def __repr__(self):
-        return self.name
-
-    def __reduce__(self):
-        return self.name.strip("#<>").upper()
-
-
-UNBOUND = _Marker("#<unbound>")
-"""The value of a symbol or slot that has none."""
-UNSUPPLIED = _Marker("#<unsupplied>")
-"""Default of an &optional or &key parameter where ``nil`` and "not given" differ."""
-
-
-STRETCH = range(256)
-"""So many elements of a list a loop passes between two checkpoints: a circular list must not keep Ctrl-C from its plan."""
-
-LONG = 20_000
-"""A list of more elements is made in parts, with a checkpoint before each."""
 
 
 class Symbol:
@@ -159,6 +146,22 @@ class Keyword(Symbol):
         self.value = self
         self.constant = True
 
+    def __eq__(self, other: object) -> bool:
+        """Whether they are the same object. It warns who compares a keyword with the text of its name, which is never equal."""
+        if self is other:
+            return True
+        if isinstance(other, str) and other.lstrip(":").upper().replace("_", "-") == self.name:
+            written = self.name.lower().replace("-", "_")
+            warnings.warn(
+                f"A keyword is no string: {self!r} == {other!r} is false. Write kw.{written}, from cramhy_runtime.prolog, "
+                f"or :{self.name.lower()} in Hy.",
+                RuntimeWarning,
+                stacklevel=2,
+            )
+        return NotImplemented
+
+    __hash__ = Symbol.__hash__
+
     def __repr__(self) -> str:
         return ":" + self.name
 
@@ -176,142 +179,6 @@ class UndefinedFunction:
 
     def __call__(self, *arguments: object, **keywords: object) -> Any:
         return PORTS.signals.undefined_function(self.symbol, arguments, keywords)
-
-
-class Cons:
-    """A pair. Iterating gives the elements of the list that starts here; a dotted tail ends it."""
-
-    __slots__ = ("car", "cdr")
-
-    def __init__(self, car: Any, cdr: Any = None):
-        self.car = car
-        self.cdr = cdr
-
-    def __iter__(self) -> Iterator[Any]:
-        cell = self
-        while True:
-            for _ in STRETCH:
-                yield cell.car
-                cell = cell.cdr
-                if cell.__class__ is not Cons:
-                    return
-            checkpoint()
-
-    # For Python code that gets a list from Lisp. A list is never empty (that is None), so it is true whatever its length.
-
-    def __bool__(self) -> bool:
-        return True
-
-    def __len__(self) -> int:
-        count, cell = 0, self
-        while True:
-            for _ in STRETCH:
-                if cell.__class__ is not Cons:
-                    return count
-                count += 1
-                cell = cell.cdr
-            checkpoint()
-
-    def __getitem__(self, index: int | slice) -> Any:
-        """The element at ``index``, which may be negative; a slice gives a Python list."""
-        if isinstance(index, slice) or index < 0:
-            return list(self)[index]
-        for item in self:
-            if not index:
-                return item
-            index -= 1
-        raise IndexError("list index out of range")
-
-    def __repr__(self):
-        parts, cell, limit = [], self, 50
-        while isinstance(cell, Cons) and limit:
-            parts.append(repr(cell.car) if cell.car is not None else "NIL")
-            cell, limit = cell.cdr, limit - 1
-        if cell is not None:
-            parts += [".", "..." if isinstance(cell, Cons) else repr(cell)]
-        return "(" + " ".join(parts) + ")"
-
-
-new_object = object.__new__
-
-
-@overload
-def lisp_list() -> None: ...
-@overload
-def lisp_list(first: object, /, *more: object) -> Cons: ...
-def lisp_list(*items: object) -> Cons | None:
-    """The list of ``items``; ``None`` when there are none."""
-    head = None
-    for item in reversed(items):
-        cell = new_object(Cons)
-        cell.car, cell.cdr = item, head
-        head = cell
-    return head
-
-
-def list_from(iterable: Iterable[object], tail: Any = None) -> Any:
-    """The list of the elements of ``iterable``, ending in ``tail``."""
-    head, items = tail, iterable if isinstance(iterable, (list, tuple)) else list(iterable)
-    if len(items) > LONG:
-        rest = len(items) % LONG
-        for start in range(len(items) - LONG, rest - 1, -LONG):
-            checkpoint()
-            head = list_from(items[start : start + LONG], head)
-        items = items[:rest]
-    for item in reversed(items):
-        cell = new_object(Cons)  # made without its constructor, which would be a call of a Python function
-        cell.car, cell.cdr = item, head
-        head = cell
-    return head
-
-
-def python_list(lst: Any) -> list[Any]:
-    """The elements of the Lisp list ``lst`` as a Python list."""
-    if lst.__class__ is not Cons:
-        return [] if lst is None else list(_iterator(lst))
-    return list_parts(lst)[0]
-
-
-def _iterator(thing):
-    try:
-        return iter(thing)
-    except TypeError:
-        return PORTS.signals.type_error(thing, "LIST")
-
-
-def list_parts(cell):
-    """(the elements of the list ``cell`` as a Python list, what stands behind its last cons)"""
-    items = []
-    while True:
-        for _ in STRETCH:
-            if cell.__class__ is not Cons:
-                return items, cell
-            items.append(cell.car)
-            cell = cell.cdr
-        checkpoint()
-
-
-def conses(lst):
-    """The conses of the list ``lst``, one after the other, whatever it ends in."""
-    while True:
-        for _ in STRETCH:
-            if lst.__class__ is not Cons:
-                return
-            yield lst
-            lst = lst.cdr
-        checkpoint()
-
-
-def list_end(lst):
-    """What ends the list ``lst``: ``None`` for a proper one, else the last ``cdr``; of a circular list a cons, for it has no end."""
-    slow, steps = lst, 0
-    while isinstance(lst, Cons):
-        lst, steps = lst.cdr, steps + 1
-        if not steps % 2:
-            slow = slow.cdr
-            if slow is lst and isinstance(lst, Cons):
-                return lst
-    return None if lst is False else lst
 
 
 class MultipleValues(tuple[Any, ...]):

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import STRETCH, UNSUPPLIED, Cons, Symbol, all_values, lisp_list, list_from, list_parts, one, truth
+from cramhy_runtime.ground.data import STRETCH, UNSUPPLIED, Cons, LazyRest, Symbol, all_values, lisp_list, list_from, list_parts, one, truth
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.packages import keyword
@@ -72,7 +72,7 @@ class Once:
             line.serve_all()
 
 
-class LazyTail(Once):
+class LazyTail(Once, LazyRest):
     """The rest of a lazy list, not yet computed. ``generator`` takes no arguments and returns the rest: a list or ``None``.
 
     ``drain``, if given, returns all remaining elements at once, a Python list or a Lisp list, which is quicker for whoever wants the
@@ -104,6 +104,11 @@ class LazyTail(Once):
         finally:
             self.end()
         return rest
+
+    def computed(self):
+        """The rest for Python code, which may have no kernel."""
+        with kernel.at_hand():
+            return self.force()
 
     def __repr__(self):
         return "#<lazy tail>" if self.generator is not None else f"#<forced tail {self.value!r}>"

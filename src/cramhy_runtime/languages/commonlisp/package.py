@@ -7,12 +7,11 @@ from __future__ import annotations
 
 import importlib
 
-from cramhy_runtime.ground import cl_names
 from . import answers
 from .packages.face_definition import define_face
 from cramhy_runtime.ground.data import lisp_list
 from cramhy_runtime.ground.keyword_calls import lispify
-from cramhy_runtime.ground.packages import COMMON_LISP, sym
+from cramhy_runtime.ground.packages import STANDARD_NAMES, COMMON_LISP, sym
 from .python import python_packages
 from . import extension_packages
 
@@ -93,7 +92,7 @@ def fill():
     COMMON_LISP.locked = True
 
 
-_standard = set(cl_names.NAMES.split())
+_standard = set(STANDARD_NAMES.split())
 
 
 def _module(name):

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 
+import hy
 from hy import models
 
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from
@@ -82,6 +83,7 @@ def lisp_data(model, package):
     """The Lisp object that a Hy model means as data: brackets and parentheses are lists, names are symbols of ``package``. A model that was
     made by Hy's own backquote may have lists of Python in it."""
     if isinstance(model, (models.Expression, models.List, models.Tuple)) or type(model) in (list, tuple):
+        refuse_code(model)
         items = list(model)
         if len(items) > 2 and items[-2] == models.Symbol(".") and items[0] != models.Symbol("."):
             return list_from([lisp_data(item, package) for item in items[:-2]], lisp_data(items[-1], package))
@@ -90,8 +92,45 @@ def lisp_data(model, package):
         return symbol_of(str(model), package)
     data = atom(model)
     if isinstance(data, models.Object):  # a set, a dictionary, an f-string, bytes
-        raise ValueError(f"{type(model).__name__.lower()}s are no Lisp data; write a list, a name, a keyword, a string or a number")
+        raise ValueError(f"{_plural(model)} are no Lisp data; write a list, a name, a keyword, a string or a number")
     return data
+
+
+def refuse_code(model):
+    """Raise ValueError if a model is read as a list, and looks as if it were evaluated: ``~n`` without a backquote, ``?pose.x``."""
+    if _is_call_of("unquote", model) or _is_call_of("unquote-splice", model):
+        raise ValueError(f"{written(model)} is evaluated in a template only, behind a backquote: `(a ~b)")
+    if isinstance(model, models.Expression) and len(model) > 2 and model[0] == models.Symbol(".") and str(model[1]).startswith("?"):
+        raise ValueError(f"{written(model)} is no Lisp data: attributes are not evaluated in it; give the value a variable first")
+
+
+def refuse_code_in_designator(parts):
+    """Raise ValueError if in the parts of a designator, or deeper, stands code: only ``?variables`` are evaluated there."""
+    for model in parts:
+        code = isinstance(model, (models.FString, models.Dict, models.Set, models.Bytes))
+        dotted = isinstance(model, models.Expression) and len(model) > 2 and model[0] == models.Symbol(".")
+        if code or dotted or _is_call_of("unquote", model) or _is_call_of("unquote-splice", model):
+            value = hy.repr(model[1]).removeprefix("'") if _is_call_of("unquote", model) else written(model)
+            kind = _KINDS.get(type(model), "attribute" if dotted else "~ without a backquote")
+            raise ValueError(
+                f"{written(model)} is not evaluated in a designator ({kind}): only ?variables are. "
+                f"Write (let [?value {value}] ...) around it, and ?value in its place."
+            )
+        if isinstance(model, models.Sequence):
+            refuse_code_in_designator(model)
+
+
+_KINDS = {models.FString: "f-string", models.Dict: "dict", models.Set: "set", models.Bytes: "bytes"}
+
+
+def _plural(model):
+    kind = _KINDS.get(type(model), type(model).__name__.lower())
+    return kind if kind.endswith("s") else kind + "s"
+
+
+def written(model):
+    """How a user writes ``model``."""
+    return hy.repr(model).removeprefix("'")
 
 
 def inserted(value, package):

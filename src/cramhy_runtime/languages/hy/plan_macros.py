@@ -26,7 +26,17 @@ from ..operators.grammar import WrongShape
 from . import calls
 from .call_parts import lisp_call
 from .expansion import expand, expression, word
-from .lisp_data import call_of, constant_form, function_form, insertion, is_backquoted, lisp_data, package_of, template_form
+from .lisp_data import (
+    call_of,
+    constant_form,
+    function_form,
+    insertion,
+    is_backquoted,
+    lisp_data,
+    package_of,
+    refuse_code_in_designator,
+    template_form,
+)
 from .module_names import if_global, is_bound
 from .users_names import may_be_the_users
 
@@ -51,6 +61,7 @@ WITHOUT_PREFIX = (
 )
 """The packages whose names are known as they are. Where two of them have one name, the first counts."""
 
+DESIGNATORS = ("A", "AN", "ALL")
 CPL = ("CRAM-LANGUAGE", "CRAM-LANGUAGE-IMPLEMENTATION")
 FOR_PYTHON = {"WAIT-FOR": "wait-for"}
 """Functions of CPL that ask more of their arguments in Hy and Python than in Lisp → their names in ``calls``."""
@@ -74,6 +85,8 @@ def operator_macro(operator, body=None):
         _tell_prompt(_hy_compiler.module)
         written = _hy_compiler.this
         try:
+            if operator.name in DESIGNATORS:
+                refuse_code_in_designator(arguments)
             call, form = lisp_call(operator, arguments, package_of(_hy_compiler.module.__name__))
             if body is not None:
                 return with_places(body(_hy_compiler, *arguments), written)
@@ -82,6 +95,8 @@ def operator_macro(operator, body=None):
             raise refusal(_hy_compiler, written, _malformed(operator, written, problem)) from None
         except Condition as problem:
             raise refusal(_hy_compiler, written, _with_hint(problem)) from None
+        except ValueError as problem:
+            raise refusal(_hy_compiler, written, str(problem)) from None
 
     macro.__doc__ = f"{hy_shape(operator)}\n\n{operator.documentation}"
     macro.operator = operator  # for the Tab key

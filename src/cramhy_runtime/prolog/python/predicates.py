@@ -29,7 +29,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Generic, NoRe
 from cramhy_runtime.kernel.unstarted import plain_function, ran
 from cramhy_runtime.ground.data import Cons, Symbol, list_from
 from ..builtins import native_predicates as natives
-from .terms import P, Name, claim, lisp_name, python_arguments, show, to_lisp, what_nil_means
+from .terms import P, Name, claim, lisp_name, python_arguments, python_predicates, show, to_lisp, what_nil_means
 from ..symbols import sym
 from ..terms.terms import Var, deref, import_term, resolve
 
@@ -135,13 +135,13 @@ class Predicate(Name, Generic[F]):
     def unify(self, m: Machine, outputs: tuple[object, ...], value: object) -> bool:
         """Unify the output terms with the result ``value`` of the function. Returns whether that is possible."""
         if len(outputs) == 1:
-            return bool(m.unify(outputs[0], import_term(to_lisp(value), {})))
+            return bool(m.unify(outputs[0], import_term(to_lisp(value, True), {})))
         if not outputs:
             return True
         if not isinstance(value, (tuple, list)) or len(value) != len(outputs):
             raise TypeError(f"A solution is {value!r}, but the goal has {len(outputs)} arguments for it. Give a tuple of {len(outputs)}.")
         names: dict[Any, Any] = {}
-        pairs = [side for output, part in zip(outputs, value, strict=True) for side in (output, import_term(to_lisp(part), names))]
+        pairs = [side for output, part in zip(outputs, value, strict=True) for side in (output, import_term(to_lisp(part, True), names))]
         return bool(m.unify(*pairs))
 
     def solutions(self, m: Machine, *terms: object) -> Iterator[None]:
@@ -235,6 +235,7 @@ def _define(function: F, kind: str, name: Any) -> Predicate[F]:
     if symbol.package is not None and symbol.package.built_in:
         raise TypeError(f"{show(symbol)} is a name of cramhy's package {symbol.package.name}. Choose another one: {kind}(name=P.a_name).")
     claim(symbol, function, kind)
+    python_predicates.add(symbol)
     made = Predicate(symbol, function, kind)
     group = f"CRAMHY::{symbol.package.name if symbol.package else ''} {symbol.name} IN PYTHON"
     if kind == "predicate":

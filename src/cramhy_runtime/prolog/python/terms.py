@@ -7,6 +7,8 @@
 * ``kw.driving`` is the keyword ``:driving``, the object itself. A Python string is a string, and equal to no name.
 * A list or tuple is a list, ``[V.first, *V.rest]`` one whose rest is a variable. ``None``, ``False`` and ``[]`` are the empty list,
   ``nil``: Lisp has one object for them. ``True`` is ``t``, and neither 1 nor 1.0.
+* In a goal or a fact, a set, a range, a view of a dict, a deque and an array are lists, too; equal sets are the same list. An iterator
+  and a dict in the place of a list are refused. A predicate or function that is written in Python gets such objects as they are.
 * A function is a symbol with that function, so rules and ``perform`` can call it. Any other object, also a named tuple, stands for
   itself. Two terms with such objects are the same if the objects are values of one class and equal (dates, paths, bytes, frozen
   dataclasses), or if they are one object.
@@ -21,7 +23,8 @@ import functools
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from types import BuiltinFunctionType, FunctionType, MethodType
+from collections import deque
+from types import BuiltinFunctionType, FunctionType, GeneratorType, MethodType
 from cramhy_runtime.kernel.typing_names import Any, NoReturn, Self, annotations_of
 
 from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, Cons, Keyword, Symbol, list_from
@@ -333,16 +336,59 @@ def make_goal(functor: Symbol, arguments: tuple[object, ...]) -> Goal:
     """
     if functor in _CALLS and arguments and callable(arguments[0]) and not isinstance(arguments[0], Name):
         return Goal(Cons(_CALLS[functor], Cons(arguments[0], _lisp_list(arguments[1:]))))
-    return Goal(Cons(functor, _lisp_list(arguments)))
+    if functor in _CALLS or functor in python_predicates:  # functions get the objects that are written
+        return Goal(Cons(functor, _lisp_list(arguments)))
+    if functor in _OF_LISTS:
+        for argument in arguments:
+            if argument.__class__ is dict:
+                raise TypeError(
+                    f"The goal {python_name(functor.name)} is about lists, and a dict is none: {shortened(argument)}. "
+                    "Write list(d) for its keys, list(d.values()) for its values, or list(d.items())."
+                )
+    return Goal(Cons(functor, _lisp_list(arguments, True)))
 
 
-def to_lisp(thing: Any) -> Any:
-    """The Lisp data for a Python term; see the head of this module."""
+python_predicates: set[Symbol] = set()
+"""The names of predicates written in Python."""
+
+
+def collection(thing: Any) -> Any:
+    """The Lisp list for a collection of Python's in a goal, or ``thing`` itself if it is none."""
+    if isinstance(thing, (set, frozenset)):
+        try:
+            return _lisp_list(sorted(thing), True)
+        except TypeError:
+            return _lisp_list(sorted(thing, key=lambda each: (type(each).__name__, repr(each))), True)
+    kind = thing.__class__
+    if kind in _COLLECTIONS:
+        return _lisp_list(list(thing), True)
+    if hasattr(kind, "tolist") and kind is not memoryview:  # an array of numpy, torch, or the module array; a column of pandas
+        return to_lisp(thing.tolist(), True)
+    if kind.__module__ in ("builtins", "itertools") and hasattr(kind, "__next__"):
+        raise TypeError(
+            f"A goal has {'a generator' if kind is GeneratorType else 'an iterator'} for an argument: {thing!r}. It can be read once only, "
+            "and a goal may be asked again. Write list(...) around it."
+        )
+    return thing
+
+
+def shortened(thing: object) -> str:
+    """How ``thing`` is written, on one line of a message."""
+    text = repr(thing)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+_COLLECTIONS = (range, type({}.keys()), type({}.values()), type({}.items()), deque)
+_OF_LISTS = {sym(f"CRAM-PROLOG::{name}") for name in ("MEMBER", "LENGTH", "APPEND", "NTH", "TAKE")}
+
+
+def to_lisp(thing: Any, collections: bool = False) -> Any:
+    """The Lisp data for a Python term; see the head of this module. collections: sets, ranges, arrays and the like become lists."""
     kind = thing.__class__
     if kind is str or kind is int or kind is float or thing is None or thing is True:
         return thing
     if kind is list or kind is tuple:
-        return _lisp_list(thing)
+        return _lisp_list(thing, collections)
     if thing is False:
         return None
     if isinstance(thing, (Variable, Name)):
@@ -355,14 +401,14 @@ def to_lisp(thing: Any) -> Any:
         return function_symbol(thing)
     if kind.__module__ == "numpy" and getattr(thing, "shape", None) == () and hasattr(thing, "item"):
         return to_lisp(thing.item())  # a number of numpy's is the number
-    return thing
+    return collection(thing) if collections else thing
 
 
-def _lisp_list(items: Any) -> Any:
+def _lisp_list(items: Any, collections: bool = False) -> Any:
     end = None
     if items and items[-1].__class__ is Tail:
         items, end = items[:-1], to_lisp(items[-1].rest)
-    return list_from([to_lisp(item) for item in items], end)
+    return list_from([to_lisp(item, collections) for item in items], end)
 
 
 def to_python(thing: Any, empty: Any = None) -> Any:

@@ -1,0 +1,66 @@
+"""Code of Hy in a designator or a fact, which is data, is refused when the file is compiled."""
+
+import types
+
+import hy
+import pytest
+from hy.errors import HySyntaxError
+
+
+def compiled(text):
+    module = types.ModuleType("code_in_designators")
+    hy.eval(hy.read_many("(require cramhy *)\n" + text), module=module, locals=module.__dict__)
+    return module
+
+
+@pytest.mark.parametrize(
+    ("code", "kind", "value"),
+    [
+        ('f"room-{n}"', "f-string", None),
+        ('{"tries" n}', "dict", None),
+        ('#{"left"}', "set", None),
+        ('b"ab"', "bytes", None),
+        ("~n", "~ without a backquote", "n"),
+        ("~(+ n 1)", "~ without a backquote", "(+ n 1)"),
+        ("?pose.x", "attribute", None),
+        ("pose.x", "attribute", None),
+    ],
+)
+@pytest.mark.parametrize(
+    "form", ["(a motion (type driving) (goal {}))", "(an action (of (a location (at {}))))", "(all object (sizes [1 {}]))"]
+)
+def test_code_in_a_designator_is_refused(form, code, kind, value):
+    with pytest.raises(HySyntaxError) as told:
+        compiled(f"(setv n 3)\n(defn it [] {form.replace('{}', code)})")
+    assert told.value.msg == (
+        f"{code} is not evaluated in a designator ({kind}): only ?variables are. "
+        f"Write (let [?value {value or code}] ...) around it, and ?value in its place."
+    )
+
+
+@pytest.mark.parametrize(
+    ("code", "text"),
+    [
+        ("~n", "~n is evaluated in a template only, behind a backquote: `(a ~b)"),
+        ("?pose.x", "?pose.x is no Lisp data: attributes are not evaluated in it; give the value a variable first"),
+        ("#{1 2}", "sets are no Lisp data; write a list, a name, a keyword, a string or a number"),
+        ("{1 2}", "dicts are no Lisp data; write a list, a name, a keyword, a string or a number"),
+        ('f"{n}"', "f-strings are no Lisp data; write a list, a name, a keyword, a string or a number"),
+        ('b"a"', "bytes are no Lisp data; write a list, a name, a keyword, a string or a number"),
+    ],
+)
+@pytest.mark.parametrize("form", ["(def-fact-group rooms [] (<- (room {})))", "(defn it [] (prolog '(room {})))"])
+def test_code_in_a_fact_or_a_quoted_goal_is_refused(form, code, text):
+    with pytest.raises(HySyntaxError) as told:
+        compiled(form.replace("{}", code))
+    assert told.value.msg == text
+
+
+def test_variables_lists_and_templates_are_as_before():
+    module = compiled(
+        "(setv ?n 4 places [1 2])\n"
+        "(setv d (a motion (type driving) (goal #(1 ?n))))\n"
+        "(setv found (len (force-ll (prolog `(member ?x ~places)))))\n"
+        "(setv goal (desig-prop-value d :goal))"
+    )
+    assert module.found == 2 and module.goal == [1, 4]
