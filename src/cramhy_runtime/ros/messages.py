@@ -101,7 +101,7 @@ _reading: list[str] = []
 _listeners: list[Callable[..., object]] = []
 _warned: set[Symbol] = set()
 
-DEFAULTS = {"string": '""', "bool": "None", "float32": "0.0", "float64": "0.0", "time": "0", "duration": "0"}
+DEFAULTS = {"string": '""', "bool": "False", "float32": "0.0", "float64": "0.0", "time": "0", "duration": "0"}
 
 
 def load_package(package: str) -> Loaded | None:
