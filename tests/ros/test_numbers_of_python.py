@@ -119,3 +119,9 @@ def test_a_message_of_another_type_is_refused_even_where_nobody_listens():
     for topic in (door, "door"):
         with pytest.raises(TypeError, match="/door has messages of the type std_msgs/Bool, not std_msgs/String."):
             publish(topic, message_class("std_msgs/String")(data="open"))
+
+
+@pytest.mark.parametrize("value", [{"x": 1.0}, (1, 0, 0), 3])
+def test_a_part_is_a_message(value):
+    with pytest.raises(TypeError, match="geometry_msgs/Twist.linear holds .*, which is no geometry_msgs/Vector3. message_class"):
+        heard("geometry_msgs/Twist", linear=value)

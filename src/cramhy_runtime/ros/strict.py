@@ -1,4 +1,4 @@
-"""What rospy refuses and roslisp does not: integers out of range, and truth values that are none. For messages that Python sends.
+"""What rospy refuses and roslisp does not: integers out of range, and truth values or parts that are none. For messages that Python sends.
 
 roslisp cuts integers to their bits, and takes every value but NIL for true (roslisp.md 5.2), so messages of Lisp are not checked here.
 Source: genpy's checks in ``rospy.Publisher.publish``.
@@ -11,7 +11,7 @@ import reprlib
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 from .definition_text import INTEGERS
-from .messages import RosMessage, message_class_exact
+from .messages import RosMessage
 from .wire import plain
 
 if TYPE_CHECKING:
@@ -26,9 +26,9 @@ _checks: dict[type, list[tuple[str, Check]]] = {}
 
 
 def check(message: RosMessage) -> None:
-    """Raise a ValueError for an integer of ``message`` that is out of range, and a TypeError for a truth value that is none.
+    """Raise a ValueError for an integer of ``message`` that is out of range, and a TypeError for a truth value or a part that is none.
 
-    Values of other wrong types are left to `wire.transmit`. For a type without such fields, as ``Twist``, this costs a look-up.
+    Values of other wrong types are left to `wire.transmit`. Floats and texts, of which most messages are made, cost nothing here.
     """
     _check(message, message.ros_type)
 
@@ -74,21 +74,17 @@ def _check_of_one(field: Field) -> Check | None:
         return _integer(field.base, *INTEGERS[field.base])
     if field.base == "bool":
         return _bool
-    if field.primitive or not _has_checks(field.base, ()):
-        return None
-    return lambda value, name: _check(value, name) if isinstance(value, RosMessage) else None
+    return None if field.primitive else _part(field.base)
 
 
-def _has_checks(ros_type: str, above: tuple[str, ...]) -> bool:
-    cls = message_class_exact(ros_type)
-    return (
-        cls is not None
-        and ros_type not in above
-        and any(
-            field.base in INTEGERS or field.base == "bool" or not field.primitive and _has_checks(field.base, (*above, ros_type))
-            for field in cls.fields
-        )
-    )
+def _part(base: str) -> Check:
+    def check_part(value: Any, name: str) -> None:
+        if isinstance(value, RosMessage):
+            _check(value, name)
+        elif value is not None:  # of nil roslisp's error says more
+            raise TypeError(f'{name} holds {reprlib.repr(value)}, which is no {base}. message_class("{base}") makes one.')
+
+    return check_part
 
 
 def _integer(base: str, bits: int, signed: bool) -> Check:
