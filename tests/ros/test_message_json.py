@@ -68,10 +68,10 @@ class TestOut:
     def test_octets_are_base64(self):
         assert to_json(delivered("std_msgs/UInt8MultiArray", data=[104, 105, 255]))["data"] == "aGn/"
 
-    @pytest.mark.parametrize("inside, outside", [("ä", "ä"), ("â\x82¬ Ã¤", "€ ä"), ("Ã¤", "Ã¤"), ("ä\x82", "ä\x82"), ("", "")])
-    def test_texts(self, inside, outside):
-        assert to_json(delivered("std_msgs/String", data=inside)) == {"data": outside}
-        assert from_json(message_class("std_msgs/String"), {"data": outside}).data == inside
+    @pytest.mark.parametrize("text", ["ä", "€ ä", "Ã¤", "ä\x82", ""])
+    def test_texts(self, text):
+        assert to_json(delivered("std_msgs/String", data=text)) == {"data": text}
+        assert from_json(message_class("std_msgs/String"), {"data": text}).data == text
 
     @pytest.mark.parametrize("seconds, secs, nsecs", [(-0.5, -1, 500_000_000), (0.9999999999, 1, 0), (17952186.5, 17952186, 500_000_000)])
     def test_durations(self, seconds, secs, nsecs):

@@ -253,14 +253,15 @@ class TestTheWire:
             == f"The value\n  {shown}\nis not of type\n  REAL\nwhen binding SB-KERNEL::X"
         )
 
-    @pytest.mark.parametrize("value, received", [(None, None), (False, None), (0, True), ("", True), (True, True)])
+    @pytest.mark.parametrize("value, received", [(None, False), (False, False), (0, True), ("", True), (True, True)])
     def test_every_value_but_nil_is_true(self, value, received):
         assert self.sent("std_msgs/Bool", data=value).data is received
 
-    def test_strings_are_latin_1(self, fails):
-        assert self.sent("std_msgs/String", data="é").data == "é"
+    def test_strings_are_unicode(self, fails):
+        for text in ("é", "€", "日本語", "🤖"):
+            assert self.sent("std_msgs/String", data=text).data == text
         assert self.sent("std_msgs/String", data=None).data == ""
-        fails(self.sent, "std_msgs/String", data="€")
+        fails(self.sent, "std_msgs/String", data="\ud800")
 
     def test_infinity_and_not_a_number_arrive_as_symbols(self):
         received = self.sent("geometry_msgs/Vector3", x=float("inf"), y=float("-inf"), z=float("nan"))
@@ -313,7 +314,8 @@ def test_a_wrong_field_has_those_of_the_type_for_a_hint(make, hint):
     ("std_msgs/UInt8MultiArray", [(("DATA",), [1, "a"])], 'std_msgs/UInt8MultiArray: data[1] holds "a", which is no uint8.'),
     ("geometry_msgs/PoseWithCovariance", [(("COVARIANCE",), [None])],
      "geometry_msgs/PoseWithCovariance: covariance[0] holds NIL, which is no float64."),
-    ("std_msgs/String", [(("DATA",), "\u03bb")], 'std_msgs/String: data holds "\u03bb", which has characters that are not Latin-1.'),
+    ("std_msgs/String", [(("DATA",), "\ud800")],
+     'std_msgs/String: data holds "\ud800", which has half of a surrogate pair, which is no character.'),
     ("std_msgs/Int8", [(("DATA",), "x" * 100)], f'std_msgs/Int8: data holds "{"x" * 59}..., which is no int8.'),
 ])  # fmt: skip
 def test_a_wrong_value_has_its_place_for_a_hint(name, specs, hint):

@@ -389,7 +389,7 @@ def test_the_bytes_of_ros_1_of_all_kinds_of_fields(graph):
         + b"\x00\x00\x00\x00"
         + b"\x02"
         + b"\x02\x00\x00\x00ab"
-        + b"\x01\x00\x00\x00\xf6"
+        + b"\x02\x00\x00\x00\xc3\xb6"
         + b"\x00\x00\x00\x00"
         + b"\x00\x00\x00\x00"
         + b"\x07\x00\x00\x00"

@@ -43,7 +43,7 @@ def test_each_element_of_a_lazy_list_is_computed_once_and_when_it_is_asked_for()
 
 
 def test_an_endless_list_and_a_circular_one_have_no_length(monkeypatch):
-    monkeypatch.setattr("cramhy_runtime.ground.data.ENDLESS", 1000)
+    monkeypatch.setattr("cramhy_runtime.ground.conses.ENDLESS", 1000)
     with pytest.raises(OverflowError) as told:
         len(from_iterator(itertools.count()))
     assert str(told.value) == (

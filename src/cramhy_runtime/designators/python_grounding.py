@@ -34,7 +34,7 @@ from cramhy_runtime.kernel.images import per_image
 from types import CoroutineType
 
 from cramhy_runtime.kernel.unstarted import plain_function, ran
-from cramhy_runtime.ground.data import Keyword, Symbol
+from cramhy_runtime.ground.data import Keyword, Symbol, list_from
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.printing import define_printer, print_unreadable
 from cramhy_runtime.prolog.builtins import native_predicates as natives
@@ -130,7 +130,18 @@ class Grounding:
         command = value if isinstance(value, (tuple, list)) and value else [value]
         if not (callable(command[0]) or isinstance(command[0], (Symbol, Name))):
             raise TypeError(f"An action grounding gives a plan function and its arguments, (pick_up, cup), not {value!r}.")
-        return to_lisp(list(command))
+        if isinstance(command[0], (Symbol, Name)):
+            return to_lisp(list(command))
+        # A plan function of Python gets what the grounding gave it: False and empty lists are not NIL, which would be None.
+        return list_from([to_lisp(command[0]), *map(_kept, command[1:])])
+
+
+def _kept(part: Any) -> Any:
+    if part is False:
+        return False
+    if part.__class__ not in (list, tuple):
+        return to_lisp(part)
+    return list_from([_kept(each) for each in part]) if part else part
 
 
 define_printer(Grounding, lambda grounding, stream: print_unreadable(grounding, stream, f"{grounding.name}{grounding.place}"))

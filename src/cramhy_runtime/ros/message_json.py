@@ -7,8 +7,7 @@ thousands of messages per second, so each type has one generated Python function
 * A number that is not finite is written as null, and null is read as not-a-number.
 * ``uint8[]`` and ``char[]`` are written as base64 texts, and read from base64 texts or lists.
 * A time is written as ``{"secs", "nsecs"}``; ROS 2's ``{"sec", "nanosec"}`` and ``"now"`` are read too.
-* Texts are Unicode outside and bytes inside, one character each (roslisp.md 5.2). Characters below 256 stay as they are, so
-  that *ä* is *ä* on both sides. A text with other characters becomes its bytes in UTF-8 inside, and the same text again outside.
+* Texts are Unicode on both sides, as they are in UTF-8 on ROS's wire.
 
 Sources: rosbridge protocol 2.0, sections 3.1 and 4; conversions as in rosbridge_library.
 """
@@ -27,7 +26,7 @@ from cramhy_runtime.utilities.generated_functions import generated_function
 from . import messages
 from .definition_text import INTEGERS
 from .messages import RosMessage
-from .wire import NONFINITE, lisp_float, ros_text
+from .wire import NONFINITE, lisp_float
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NamedTuple, Self, TypeVar
 
 if TYPE_CHECKING:
@@ -226,7 +225,7 @@ def _floating(name, rounded):
 
 def _read_bool(value):
     if value.__class__ is bool:
-        return True if value else None
+        return value
     raise _wrong("bool", value, "write true or false")
 
 
@@ -239,18 +238,11 @@ def _read_string(value):
         value.encode()
     except UnicodeEncodeError:
         raise _wrong("string", value, "half of a surrogate pair is no character") from None
-    return ros_text(value)
+    return value
 
 
 def _write_string(text):
-    text = "" if text is None else str(text)
-    if text.isascii() or max(text) > "\u00ff":
-        return text
-    try:
-        outside = text.encode("latin-1").decode()
-    except UnicodeDecodeError:
-        return text
-    return outside if max(outside) > "\u00ff" else text
+    return "" if text is None else str(text)
 
 
 def _moment(name, signed):
@@ -305,7 +297,7 @@ _readers.update(
     float64=_floating("float64", lambda value: value), float32=_floating("float32", single), bool=_read_bool, string=_read_string
 )
 _moments = {"time": _moment("time", False), "duration": _moment("duration", True)}
-_DEFAULTS = {"bool": "None", "string": '""', "float32": "zero", "float64": "zero", **dict.fromkeys(INTEGERS, "0")}
+_DEFAULTS = {"bool": "False", "string": '""', "float32": "zero", "float64": "zero", **dict.fromkeys(INTEGERS, "0")}
 
 
 def _is_binary(field):

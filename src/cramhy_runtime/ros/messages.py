@@ -12,7 +12,7 @@ import functools
 
 from cramhy_runtime.ground import conditions, packages
 from cramhy_runtime.ground.condition_types import CaseFailure, SimpleError
-from cramhy_runtime.ground.data import UNSUPPLIED, LispString, Symbol, lisp_list
+from cramhy_runtime.ground.data import UNSUPPLIED, LispString, Symbol, lisp_list, truth
 from cramhy_runtime.ground.classes import find_class_or_error
 from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.packages import Package, delete_package, intern, near_names, ours, registered, string_designator, sym
@@ -72,6 +72,23 @@ class RosMessage:
         inside = ", ".join(f"{name}={getattr(self, name)!r}" for name in self.field_names)
         return f"{type(self).__name__}({inside})"
 
+    def __eq__(self, other: object) -> Any:
+        """Whether ``other`` is a message of the same type with the same values; lists, tuples and arrays count as the same."""
+        if not isinstance(other, RosMessage):
+            return NotImplemented
+        cls = self.__class__
+        if other.__class__ is not cls:
+            return False
+        return all(_same(field, getattr(self, field.attribute), getattr(other, field.attribute)) for field in cls.fields)
+
+    __hash__ = object.__hash__  # Lisp has messages in tables, each under itself, and its tables do not ask for equality
+
+    def __copy__(self) -> Self:
+        return self.copy()
+
+    def __reduce__(self) -> Any:
+        return _restored, (self.ros_type, self.values())
+
     def copy(self) -> Self:
         """A shallow copy: both messages share the messages and lists inside."""
         return type(self)(*[getattr(self, name) for name in self.field_names])
@@ -79,6 +96,36 @@ class RosMessage:
     def values(self) -> list[Any]:
         """The values of the fields, in order."""
         return [getattr(self, name) for name in self.field_names]
+
+
+def _same(field: Field, one: Any, other: Any) -> bool:
+    if one is other:
+        return True
+    if not field.is_array:
+        return bool(one == other) or field.base == "bool" and not truth(one) and not truth(other)
+    one, other = _listed(one), _listed(other)
+    return one == other or field.base == "bool" and [*map(truth, one)] == [*map(truth, other)]
+
+
+def _listed(values: Any) -> list[Any]:
+    return [] if values is None else values.tolist() if hasattr(values, "tolist") else list(values)
+
+
+def _restored(ros_type: str, values: list[Any]) -> RosMessage:
+    """The message that ``pickle`` or ``copy.deepcopy`` has taken apart."""
+    found = message_class_exact(ros_type) or part_of_service(ros_type)
+    if found is None:
+        raise TypeError(f"There is no message type {ros_type}. Is its package on ROS_PACKAGE_PATH?")
+    return found(*values)
+
+
+def part_of_service(ros_type: str) -> MessageType | None:
+    """The class of a request or a response, ``"turtlesim/SpawnRequest"``, or ``None``."""
+    for half, attribute in (("Request", "request"), ("Response", "response")):
+        service = service_type_exact(ros_type.removesuffix(half)) if ros_type.endswith(half) else None
+        if service is not None:
+            return getattr(service, attribute)
+    return None
 
 
 class ServiceType:
@@ -101,7 +148,7 @@ _reading: list[str] = []
 _listeners: list[Callable[..., object]] = []
 _warned: set[Symbol] = set()
 
-DEFAULTS = {"string": '""', "bool": "None", "float32": "0.0", "float64": "0.0", "time": "0", "duration": "0"}
+DEFAULTS = {"string": '""', "bool": "False", "float32": "0.0", "float64": "0.0", "time": "0", "duration": "0"}
 
 
 def load_package(package: str) -> Loaded | None:

@@ -78,7 +78,7 @@ def _write_one(base: str, value: Any, put: Callable[[bytes], object]) -> None:
     if form is not None:
         put(struct.pack("<" + form, _number(base, value)))
     elif base == "string":
-        data = str(value or "").encode("latin-1", "replace")
+        data = str(value or "").encode("utf-8", "replace")
         put(_LENGTH.pack(len(data)) + data)
     elif base in ("time", "duration"):
         seconds = math.floor(value)
@@ -120,10 +120,10 @@ def _read_one(base: str, take: Callable[[int], bytes]) -> Any:
     if form is not None:
         (number,) = struct.unpack("<" + form, take(struct.calcsize(form)))
         if base == "bool":
-            return True if number else None
+            return bool(number)
         return lisp_float(number) if base in ("float32", "float64") else number
     if base == "string":
-        return take(_LENGTH.unpack(take(4))[0]).decode("latin-1")
+        return take(_LENGTH.unpack(take(4))[0]).decode("utf-8", "replace")
     if base in ("time", "duration"):
         seconds, nanoseconds = struct.unpack("<II" if base == "time" else "<ii", take(8))
         return lisp_float(seconds + nanoseconds / 1e9)

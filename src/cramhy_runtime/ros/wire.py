@@ -1,9 +1,9 @@
 """Check and convert messages on their way through the graph: roslisp's serialisation, without the bytes.
 
 A message may hold any values; sending it checks their types. `transmit` returns the object for a receiver: a fresh one, with
-integers cut to their bits, reals as double-floats (a ``float32`` rounded to 32 bits), booleans as T or NIL, strings of Latin-1
-characters. The sender's task gets the errors of roslisp (roslisp.md 5.2). Their hint says where in the message the wrong value
-is; only an error starts the search for it.
+integers cut to their bits, reals as double-floats (a ``float32`` rounded to 32 bits), booleans as True or False, which is NIL in
+Lisp. Numbers and arrays of numpy are numbers and lists. The sender's task gets the errors of roslisp (roslisp.md 5.2). Their hint says
+where in the message the wrong value is; only an error starts the search for it. `strict.py` has the checks of rospy for Python.
 """
 
 from __future__ import annotations
@@ -68,11 +68,8 @@ def as_float(value: float | Symbol) -> float:
 
 
 def ros_text(text: str) -> str:
-    """``text`` in the form that messages hold. ROS has one byte per character.
-
-    So a text with characters outside Latin-1 becomes its bytes in UTF-8; `message_json` turns them back into the text.
-    """
-    return text if text.isascii() or max(text) <= "\xff" else text.encode("utf-8", "replace").decode("latin-1")
+    """``text`` as messages can hold it: half of a surrogate pair, as in the names of some files, becomes a question mark."""
+    return text if text.isascii() else text.encode("utf-8", "replace").decode()
 
 
 def lisp_float(value: float) -> DoubleFloat | Symbol:
@@ -84,9 +81,19 @@ def lisp_float(value: float) -> DoubleFloat | Symbol:
     return POSITIVE_INFINITY if value > 0 else NEGATIVE_INFINITY
 
 
+def plain(value: Any) -> Any:
+    """``value``, or the number of Python that it is: numbers of numpy, arrays without dimensions, and members of an `IntEnum`."""
+    if getattr(value, "shape", None) == () and hasattr(value, "item"):
+        return value.item()
+    return int(value) if isinstance(value, int) and value.__class__ is not bool else value
+
+
 def _real(value):
     if value.__class__ is int or is_real(value):
         return value
+    number = plain(value)
+    if number is not value:
+        return _real(number)
     if isinstance(value, Symbol) and value in NONFINITE:
         return as_float(value)
     raise _misfit(value, "REAL", "\nwhen binding SB-KERNEL::X")
@@ -107,7 +114,9 @@ def _integer(bits, signed):
 
     def convert(value):
         if value.__class__ is not int:
-            raise _misfit(None if value is False else value, "INTEGER")
+            value = plain(value)
+            if value.__class__ is not int:
+                raise _misfit(None if value is False else value, "INTEGER")
         value &= mask
         return value - mask - 1 if signed and value & sign else value
 
@@ -115,7 +124,7 @@ def _integer(bits, signed):
 
 
 def _bool(value):
-    return True if truth(value) else None
+    return truth(value)
 
 
 def _string(value):
@@ -124,10 +133,10 @@ def _string(value):
     if not isinstance(value, (str, LispString)):
         raise _misfit(value, "STRING")
     text = str(value)
-    if not text.isascii():
-        for character in text:
-            if ord(character) > 255:
-                raise _misfit(ord(character), "(UNSIGNED-BYTE 8)")
+    try:
+        text.encode()
+    except UnicodeEncodeError as problem:  # half of a surrogate pair
+        raise _misfit(ord(text[problem.start]), "CHARACTER") from None
     return text
 
 
@@ -161,7 +170,13 @@ def _part(base):
     return convert
 
 
+def _misfit_of_shape(array):
+    raise _misfit(array, "VECTOR")
+
+
 def _array(field, convert):
+    octets = field.base in ("uint8", "char")
+
     def convert_all(value):
         if value is None:
             value = []
@@ -169,6 +184,12 @@ def _array(field, convert):
             value = map(Character, str(value))  # a vector of characters
         elif isinstance(value, (Cons, dict)) or not hasattr(value, "__iter__"):
             raise _misfit(value, "VECTOR")
+        elif octets and value.__class__ in (bytes, bytearray) or getattr(getattr(value, "dtype", None), "char", None) == "B":
+            value = bytes(value) if getattr(value, "ndim", 1) == 1 else _misfit_of_shape(value)
+            if octets and not (field.length and len(value) != field.length):
+                return list(value)  # an image has a million
+        elif hasattr(value, "dtype") and hasattr(value, "tolist"):
+            value = value.tolist() if value.ndim == 1 else _misfit_of_shape(value)
         result = [convert(element) for element in value]
         if field.length and len(result) != field.length:
             return conditions.error(
@@ -187,7 +208,7 @@ _transmitters: dict[type, Callable[[Any], Any]] = {}
 _READY = {
     "float64": "{0} if {0}.__class__ is Double and isfinite({0}) else {1}({0})",
     "float32": "Double(single({0})) if {0}.__class__ in floats and -3e38 < {0} < 3e38 else {1}({0})",
-    "bool": "{0} if {0} is True or {0} is None else {1}({0})",
+    "bool": "{0} if {0} is True or {0} is False else {1}({0})",
     "string": "{0} if {0}.__class__ is str and {0}.isascii() else {1}({0})",
 }
 """Generated expressions for fields whose value usually can be sent as it is. All other fields call the converter."""
@@ -221,7 +242,8 @@ def transmit(message: M) -> M:
     path, kind, value = _misplaced(message)
     held, limit = prin1_to_string(value), 60
     held = held if len(held) <= limit else held[:limit] + "..."
-    fault = "has characters that are not Latin-1" if kind == "string" and isinstance(value, (str, LispString)) else f"is no {kind}"
+    half = kind == "string" and isinstance(value, (str, LispString))
+    fault = "has half of a surrogate pair, which is no character" if half else f"is no {kind}"
     return signal(f"{message.ros_type}: {path} holds {held}, which {fault}.")
 
 

@@ -123,12 +123,37 @@ def component(index: int) -> Component:
     def get(self):
         return self.component(index)
 
-    def set_(self, value):
-        components = list(self.components)
-        components[index] = real(value)
-        self.components = tuple(components)
+    return FixedComponent(get, index)  # type: ignore[return-value]
 
-    return property(get, set_, doc="A component, as the float that Lisp sees.")  # type: ignore[return-value]
+
+class FixedComponent(property):
+    """The property of one component. Python cannot assign it in our own classes, which compare by value; Lisp's `slot-value` can."""
+
+    def __init__(self, get: Callable[[Any], Any], index: int):
+        super().__init__(get, doc="A component, as the float that Lisp sees.")
+        self.index = index
+
+    def __set__(self, obj: Any, value: Any) -> None:
+        if type(obj).__module__.startswith("cramhy_runtime.t"):  # transforms and tf; classes of users are theirs
+            kind = type(obj).__name__
+            raise AttributeError(f"A {kind} is not changed after it was made. Make a new one: {kind}(...), or copy_3d_vector(v, x=5).")
+        self.set_by_lisp(obj, value)
+
+    def set_by_lisp(self, obj: Any, value: Any) -> None:
+        """Change the component, as ``(setf (slot-value v 'x) 5)`` does."""
+        components = list(obj.components)
+        components[self.index] = real(value)
+        obj.components = tuple(components)
+
+
+class ByValue:
+    """Objects of one class that are equal in Python if all their attributes are. In Lisp each is equal to itself only."""
+
+    def __eq__(self, other: object) -> Any:
+        return vars(self) == vars(other) if other.__class__ is self.__class__ else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash((self.__class__.__name__, *vars(self).values()))
 
 
 def no_method(function: str, *arguments: object) -> Any:

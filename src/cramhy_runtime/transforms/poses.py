@@ -10,7 +10,7 @@ from cramhy_runtime.ground.conditions import error, warn, wrong_argument_count
 from cramhy_runtime.ground.data import truth
 from cramhy_runtime.ground.packages import keyword
 
-from .coercion import array_elements, instance, no_method, slot_reader
+from .coercion import ByValue, array_elements, instance, no_method, slot_reader
 from .quaternions import TOLERANCE, Quaternion, general, inverse, multiply, normalize, normalized, quaternion, rotated, unit, yaw
 from .vectors import Vector3, make_3d_vector, point, vector
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, overload
@@ -24,7 +24,7 @@ T = TypeVar("T", bound="Twist | Wrench")
 _WARN, _NO_WARN = keyword("WARN"), keyword("NO-WARN")
 
 
-class Transform:
+class Transform(ByValue):
     """A change of coordinates: turn by ``rotation``, then move by ``translation``. A rotation of another length is normalised."""
 
     lisp_name = "CL-TRANSFORMS::TRANSFORM"
@@ -38,7 +38,7 @@ class Transform:
         return f"#<TRANSFORM {self.translation!r} {self.rotation!r}>"
 
 
-class Pose:
+class Pose(ByValue):
     """A place and a direction: ``origin`` and ``orientation``. An orientation of another length is normalised."""
 
     lisp_name = "CL-TRANSFORMS::POSE"
@@ -52,7 +52,7 @@ class Pose:
         return f"#<POSE {self.origin!r} {self.orientation!r}>"
 
 
-class Twist:
+class Twist(ByValue):
     """Linear and angular velocity, two vectors."""
 
     lisp_name = "CL-TRANSFORMS::TWIST"
@@ -63,7 +63,7 @@ class Twist:
         self.rotation = Vector3() if rotation is None else rotation
 
 
-class Wrench:
+class Wrench(ByValue):
     """Force and torque, two vectors."""
 
     lisp_name = "CL-TRANSFORMS::WRENCH"

@@ -12,7 +12,19 @@ from cramhy_runtime.ground.data import Cons, DoubleFloat, MultipleValues, list_f
 from cramhy_runtime.ground.numbers import is_real, single
 from cramhy_runtime.ground.packages import keyword, sym
 
-from .coercion import check_type, component, element, elements, float_argument, instance, no_method, real, sine_and_cosine, wrong_type
+from .coercion import (
+    ByValue,
+    check_type,
+    component,
+    element,
+    elements,
+    float_argument,
+    instance,
+    no_method,
+    real,
+    sine_and_cosine,
+    wrong_type,
+)
 from .vectors import Vector3, point, vector
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
@@ -26,7 +38,7 @@ TOLERANCE = 1e-6
 """How far the squared norm of a unit quaternion may be from 1."""
 
 
-class Quaternion:
+class Quaternion(ByValue):
     """A quaternion. ``components`` are plain Python floats; ``kind`` is the float type that Lisp sees (double-float, as a rule)."""
 
     lisp_name = "CL-TRANSFORMS::QUATERNION"

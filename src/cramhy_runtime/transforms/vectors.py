@@ -1,6 +1,7 @@
 """Vectors in space: the class 3D-VECTOR and its algebra.
 
-Vectors are not changed after they are made, and are equal only to themselves, as in the original. Source: cl-transforms.md 2.
+Vectors are not changed after they are made. In Python they compare by value; in Lisp they are equal only to themselves, as in the
+original. Source: cl-transforms.md 2.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from cramhy_runtime.ground.data import Cons, DoubleFloat
 from cramhy_runtime.ground.numbers import is_real
 from cramhy_runtime.ground.packages import sym
 
-from .coercion import check_type, component, element, elements, instance, no_method, real, wrong_type
+from .coercion import ByValue, check_type, component, element, elements, instance, no_method, real, wrong_type
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from .signatures import Place, Three
 
 
-class Vector3:
+class Vector3(ByValue):
     """A vector or point. ``components`` are its plain Python floats; ``x``, ``y`` and ``z`` the doubles that Lisp sees."""
 
     lisp_name = "CL-TRANSFORMS::3D-VECTOR"

@@ -203,6 +203,7 @@ def test_legacy_names_work_with_one_warning(lisp, request):
         ("std_msgs/Float64", "7", "7.0d0"),
         ("std_msgs/String", "nil", '""'),
         ("std_msgs/String", '"größe"', '"größe"'),
+        ("std_msgs/String", '"€ 日本"', '"€ 日本"'),  # the original refuses it
         ("std_msgs/Char", "65", "65"),
         ("std_msgs/Byte", "-1", "255"),
         ("std_msgs/Int8", "200", "-56"),
@@ -219,7 +220,6 @@ def test_what_arrives(lisp, type_name, value, got):
     "type_name, value, text",
     [
         ("std_msgs/Float64", '"a"', 'The value "a" is not of type REAL when binding SB-KERNEL::X'),
-        ("std_msgs/String", '"€"', "The value 8364 is not of type (UNSIGNED-BYTE 8)"),
         ("std_msgs/String", "3", "The value 3 is not of type STRING"),
         ("std_msgs/UInt8", "t", "The value T is not of type INTEGER"),
         ("std_msgs/UInt8MultiArray", '"abc"', "The value #\\a is not of type INTEGER"),

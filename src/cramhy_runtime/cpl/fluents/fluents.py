@@ -238,6 +238,8 @@ class ValueFluent(Fluent[T]):
     def stores(self, new: T) -> bool:
         """Store ``new`` without a pulse, unless the test says that nothing changed. Returns whether it was stored."""
         if truth(eql(self.stored, new)) if self.test is None else self._same(new):
+            if new is False or new is None and self.stored is False:
+                self.stored = new
             return False
         self.stored = plain_truth(new)
         return True
@@ -257,6 +259,7 @@ class ValueFluent(Fluent[T]):
                 if (kind not in COLLECTIONS and kind.__name__ != "ndarray") if old is new else old == new if kind is int else eql(old, new):
                     return new
             elif (old is False or new is False) and eql(old, new):  # of two classes only False is nil
+                self.stored = new  # without a pulse: it is one value in Lisp, and Python reads what it has written
                 return new
         elif self._same(new := plain_truth(new)):
             return new

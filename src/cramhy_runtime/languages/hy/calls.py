@@ -56,7 +56,11 @@ __all__ = [
     "function",
     "inserted",
     "items",
+    "get_param",
+    "has_param",
     "lispify",
+    "publish_message",
+    "set_param",
     "lisp_list",
     "lisp_list_ending",
     "make_tag_task",
@@ -171,6 +175,34 @@ def publish(symbol, function_):
         symbol.function = _as_lisp_calls(function_)
         symbol.function_changed()
     return symbol
+
+
+def publish_message(topic, message):
+    """`ros.python.publish`. The library of ROS is imported when a program calls it."""
+    from cramhy_runtime.ros.python import publish
+
+    return publish(topic, message)
+
+
+def get_param(key, *default):
+    """`ros.python.get_param`."""
+    from cramhy_runtime.ros.python import get_param
+
+    return get_param(key, *default)
+
+
+def set_param(key, value):
+    """`ros.python.set_param`."""
+    from cramhy_runtime.ros.python import set_param
+
+    return set_param(key, value)
+
+
+def has_param(key):
+    """`ros.python.has_param`."""
+    from cramhy_runtime.ros.python import has_param
+
+    return has_param(key)
 
 
 def own_symbol(symbol):

@@ -62,9 +62,15 @@ WITHOUT_PREFIX = (
 """The packages whose names are known as they are. Where two of them have one name, the first counts."""
 
 DESIGNATORS = ("A", "AN", "ALL")
-CPL = ("CRAM-LANGUAGE", "CRAM-LANGUAGE-IMPLEMENTATION")
-FOR_PYTHON = {"WAIT-FOR": "wait-for"}
-"""Functions of CPL that ask more of their arguments in Hy and Python than in Lisp → their names in ``calls``."""
+FOR_PYTHON = {
+    ("CRAM-LANGUAGE", "WAIT-FOR"): "wait-for",
+    ("CRAM-LANGUAGE-IMPLEMENTATION", "WAIT-FOR"): "wait-for",
+    ("ROSLISP", "PUBLISH"): "publish-message",
+    ("ROSLISP", "GET-PARAM"): "get-param",
+    ("ROSLISP", "SET-PARAM"): "set-param",
+    ("ROSLISP", "HAS-PARAM"): "has-param",
+}
+"""Functions that ask more of their arguments, or give other values, in Hy and Python than in Lisp → their names in ``calls``."""
 
 WITH_PREFIX = (*WITHOUT_PREFIX, "CRAM-LANGUAGE-IMPLEMENTATION", "ACTIONLIB-LISP", "CL-TRANSFORMS-STAMPED", "TURTLESIM")
 
@@ -156,7 +162,7 @@ def function_macro(symbol, name=None):
         if lisp_name in OF_GOALS and made and made[0] is arguments[0]:
             made[0] = insertion("inserted", made[0], here)
         theirs = name is not None and (may_be_the_users(name, _hy_compiler) or is_bound(_hy_compiler, mangle(name)))
-        function = call_of(FOR_PYTHON[lisp_name]) if package in CPL and lisp_name in FOR_PYTHON else function_form(package, lisp_name)
+        function = call_of(FOR_PYTHON[package, lisp_name]) if (package, lisp_name) in FOR_PYTHON else function_form(package, lisp_name)
         if any(map(_is_keyword, made)) and not calls.takes_keywords(symbol.function):
             if theirs or any(map(_is_mapping, made)):
                 function = expression(call_of("function"), models.String(package), models.String(lisp_name))

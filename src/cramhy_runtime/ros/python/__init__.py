@@ -11,17 +11,18 @@
 
 They are roslisp's functions (``ros/roslisp``) with what Python expects: keyword arguments for fields, and ``with`` blocks. A message is an
 object with the fields of its ``.msg`` file as attributes. All waits are the kernel's, so a plan may use these functions in any branch.
-Where the parts are: `running` the node, services and the log. Source: roslisp.md 2 to 9.
+Where the parts are: `running` the node, services and the log; `parameters` what parameters are in Python. Source: roslisp.md 2 to 9.
 """
 
 from ..messages import RosMessage, message_class, service_type
 from ..roslisp.clock import ros_time
 from ..roslisp.node import node_status, shutdown_ros_node, start_ros_node
-from ..roslisp.parameters import delete_param, get_param, has_param, set_param
+from ..roslisp.parameters import delete_param
 from ..roslisp.services import wait_for_service
 from ..roslisp.time import wait_duration
-from ..roslisp.topics import advertise, publish, subscribe, unadvertise, unsubscribe
-from .running import call_service, log_level, register_service, ros_debug, ros_error, ros_fatal, ros_info, ros_node, ros_warn
+from ..roslisp.topics import advertise, subscribe, unadvertise, unsubscribe
+from .parameters import get_param, has_param, set_param
+from .running import call_service, log_level, publish, register_service, ros_debug, ros_error, ros_fatal, ros_info, ros_node, ros_warn
 
 __all__ = [
     "advertise", "call_service", "delete_param", "get_param", "has_param", "log_level", "message_class", "node_status", "publish",

@@ -9,7 +9,9 @@ from cramhy_runtime import kernel
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 from ..messages import RosMessage, service_type
-from ..roslisp import logging, node, services
+from ..roslisp import logging, node, services, topics
+from ..strict import check, check_type
+from ..topics import Publication
 
 if TYPE_CHECKING:
     from ..signatures import Answers, ServiceName
@@ -32,6 +34,18 @@ def ros_node(name: str, *, anonymous: bool = False, arguments: Sequence[str] = (
             node.shutdown_ros_node()
 
 
+def publish(topic: str | Publication, message: RosMessage) -> int:
+    """Send a message on a topic that was advertised; returns the number of subscribers it reached.
+
+    topic: its name, or what `advertise` returned. Errors: a topic that is not advertised; a TypeError for a message of another type than
+    the topic's, and for a value of a wrong type; a ValueError for an integer that is out of range.
+    """
+    found = node.require_node().publications.get(node.fully_qualified_name(topic)) if isinstance(topic, str) else topic
+    if isinstance(found, Publication):
+        check_type(message, found.type, found.name)
+    return topics.publish(topic, message)
+
+
 def call_service(service: str | services.ServiceClient, kind: ServiceName | None = None, /, **fields: object) -> RosMessage | None:
     """Call a service with the fields of its request, ``call_service("/spawn", "turtlesim/Spawn", x=2, y=3)``; its response.
 
@@ -39,11 +53,11 @@ def call_service(service: str | services.ServiceClient, kind: ServiceName | None
     for a field that the request does not have.
     """
     if isinstance(service, services.ServiceClient):
-        return services.call_service(service, service.type.request(**fields))
+        return services.call_service(service, _checked(service.type.request(**fields)))
     if kind is None:
         raise TypeError(f'call_service needs the type of the service, too: call_service("{service}", "std_srvs/Empty").')
     found = service_type(kind)
-    return services.call_service(service, found.name, found.request(**fields))
+    return services.call_service(service, found.name, _checked(found.request(**fields)))
 
 
 def register_service(name: str, kind: ServiceName, callback: Answers) -> None:
@@ -55,9 +69,15 @@ def register_service(name: str, kind: ServiceName, callback: Answers) -> None:
 
     def answer(request: RosMessage) -> RosMessage:
         response = callback(request)
-        return found.response(**response) if isinstance(response, dict) else response
+        return _checked(found.response(**response) if isinstance(response, dict) else response)
 
     services.register_service_fn(name, answer, kind)
+
+
+def _checked(message: RosMessage) -> RosMessage:
+    if isinstance(message, RosMessage):
+        check(message)
+    return message
 
 
 def ros_debug(topic: Topic, text: str) -> None:

@@ -13,6 +13,8 @@ from .parameter_values import decode, encode
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ..signatures import Text
     from ..parameter_tree import ParameterTree
 
@@ -47,9 +49,14 @@ def get_param(key: Text, default: object = UNSUPPLIED) -> Any:
 
     Without a default, it is an error, which is logged too.
     """
+    return value_of(key, default, decode)
+
+
+def value_of(key: Text, default: object, decoded: Callable[[Any], Any]) -> Any:
+    """What `get_param` returns. ``decoded``: the function that turns a value of the tree into one of the caller's language."""
     name = _full_name(key)
     try:
-        return decode(_tree("Could not contact master~* when getting param ~a: ~a", name).get(name))
+        return decoded(_tree("Could not contact master~* when getting param ~a: ~a", name).get(name))
     except KeyError:
         if default is not UNSUPPLIED:
             return default

@@ -126,12 +126,16 @@ def set_slot_value(new, object, slot_name):
     """``(setf slot-value)``"""
     try:
         setattr(object, _attributes[object.__class__][slot_name], new)
-    except (KeyError, TypeError):
+    except (KeyError, TypeError, AttributeError):
         attribute = _attribute(object, slot_name)
         if attribute is None:
             missing_slot(object, slot_name, "SETF", f"set the slot's value to {shown(new)} (SETF of SLOT-VALUE)", new)
         else:
-            setattr(object, attribute, new)
+            by_lisp = getattr(getattr(object.__class__, attribute, None), "set_by_lisp", None)  # of what Python cannot assign
+            if by_lisp is None:
+                setattr(object, attribute, new)
+            else:
+                by_lisp(object, new)
     return new
 
 
