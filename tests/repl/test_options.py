@@ -74,16 +74,16 @@ def test_the_simulator_alone_lives_in_that_time_too(private, monkeypatch, option
 
 def test_a_preferred_system_comes_from_the_path(tmp_path, monkeypatch, capsys):
     (tmp_path / "mine").mkdir()
-    (tmp_path / "mine" / "split-sequence.asd").write_text('(defsystem split-sequence :components ((:file "s")))')
+    (tmp_path / "mine" / "trivial-garbage.asd").write_text('(defsystem trivial-garbage :components ((:file "s")))')
     (tmp_path / "mine" / "s.lisp").write_text(
-        "(defpackage split-sequence (:use :cl) (:export #:split-sequence))\n(defun split-sequence:split-sequence (x) (list :mine x))\n"
+        "(defpackage trivial-garbage (:use :cl) (:export #:finalize))\n(defun trivial-garbage:finalize (x) (list :mine x))\n"
     )
-    (tmp_path / "f.lisp").write_text("(print (split-sequence:split-sequence 1))\n")
+    (tmp_path / "f.lisp").write_text("(print (trivial-garbage:finalize 1))\n")
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
     for words, shown, status in [
-        (["--prefer-path", "split-sequence"], "(:MINE 1)", 0),
+        (["--prefer-path", "trivial-garbage"], "(:MINE 1)", 0),
         ([], "invalid number of arguments", 1),
-        (["--prefer-path", "splot-sequence"], 'There is no system "splot-sequence" on ROS_PACKAGE_PATH', 1),
+        (["--prefer-path", "trivial-garbadge"], 'There is no system "trivial-garbadge" on ROS_PACKAGE_PATH', 1),
     ]:
         with Image():
             assert cli.main(["run", *words, str(tmp_path / "f.lisp")]) == status
