@@ -150,10 +150,10 @@ def test_the_pace_is_told_to_late_subscribers_and_when_it_changes(session, looke
     looker.open_board()
     session.evaluate_text("(sleep 0.1)")
     heard = looker.listen("/cramhy/pace", "cramhy_msgs/Pace")
-    assert [(pace.virtual, pace.paused, pace.speed) for pace in heard] == [(True, None, 0.0)]
+    assert [(pace.virtual, pace.paused, pace.speed) for pace in heard] == [(True, False, 0.0)]
     answer = looker.call("/cramhy/set_pace", "cramhy_msgs/SetPace", speed=1000.0)
-    assert (answer.pace.paused, answer.pace.speed) == (None, 1000.0)
-    assert [(pace.paused, pace.speed) for pace in heard] == [(None, 0.0), (None, 1000.0)]
+    assert (answer.pace.paused, answer.pace.speed) == (False, 1000.0)
+    assert [(pace.paused, pace.speed) for pace in heard] == [(False, 0.0), (False, 1000.0)]
     kernel.pace().set_speed(None)
     assert heard[-1].speed == 0.0
 

@@ -196,10 +196,10 @@ def test_the_board_tells_what_is_replayed(fresh, path):
     graph.active().node("late", hidden=True).subscribe("/cramhy/pace", message_class_exact("cramhy_msgs/Pace"), heard.append)
     kernel.sleep(0.1)
     pace = heard[-1]
-    assert (pace.recording, pace.speed, pace.paused, pace.busy) == ("x.mcap", 3.0, None, True)
+    assert (pace.recording, pace.speed, pace.paused, pace.busy) == ("x.mcap", 3.0, False, True)
     assert (pace.begin, pace.end) == (player.recording.begin, player.recording.end)
     kernel.sleep(5)
-    assert heard[-1].busy is None
+    assert heard[-1].busy is False
 
 
 def test_starting_to_tell_beside_a_replay_leaves_it_alone(fresh, path):

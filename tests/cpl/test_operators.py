@@ -7,7 +7,7 @@ from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl.forms import operators
 from cramhy_runtime.cpl.tree import tags
 from cramhy_runtime.cpl.statuses import DEAD, EVAPORATED, FAILED, SUCCEEDED
-from cramhy_runtime.ground.conditions import Error
+from cramhy_runtime.ground.conditions import Error, error
 from cramhy_runtime.ground.data import NO_VALUES, MultipleValues, lisp_list, python_list
 from cramhy_runtime.ground.packages import keyword
 
@@ -216,9 +216,10 @@ def test_outer_handlers_do_not_see_what_try_in_order_takes():
     assert seen == []
 
 
-def test_an_error_of_the_same_task_passes_try_in_order_and_one_of_a_child_does_not():
+def test_an_error_of_lisp_in_the_same_task_passes_try_in_order_and_one_of_a_child_does_not():
     with pytest.raises(Error):
-        plan(lambda: cpl.try_in_order(lambda: 1 / 0, lambda: 2))
+        plan(lambda: cpl.try_in_order(lambda: error("no"), lambda: 2))
+    assert plan(lambda: cpl.try_in_order(lambda: 1 / 0, lambda: 2)) == 2  # an exception of Python is a failure, as in TRY-ALL
     assert plan(lambda: cpl.try_in_order(lambda: cpl.par(lambda: 1 / 0), lambda: 2)) == 2
 
 
