@@ -81,7 +81,9 @@ def test_a_designator_that_contains_itself_and_a_chain_of_equated_ones_are_pickl
     assert deep.data["where"] is not first_one and deep.data["where"].type is kw.cup
 
 
-@pytest.mark.parametrize("name", [kw.cup, P.cup, V.x, V._, V, P, kw, UNBOUND, P.cup.symbol, names("CRAM-PROLOG")], ids=lambda each: type(each).__name__)
+@pytest.mark.parametrize(
+    "name", [kw.cup, P.cup, V.x, V._, V, P, kw, UNBOUND, P.cup.symbol, names("CRAM-PROLOG")], ids=lambda each: type(each).__name__
+)
 def test_names_are_the_same_after_all_ways_of_copying(name, copied):
     made = copied({"it": name})["it"]
     assert made is name or made == name or repr(made) == repr(name) and made.member == name.member
@@ -116,12 +118,11 @@ def failure_of(plan):
     return caught.value
 
 
-@process_module(matches=lambda motion: motion.type is kw.breaking)
-def breaking(motion):
-    raise DoorStuck("fridge", angle=30)
-
-
 def break_it():
+    @process_module(matches=lambda motion: motion.type is kw.breaking)
+    def breaking(motion):
+        raise DoorStuck("fridge", angle=30)
+
     with process_modules(breaking):
         perform(Motion(type=kw.breaking))
 

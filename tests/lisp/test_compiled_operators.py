@@ -97,8 +97,8 @@ def test_the_operator_means_the_function(session, program, wanted):
 @pytest.mark.parametrize(
     ("program", "wanted"),
     [
-        ("(let ((l nil)) (dotimes (i 3) (push (lambda () i) l)) (mapcar #'funcall l))", "(2 1 0)"),
-        ("(let ((l nil)) (dotimes (i 3) (push (lambda () (incf i)) l)) (mapcar #'funcall l))", "(3 2 1)"),
+        ("(let ((l nil)) (dotimes (i 3) (push (lambda () i) l)) (mapcar #'funcall l))", "(3 3 3)"),
+        ("(let ((l nil)) (dotimes (i 3) (push (lambda () (incf i)) l)) (mapcar #'funcall l))", "(4 5 6)"),
         ("(let ((s 0)) (dotimes (i 5 (list i s)) (incf s i)))", "(5 10)"),
         ("(dotimes (i -3 i))", "0"),
         ("(let ((n 3) (s 0)) (dotimes (i n s) (setq n 100) (incf s)))", "3"),

@@ -40,7 +40,7 @@ def test_handlers_of_the_caller_are_asked_about_the_error_alone(text):
 def test_the_report_says_that_it_cannot_be_printed(text):
     text(BROKEN + '(setf *breaks* (lambda () (error "no print")))')
     said = text.error("(plan (nav) (pm-execute 'nav (broken)))")
-    assert "the motor is hot" in said and "executed #<error printing a BROKEN: no print>" in said
+    assert "the motor is hot" in said and "executed #<error printing a BROKEN: no print (at " in said
 
 
 def test_a_fluent_or_callback_whose_name_cannot_be_printed_keeps_its_error(text):
@@ -54,4 +54,4 @@ def test_a_candidate_that_cannot_be_printed_does_not_hide_why_there_is_no_place(
     text("""(defun gives-broken (d) (declare (ignore d)) (list (broken))) (defun refuses (d s) (declare (ignore d s)) :reject)
             (desig:register-location-generator 1 gives-broken) (desig:register-location-validation-function 1 refuses)""")
     said = text.error("(reference (a location (to stand)))")
-    assert "Unable to resolve designator" in said and "#<error printing a broken: no print>" in said.lower()
+    assert "Unable to resolve designator" in said and "#<error printing a broken: no print (at " in said.lower()
