@@ -6,6 +6,8 @@ import hy
 import pytest
 from hy.errors import HySyntaxError
 
+from cramhy_runtime.languages.hy.malformed import MalformedForm  # which it is once a session has attended to Hy
+
 
 def compiled(text):
     module = types.ModuleType("code_in_designators")
@@ -30,12 +32,12 @@ def compiled(text):
     "form", ["(a motion (type driving) (goal {}))", "(an action (of (a location (at {}))))", "(all object (sizes [1 {}]))"]
 )
 def test_code_in_a_designator_is_refused(form, code, kind, value):
-    with pytest.raises(HySyntaxError) as told:
+    with pytest.raises((HySyntaxError, MalformedForm)) as told:
         compiled(f"(setv n 3)\n(defn it [] {form.replace('{}', code)})")
-    assert told.value.msg == (
+    assert (
         f"{code} is not evaluated in a designator ({kind}): only ?variables are. "
         f"Write (let [?value {value or code}] ...) around it, and ?value in its place."
-    )
+    ) in str(told.value)
 
 
 @pytest.mark.parametrize(
@@ -51,9 +53,9 @@ def test_code_in_a_designator_is_refused(form, code, kind, value):
 )
 @pytest.mark.parametrize("form", ["(def-fact-group rooms [] (<- (room {})))", "(defn it [] (prolog '(room {})))"])
 def test_code_in_a_fact_or_a_quoted_goal_is_refused(form, code, text):
-    with pytest.raises(HySyntaxError) as told:
+    with pytest.raises((HySyntaxError, MalformedForm)) as told:
         compiled(form.replace("{}", code))
-    assert told.value.msg == text
+    assert text in str(told.value)
 
 
 def test_variables_lists_and_templates_are_as_before():

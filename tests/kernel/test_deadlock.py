@@ -8,6 +8,13 @@ from systems import needs_threads
 from cramhy_runtime import kernel
 
 
+@pytest.fixture(autouse=True)
+def no_threads_of_other_tests(monkeypatch):
+    """The text names all threads of the program; those that other tests have left are none of ours."""
+    before, enumerate_all = set(threading.enumerate()) - {threading.main_thread()}, threading.enumerate
+    monkeypatch.setattr(threading, "enumerate", lambda: [thread for thread in enumerate_all() if thread not in before])
+
+
 def line_of(marker):
     with open(__file__) as file:
         return next(number for number, line in enumerate(file, 1) if line.rstrip().endswith(f"# {marker}"))

@@ -16,20 +16,20 @@ import warnings
 
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar
 
-from .conses import (  # noqa: F401  the data that most of the code takes from here
-    LONG,
-    STRETCH,
-    UNBOUND,
-    UNSUPPLIED,
-    Cons,
-    LazyRest,
-    conses,
-    list_end,
-    list_from,
-    list_parts,
-    lisp_list,
-    new_object,
-    python_list,
+from .conses import (
+    LONG as LONG,
+    STRETCH as STRETCH,
+    UNBOUND as UNBOUND,
+    UNSUPPLIED as UNSUPPLIED,
+    Cons as Cons,
+    LazyRest as LazyRest,
+    conses as conses,
+    list_end as list_end,
+    list_from as list_from,
+    list_parts as list_parts,
+    lisp_list as lisp_list,
+    new_object as new_object,
+    python_list as python_list,
 )
 from .slot_classes import SlotClasses, effective_functions
 from .ports import PORTS

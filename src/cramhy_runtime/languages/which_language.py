@@ -12,4 +12,4 @@ def goes_on_in_lisp(path: Path) -> bool:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError):
         return False
-    return re.search(r"^\s*\((in-package|defpackage)\b", text, re.M) is not None
+    return re.search(r"^[ \t]*\((in-package|defpackage)\b", text, re.M) is not None
