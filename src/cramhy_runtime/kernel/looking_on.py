@@ -12,8 +12,8 @@ from .active import active, current
 class _Onlooker:
     """The task that looks on now, if one does."""
 
-    def __init__(self):
-        self.task = _NOBODY
+    def __init__(self) -> None:
+        self.task: object = _NOBODY
 
 
 _NOBODY = object()
@@ -25,17 +25,17 @@ class looking_on:  # noqa: N801 (reads as a statement)
 
     __slots__ = ("_before",)
 
-    def __enter__(self):
+    def __enter__(self) -> None:
         self._before, _onlooker.task = _onlooker.task, _this_task()
 
-    def __exit__(self, *exception):
+    def __exit__(self, *exception: object) -> None:
         _onlooker.task = self._before
 
 
-def _this_task():
+def _this_task() -> object:
     return None if active() is None else current()
 
 
-def only_looked_at():
+def only_looked_at() -> bool:
     """Whether what is printed now is for somebody who only looks on."""
     return _onlooker.task is not _NOBODY and _onlooker.task is _this_task()

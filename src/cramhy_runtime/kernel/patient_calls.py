@@ -18,7 +18,7 @@ _sleep, own_input = time.sleep, builtins.input
 """Python's own functions; the prompt itself reads its lines with readline by `own_input`."""
 
 
-def sleep(seconds, /):
+def sleep(seconds: float, /) -> None:
     """``time.sleep``: wait for SECONDS of wall time."""
     if not holds_baton() or not isinstance(seconds, (int, float)) or not 0 < seconds < math.inf:
         return _sleep(seconds)
@@ -28,7 +28,7 @@ def sleep(seconds, /):
     return None
 
 
-def ask(prompt="", /):
+def ask(prompt: object = "", /) -> str:
     """``input``: print PROMPT and return a line without its end. EOFError at the end of the input."""
     if type(sys.stdin) is not StandardInput or not holds_baton():
         return own_input(prompt)
@@ -40,6 +40,6 @@ def ask(prompt="", /):
     return line.removesuffix("\n")
 
 
-def install():
+def install() -> None:
     """Let Python's names stand for these functions from now on."""
     time.sleep, builtins.input = sleep, ask

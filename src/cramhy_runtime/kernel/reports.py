@@ -205,7 +205,7 @@ def deadlock_text(kernel):
     )
 
 
-def _threads_text():
+def _threads_text() -> str:
     """What to do about threads of the user's, for which no plan waits; empty if there are none."""
     names = [
         thread.name

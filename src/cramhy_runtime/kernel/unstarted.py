@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from types import AsyncGeneratorType, CoroutineType, GeneratorType
 
-from cramhy_runtime.kernel.typing_names import TypeVar
+from cramhy_runtime.kernel.typing_names import Any, TypeVar
 
 T = TypeVar("T")
 CO_GENERATOR, CO_COROUTINE, CO_ASYNC_GENERATOR = 0x20, 0x80, 0x200
@@ -17,7 +17,7 @@ UNSTARTED = frozenset({GeneratorType, CoroutineType, AsyncGeneratorType})
 """The classes of what calls of such functions return. Hot code looks here before it calls `ran`."""
 
 
-def ran(result: T, role: str) -> T:
+def ran(result: Any, role: str) -> Any:
     """``result``, the value of a call of a user's function, unless the call has run nothing: then it is a TypeError.
 
     ``role`` is the function's part in the program, as in "a branch". A generator that has begun, or a generator expression, is a value
@@ -47,7 +47,7 @@ def plain_function(function: T, role: str, yields: bool = False) -> T:
 
     yields: whether generator functions are wanted there. Objects whose code Python does not show are taken as they are.
     """
-    inner = function
+    inner: Any = function
     while hasattr(inner, "func"):  # functools.partial
         inner = inner.func
     flags = getattr(getattr(inner, "__code__", None), "co_flags", 0)

@@ -10,7 +10,7 @@ from typing import Any
 
 from cramhy_runtime.ground.packages import find_package, named_package, near_names
 from cramhy_runtime.languages.commonlisp.python import python_face
-from cramhy_runtime.languages.commonlisp.systems import loader, systems
+from cramhy_runtime.languages.commonlisp.systems import loader, system_definitions, systems
 from cramhy_runtime.prolog import V, findall, names
 from cramhy_runtime.ros import search_folders
 from cramhy_runtime.session import boot
@@ -56,7 +56,7 @@ def _load_description(description: str) -> None:
     system = description.lower().replace("_", "-")
     if system in systems.loaded and robots():
         return
-    if not (systems.is_provided(system) or system in systems.systems or systems.find_asd(system)):
+    if not (systems.is_provided(system) or system in system_definitions.systems or systems.find_asd(system)):
         raise ValueError(_unknown(description, system))
     if robots():
         raise ValueError(

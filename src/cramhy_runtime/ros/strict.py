@@ -33,7 +33,7 @@ def check(message: RosMessage) -> None:
     _check(message, message.ros_type)
 
 
-def check_type(message: Any, cls: type[RosMessage], place: str) -> None:
+def check_type(message: object, cls: type[RosMessage], place: str) -> None:
     """Raise a TypeError unless ``message`` is of the class ``cls``; then `check` it. ``place``: the topic or service, for the error."""
     if not isinstance(message, RosMessage):
         return  # the error of roslisp says more

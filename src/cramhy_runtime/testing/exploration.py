@@ -157,12 +157,13 @@ class _Explorer(Generic[T]):
             return self._checked(outcome)
         return self._checked(outcome.value) if outcome.error is None else f"it ended with {outcome}"
 
-    def _unexpected(self, outcome: Outcome[T]) -> None:
+    def _unexpected(self, outcome: Outcome[T]) -> str | None:
         """Raise the error of a plan that fails whoever goes first, unless that is expected; or tell that it does not come."""
         if outcome.error is not None and not is_expected(outcome.error, self.expect):
             raise outcome.error
         if outcome.error is None and self.expect is not None:
             raise AssertionError(f"The plan was to end with {names(self.expect)}, but it ended well, with {outcome}.")
+        return None
 
     def _checked(self, value: object) -> str | None:
         try:

@@ -129,17 +129,17 @@ def component(index: int) -> Component:
 class FixedComponent(property):
     """The property of one component. Python cannot assign it in our own classes, which compare by value; Lisp's `slot-value` can."""
 
-    def __init__(self, get: Callable[[Any], Any], index: int):
+    def __init__(self, get: Callable[[Any], float], index: int) -> None:
         super().__init__(get, doc="A component, as the float that Lisp sees.")
         self.index = index
 
-    def __set__(self, obj: Any, value: Any) -> None:
+    def __set__(self, obj: Any, value: object) -> None:
         if type(obj).__module__.startswith("cramhy_runtime.t"):  # transforms and tf; classes of users are theirs
             kind = type(obj).__name__
             raise AttributeError(f"A {kind} is not changed after it was made. Make a new one: {kind}(...), or copy_3d_vector(v, x=5).")
         self.set_by_lisp(obj, value)
 
-    def set_by_lisp(self, obj: Any, value: Any) -> None:
+    def set_by_lisp(self, obj: Any, value: object) -> None:
         """Change the component, as ``(setf (slot-value v 'x) 5)`` does."""
         components = list(obj.components)
         components[self.index] = real(value)

@@ -131,10 +131,10 @@ MISTAKES = (AssertionError, NameError, SyntaxError, MemoryError)
 """Exceptions of Python that say that the program is wrong, or cannot go on. No other attempt makes up for them."""
 
 
-def is_mistake(failure: BaseException) -> bool:
+def is_mistake(failure: object) -> bool:
     """Whether ``failure``, the end of a branch, is one of `MISTAKES`. Forms that try several ways pass it on at once."""
     error = failure.error if isinstance(failure, CommonLispErrorEnvelope) else failure
-    return isinstance(error, MISTAKES) or isinstance(error.__cause__, MISTAKES)
+    return isinstance(error, MISTAKES) or isinstance(getattr(error, "__cause__", None), MISTAKES)
 
 
 def python_exception(condition: BaseException) -> BaseException:

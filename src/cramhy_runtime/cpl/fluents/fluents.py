@@ -226,7 +226,7 @@ class ValueFluent(Fluent[T]):
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::VALUE-FLUENT"
 
     def __init__(self, name: Name | None = None, value: T = None, test: Same[T] | Symbol | None = None):  # type: ignore[assignment]
-        self.stored = plain_truth(value)
+        self.stored: T = plain_truth(value)
         self.test = None if test is None else function_of(test)
         super().__init__(name)
 

@@ -310,7 +310,7 @@ class AbstractTask(Generic[T]):
             self.tell_unclaimed(self.unclaimed)
         self._die(status, result)
 
-    def close_blocks(self, status: Keyword, result: Any) -> tuple[Keyword, Any]:
+    def close_blocks(self, status: Keyword, result: object) -> tuple[Keyword, object]:
         """Close the ``with`` blocks that the task, which ends, left open (``block_order.py``). Returns its status and result.
 
         They are those of a failure, unless there is another failure, or the whole task was asked to end.

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..signatures import Parameter
 
 
-def get_param(key: str, default: Any = UNSUPPLIED) -> Any:
+def get_param(key: str, default: object = UNSUPPLIED) -> Any:
     """The value of the parameter ``key``: a bool, number, text, list or dict. If it is not set, ``default``, as it is.
 
     Each call returns lists and dicts of its own. Errors: a parameter that is not set, if there is no default.
@@ -23,7 +23,7 @@ def get_param(key: str, default: Any = UNSUPPLIED) -> Any:
     return parameters.value_of(key, default, _copied)
 
 
-def set_param(key: str, value: Any) -> int:
+def set_param(key: str, value: object) -> int:
     """Set the parameter ``key`` to a bool, number, text, list or dict; returns 0.
 
     A tuple becomes a list, and numbers and arrays of numpy become numbers and lists. Errors: a TypeError for None, and for a dict with
