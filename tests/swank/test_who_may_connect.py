@@ -372,3 +372,25 @@ def test_of_sessions_that_start_at_once_one_gets_the_socket_that_a_dead_one_left
                 client.connect(path)
             living[0].close()
             assert os.listdir(os.path.dirname(path)) == []
+
+
+@posix
+def test_a_session_that_comes_while_another_puts_its_socket_in_the_place_of_a_dead_one_is_refused(path, monkeypatch):
+    """The order in which two once came to live at one path: the first looks, the second looks and removes, the first removes."""
+    left_by_a_dead_process(path)
+    looks, found = sockets._refuses, []
+
+    def another_comes(path):
+        monkeypatch.setattr(sockets, "_refuses", looks)
+        with ThreadPoolExecutor(1) as pool:
+            found.append(pool.submit(sockets.Listening, path))
+        return looks(path)
+
+    monkeypatch.setattr(sockets, "PATIENCE", 0.1)
+    monkeypatch.setattr(sockets, "_refuses", another_comes)
+    first = sockets.Listening(path)
+    with pytest.raises(server.ServerError, match="at the same time"):
+        found[0].result()
+    with socket.socket(socket.AF_UNIX) as client:
+        client.connect(path)
+    first.close()

@@ -1,24 +1,26 @@
 """Where a server listens: at a port of loopback, or at the path of a Unix socket.
 
 A Unix socket listens before it has its name, and gets the name by a hard link. So nobody sees one that is half made, its mode does not
-depend on the umask, and two sessions that start at once do not get the same name. A socket that refuses connections has been left by a
-process that is dead, and is removed.
+depend on the umask. A socket that refuses connections has been left by a process that is dead, and is removed. Sessions that start at once
+find out one after another whether it does, each with a lock on the folder, so none removes the socket that another has just put there.
 """
 
 from __future__ import annotations
 
 import contextlib
 import os
+import select
 import socket
 import stat
 
-from cramhy_runtime.storage import owners
+from cramhy_runtime.storage import owners, partial_names
 
 from .errors import ServerError
 
 HOST = "127.0.0.1"
 WAITING = 100  # clients that the system lets wait
-PATIENCE = 1.0  # s that a session gets to take a connection; a socket of this machine answers at once
+PATIENCE = 1.0  # s that a session gets to take a connection, or to leave the lock; on this machine both are done at once
+TRIES = 100
 
 
 class Listening:
@@ -41,10 +43,10 @@ class Listening:
 
     def close(self):
         """Listen no more. The name of a Unix socket goes, if it still stands for this socket."""
-        self.socket.close()
-        with contextlib.suppress(OSError):
+        with contextlib.suppress(OSError):  # the name goes first: as long as the socket answers, no other session takes its place
             if self._path is not None and os.path.samestat(os.lstat(self._path), self._status):
                 os.unlink(self._path)
+        self.socket.close()
 
     def _at_path(self, path):
         if not hasattr(socket, "AF_UNIX"):
@@ -96,15 +98,31 @@ def _check(folder):
 
 def _give(unnamed, path):
     """Give the socket ``unnamed`` the name ``path``, if that is free, or if a dead process has left it."""
-    for _ in range(3):
+    folder = os.open(os.path.dirname(path) or ".", os.O_RDONLY)
+    try:
+        _lock(folder, path)
         with contextlib.suppress(FileExistsError):
             return os.link(unnamed, path, follow_symlinks=False)
-        _remove_dead(path, unnamed + "-")
+        _remove_dead(path)
+        os.link(unnamed, path, follow_symlinks=False)
+    except FileExistsError:  # put there by a session that knows no lock
+        raise _lives(path) from None
+    finally:
+        os.close(folder)
+
+
+def _lock(folder, path):
+    """Take the lock that sessions hold on the open ``folder`` while they look at ``path``. Raises `ServerError` if others keep it."""
+    for _ in range(TRIES):
+        try:
+            return partial_names.lock(folder, wait=False)
+        except BlockingIOError:
+            select.select([], [], [], PATIENCE / TRIES)
     raise ServerError(f"Other sessions try to listen on {path} at the same time. Choose another place for this one.")
 
 
-def _remove_dead(path, grave):
-    """Remove the socket ``path`` that a dead process has left. Raises `ServerError` if it is anything else. grave: a free name."""
+def _remove_dead(path):
+    """Remove the socket ``path`` that a dead process has left. Raises `ServerError` if it is anything else."""
     try:
         status = os.lstat(path)
     except FileNotFoundError:
@@ -119,13 +137,7 @@ def _remove_dead(path, grave):
     if not _refuses(path):
         raise _lives(path)
     with contextlib.suppress(FileNotFoundError):
-        os.rename(path, grave)
-        if not os.path.samestat(os.lstat(grave), status):  # another session was faster, and this is its socket
-            with contextlib.suppress(FileExistsError):
-                os.link(grave, path, follow_symlinks=False)
-            os.unlink(grave)
-            raise _lives(path)
-        os.unlink(grave)
+        os.unlink(path)
 
 
 def _refuses(path):
