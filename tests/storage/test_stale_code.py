@@ -103,6 +103,11 @@ CASES = {
         "",
         "(defun use () (desig:desig-prop-value (desig:a motion (from start-pose)) :from))",
     ),
+    "variable in a designator that a macro makes": (
+        "(defvar word 1) (defmacro made () '(desig:description (desig:a motion (x word))))",
+        "(defmacro made () '(desig:description (desig:a motion (x word))))",
+        "(defun use () (list (made) (desig:description (desig:a motion (y word)))))",
+    ),
     "keyword in a designator that became a variable": (
         "",
         "(defconstant start-pose 1)",

@@ -13,6 +13,7 @@ from cramhy_runtime.ground.data import Cons, Symbol, UNBOUND, UNSUPPLIED, Undefi
 from cramhy_runtime.ground.equality import eql
 from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.source_places import describe
+from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.ground.packages import printed, sym, symbol_name
 from ..packages.package_errors import check_symbol, locked
 from .evaluator import macro_lambda
@@ -91,17 +92,21 @@ def define_macro(name, expander, documentation=None, lambda_list=None):
     return name
 
 
+_taken: dict = per_image({})
+"""Symbol → the places where it was taken as a keyword. They are no notes of the compiler's, which kept code depends on."""
+
+
 def take_as_keyword(symbol: Symbol, place: tuple | None) -> None:
     """Note that a macro took the unbound ``symbol``, which stands at ``place``, as a keyword, where a variable would be its value.
 
     place: (file, line, column), or ``None``. A definition that makes it a variable later warns of that.
     """
-    data(symbol).setdefault("taken-as-keyword", {})[place] = None
+    _taken.setdefault(symbol, {})[place] = None
 
 
 def _becomes_variable(symbol):
     """Warn if ``symbol``, which has a value from now on, was taken as a keyword before: those forms keep the keyword."""
-    places = data(symbol).pop("taken-as-keyword", None)
+    places = _taken.pop(symbol, None)
     if places is None:
         return
     warning = condition_types.SimpleStyleWarning(
@@ -122,7 +127,7 @@ def define_variable(symbol, thunk=None, documentation=None, always=False):
     is_new = symbol.value is UNBOUND
     if thunk is not None and (always or is_new):
         symbol.value = one(thunk())
-        if is_new and symbol.compiler_data is not None:
+        if is_new:
             _becomes_variable(symbol)
     if documentation is not None:
         data(symbol)["variable-documentation"] = documentation
@@ -162,7 +167,7 @@ def define_constant(symbol, value, documentation=None):
     is_new = symbol.value is UNBOUND
     symbol.value = value
     symbol.special = symbol.constant = True
-    if is_new and symbol.compiler_data is not None:
+    if is_new:
         _becomes_variable(symbol)
     if documentation is not None:
         data(symbol)["variable-documentation"] = documentation

@@ -126,7 +126,7 @@ def _still_bound(key: tuple[str, str, Any], answer: bool) -> bool:
         return False
     package = find_package(key[0])
     if not answer and package is not None:  # whose symbol nobody may have read yet
-        take_as_keyword(package.intern(key[1]), key[2])
+        take_as_keyword(package.intern(key[1]), key[2] or None)
     return True
 
 

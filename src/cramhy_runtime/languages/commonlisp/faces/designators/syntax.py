@@ -117,7 +117,7 @@ def _is_variable(symbol):
         place = expansion_place()
         trace = current_trace()
         if trace is not None:
-            trace.ask("bound", (package.name, symbol.name, place))
+            trace.ask("bound", (package.name, symbol.name, place or ()))
         if not bound:
             take_as_keyword(symbol, place)
     return bound
