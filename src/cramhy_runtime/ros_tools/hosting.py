@@ -20,7 +20,7 @@ from ..turtlesim import window
 from ..turtlesim.executables import PROGRAMS
 from cramhy_runtime.turtlesim.executables import start as start_executable
 from ..turtlesim.node import Turtlesim, start_waiting
-from ..turtlesim.roscpp import naming_of
+from ..ros.roscpp import naming_of
 
 LOG = "/cramhy/program_log"
 SERVICES = {"start_program": "StartProgram", "feed_program": "FeedProgram", "end_node": "EndNode", "open_page": "OpenPage"}

@@ -1,4 +1,4 @@
-"""The common part of the package's executables: a roscpp node with a command line, loggers, and a log on its terminal.
+"""The common part of all programs that ``rosrun`` starts: a roscpp node with a command line, loggers, and a log on its terminal.
 
 A program starts in the active graph as ``rosrun`` would start it in its own process. On its command line, ``__name:=sim``,
 ``__ns:=/left``, ``turtle1/cmd_vel:=turtle2/cmd_vel`` and ``_background_r:=150`` mean the same as in ROS. `Program.lines` keeps the
@@ -12,8 +12,8 @@ import sys
 
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import SimpleError
-from ..ros import graph, names, rosout
-from ..ros.loggers import Loggers
+from . import graph, names, rosout
+from .loggers import Loggers
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ class Program:
     """
 
     name = ""
-    package = "turtlesim"
+    package = ""
     of_client = False
     """Whether a client of another process has started it."""
 
