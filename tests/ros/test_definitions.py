@@ -151,7 +151,7 @@ def everything():
     """All message classes and services that come with cramhy."""
     for folder in sorted(definition_files.OURS.iterdir()):
         if folder.is_dir() and not folder.name.startswith("__"):
-            classes, services = messages.load_package(folder.name)
+            classes, services = messages.load_package(folder.name) or ((), ())  # turtle_tf has launch files only
             yield from classes
             yield from services
 
