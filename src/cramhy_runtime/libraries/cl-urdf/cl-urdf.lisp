@@ -74,8 +74,10 @@
   (:documentation "The robot that a text or a file of URDF tells of.")
   (:method ((input string)) (robot-world:read-description input))
   (:method ((input pathname))
-    (with-open-file (stream input)
-      (parse-urdf stream)))
+    (if (equalp (pathname-type input) "xacro")
+        (robot-world:read-description (robot-world:description-text (namestring (truename input))) (namestring input))
+        (with-open-file (stream input)
+          (parse-urdf stream))))
   (:method ((input stream))
     (robot-world:read-description
      (with-output-to-string (text)
