@@ -14,7 +14,7 @@ from cramhy_runtime.ros.services import Refusal
 from cramhy_runtime.ros.wire import NEGATIVE_INFINITY, POSITIVE_INFINITY
 from cramhy_runtime.turtlesim import executables, teleop
 from cramhy_runtime.turtlesim.node import each_simulator, running_simulator, simulators, start_turtlesim
-from cramhy_runtime.turtlesim.roscpp import MOST_LINES
+from cramhy_runtime.ros.roscpp import MOST_LINES
 
 
 def texts(program):

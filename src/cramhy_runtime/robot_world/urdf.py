@@ -40,7 +40,8 @@ class Reading:
 
     def description(self, root: Element) -> Description:
         if root.name != "robot":
-            raise self.wrong(root, "a URDF file has <robot> around all. Is it a xacro file? Then expand it first: xacro FILE > robot.urdf")
+            macros = "A file with xacro's macros has a name that ends in .xacro, and is expanded."
+            raise self.wrong(root, f"a URDF file has <robot> around all. {macros}")
         links: dict[str, Link] = {}
         for element in root.all("link"):
             self.put(links, element, self.link(element))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Protocol
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, Protocol, TextIO
 
 from cramhy_runtime.ground.data import LispString, Symbol
 from .graph import Node
@@ -31,6 +31,11 @@ Answers = Callable[[RosMessage], RosMessage | dict[str, object]]
 """The handler of a service that a Python program offers: it returns the response, or the fields of that."""
 Observer = Callable[[str, str, bool], object]
 """A function told of changes: the kind of thing, its name, and whether it is there now."""
+
+Words = str | Iterable[str]
+"""A command line: its words, or one string."""
+Echo = bool | TextIO | Callable[[str], object] | None
+"""Where to print a log: True for stderr, a stream, or a function of each line."""
 
 
 class Connection(Protocol):

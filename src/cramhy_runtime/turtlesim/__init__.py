@@ -5,7 +5,6 @@
 ``dimensions``        the size of the paper and of the metre
 ``canvas, strokes`` the paper in pixels, with the lines and the colour sensor; the same lines as vectors
 ``node``            the simulator: topics, services, parameters, ticks, observers
-``roscpp``          the common part of all executables: command line, log, loggers
 ``teleop``          the arrow keys
 ``draw_square``     the demonstration: a turtle drives squares
 ``mimic``           a turtle copies the moves of another one

@@ -14,11 +14,11 @@ from .. import kernel
 from ..ros import rosout, wire
 from ..ros.messages import RosMessage, message_class
 from ..ros.services import start_call
-from .roscpp import Program
+from ..ros.roscpp import Program
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .signatures import Echo, Words
+    from ..ros.signatures import Echo, Words
 
 
 PERIOD = 0.016
@@ -34,6 +34,7 @@ class DrawSquare(Program):
     """
 
     name = "draw_square"
+    package = "turtlesim"
 
     def __init__(self, name: str | None = None, namespace: str = "/", arguments: Words = (), echo: Echo = None):
         super().__init__(name, namespace, arguments, echo=echo)

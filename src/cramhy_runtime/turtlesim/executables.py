@@ -15,8 +15,8 @@ from .teleop import Teleop
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Literal, overload
 
 if TYPE_CHECKING:
-    from .signatures import Echo, Words
-    from .roscpp import Program
+    from ..ros.signatures import Echo, Words
+    from ..ros.roscpp import Program
 
 
 PROGRAMS: dict[str, type[Turtlesim | Teleop | DrawSquare | Mimic]] = {

@@ -7,11 +7,11 @@ On a command line, ``input:=turtle1 output:=turtle2`` name the leader and the fo
 from __future__ import annotations
 
 from ..ros.messages import RosMessage, message_class
-from .roscpp import Program
+from ..ros.roscpp import Program
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .signatures import Echo, Words
+    from ..ros.signatures import Echo, Words
 
 
 class Mimic(Program):
@@ -21,6 +21,7 @@ class Mimic(Program):
     """
 
     name = "turtle_mimic"
+    package = "turtlesim"
 
     def __init__(
         self,

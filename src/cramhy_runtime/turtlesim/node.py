@@ -20,7 +20,7 @@ from ..ros.services import OfCaller, Refusal
 from .canvas import Canvas
 from .history import History
 from .dimensions import CENTRE, DRAWINGS, EXTENT
-from .roscpp import Program
+from ..ros.roscpp import Program
 from .world import TICK, Turtle
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 
     from ..ros.messages import RosMessage
     from ..ros.services import Service
-    from .signatures import Echo, Listener, Observer, Stroke, Words
+    from ..ros.signatures import Echo, Words
+    from .signatures import Listener, Observer, Stroke
 
 
 BACKGROUND = (("background_r", 69), ("background_g", 86), ("background_b", 255))
@@ -123,6 +124,7 @@ class Turtlesim(Program):
     """
 
     name = "turtlesim"
+    package = "turtlesim"
 
     def __init__(self, name: str | None = None, namespace: str = "/", arguments: Words = (), echo: Echo = None):
         super().__init__(name, namespace, arguments, spins=True, echo=echo)

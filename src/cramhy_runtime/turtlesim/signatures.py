@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from typing import Protocol, TextIO, TypedDict
+from collections.abc import Callable
+from typing import Protocol, TypedDict
 
 from .node import Turtlesim
 
@@ -19,10 +19,6 @@ Sample = tuple[int, float, float, float]
 """Tick, x, y, heading."""
 Era = tuple[int, Colour, list[TimedStroke]]
 """The tick of a clear, the background, and the strokes until the next clear."""
-Words = str | Iterable[str]
-"""A command line: its words, or one string."""
-Echo = bool | TextIO | Callable[[str], object] | None
-"""Where to print a log: True for stderr, a stream, or a function of each line."""
 
 
 class Path(TypedDict):

@@ -8,11 +8,11 @@ bytes, in any portions. Source: turtlesim.md 10.
 from __future__ import annotations
 
 from ..ros.messages import message_class
-from .roscpp import Program
+from ..ros.roscpp import Program
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .signatures import Echo, Words
+    from ..ros.signatures import Echo, Words
 
 
 BANNER = "Reading from keyboard\n---------------------------\nUse arrow keys to move the turtle. 'q' to quit.\n"
@@ -27,6 +27,7 @@ class Teleop(Program):
     """
 
     name = "teleop_turtle"
+    package = "turtlesim"
 
     def __init__(self, turtle: str = "turtle1", name: str | None = None, namespace: str = "/", arguments: Words = (), echo: Echo = None):
         super().__init__(name, namespace, arguments, echo=echo)

@@ -17,7 +17,7 @@ from cramhy_runtime.transforms.vectors import Vector3
 from cramhy_runtime.turtlesim import drawing, executables, pictures
 from cramhy_runtime.turtlesim.draw_square import DrawSquare
 from cramhy_runtime.turtlesim.node import Turtlesim, running_simulator, start_turtlesim
-from cramhy_runtime.turtlesim.roscpp import Program
+from cramhy_runtime.ros.roscpp import Program
 
 Stroke = tuple[float, float, float, float, tuple[int, int, int], int]
 

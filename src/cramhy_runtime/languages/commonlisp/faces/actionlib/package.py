@@ -25,7 +25,7 @@ def define_faces():
     for name in NAMES:
         on_demand.pop(name, None)
         ensure_package(name)
-    from cramhy_runtime.actionlib import calls, client, server, simple_client
+    from cramhy_runtime.actionlib import calls, client, goal_server, server, simple_client
     from . import macro_support
     from cramhy_runtime.actionlib.client import ActionClient
 
@@ -49,7 +49,11 @@ def define_faces():
             macro_support: "build-goal end-goal tell-feedback",
             "connected-to-server": simple_client.is_connected,
         },
-        variables={"*action-server-timeout*": client.CONNECTED, "*status-publish-interval*": server.PERIOD, "*gc-interval*": server.MEMORY},
+        variables={
+            "*action-server-timeout*": client.CONNECTED,
+            "*status-publish-interval*": goal_server.PERIOD,
+            "*gc-interval*": goal_server.MEMORY,
+        },
         export="exec-callback-tag abort-goal action-client feedback-signal goal-handle server-lost",
         internal="build-goal end-goal tell-feedback",  # macros expand into them: a kept file names them, and so makes the packages
     )

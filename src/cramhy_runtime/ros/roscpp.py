@@ -1,4 +1,4 @@
-"""The common part of the package's executables: a roscpp node with a command line, loggers, and a log on its terminal.
+"""The common part of all programs that ``rosrun`` starts: a roscpp node with a command line, loggers, and a log on its terminal.
 
 A program starts in the active graph as ``rosrun`` would start it in its own process. On its command line, ``__name:=sim``,
 ``__ns:=/left``, ``turtle1/cmd_vel:=turtle2/cmd_vel`` and ``_background_r:=150`` mean the same as in ROS. `Program.lines` keeps the
@@ -12,8 +12,8 @@ import sys
 
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import SimpleError
-from ..ros import graph, names, rosout
-from ..ros.loggers import Loggers
+from . import graph, names, rosout
+from .loggers import Loggers
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ class Program:
     """
 
     name = ""
-    package = "turtlesim"
+    package = ""
     of_client = False
     """Whether a client of another process has started it."""
 
@@ -77,15 +77,36 @@ class Program:
             return
         if len(text) > MOST_TEXT:
             text = text[:MOST_TEXT] + "..."
-        line = f"[{LABELS[level]}] [{self.graph.now():.6f}000]: {text}"  # nanoseconds, as far as a double tells them
+        rosout.report(self.node, level, text)
+        self._print(f"[{LABELS[level]}] [{self.graph.now():.6f}000]: {text}")  # nanoseconds, as far as a double tells them
+
+    def say(self, text: str) -> None:
+        """Print the lines of ``text`` on the program's terminal as they are. They are not part of ``/rosout``."""
+        for line in text.splitlines():
+            self._print(line[:MOST_TEXT])
+
+    def _print(self, line: str) -> None:
         if len(self.lines) >= MOST_LINES:
             del self.lines[: MOST_LINES // 2]
         self.lines.append(line)
-        rosout.report(self.node, level, text)
         if callable(self.echo):
             self.echo(line)
-        elif self.echo is not None:
+        elif self.echo is not None and self.echo is not False:
             print(line, file=sys.stderr if self.echo is True else self.echo)
+
+
+def plain_words(arguments: Words) -> list[str]:
+    """The words of a command line that are for the program: all but ``a:=b``."""
+    return [word for word in names.split_arguments(arguments) if ":=" not in word]
+
+
+def anonymous(name: str) -> str:
+    """A name for a node, of which several may run, that no node of the active graph has: ``tf_echo_1413285840000000000``."""
+    here = graph.active()
+    moment = int(here.now() * 1e9)
+    while any(other.rpartition("/")[2] == f"{name}_{moment}" for other in here.nodes):
+        moment += 1
+    return f"{name}_{moment}"
 
 
 def naming_of(name: str, namespace: str = "/", arguments: Words = ()) -> names.Naming:
