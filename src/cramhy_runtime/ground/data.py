@@ -22,6 +22,7 @@ from .conses import (
     UNBOUND as UNBOUND,
     UNSUPPLIED as UNSUPPLIED,
     Cons as Cons,
+    EmptyList as EmptyList,
     LazyRest as LazyRest,
     conses as conses,
     list_end as list_end,
@@ -232,11 +233,15 @@ def _answers_for_itself(cls: type) -> bool:
     """
     answer = OWN_ANSWERS.get(cls)
     if answer is None:
-        answer = hasattr(cls, "__bool__") and (
-            cls.__name__ in ("bool", "bool_", "NAType")  # numpy.bool has another name before numpy 2; pandas.NA refuses to answer
-            or hasattr(cls, "dtype")
-            and hasattr(cls, "shape")
-            and not any(base.__name__ == "generic" for base in cls.__mro__)
+        answer = (
+            cls is EmptyList
+            or hasattr(cls, "__bool__")
+            and (
+                cls.__name__ in ("bool", "bool_", "NAType")  # numpy.bool has another name before numpy 2; pandas.NA refuses to answer
+                or hasattr(cls, "dtype")
+                and hasattr(cls, "shape")
+                and not any(base.__name__ == "generic" for base in cls.__mro__)
+            )
         )
         if len(OWN_ANSWERS) >= 500:  # classes that nobody else keeps must not stay for ever
             OWN_ANSWERS.clear()
@@ -250,7 +255,7 @@ def plain_truth(value: Any) -> Any:
     An array without dimensions is one if its elements are truth values.
     """
     cls = value.__class__
-    if cls in TRUE_CLASSES or value is None or not _answers_for_itself(cls):
+    if cls in TRUE_CLASSES or value is None or not _answers_for_itself(cls) or cls is EmptyList:
         return value
     if cls.__name__ in ("bool", "bool_"):
         return bool(value)

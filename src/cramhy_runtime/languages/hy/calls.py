@@ -28,7 +28,9 @@ from cramhy_runtime.kernel.budget import budget
 from cramhy_runtime.process_modules import AsynchronousModule
 from ..commonlisp.compiler.support import BlockExit, block_value, end_block, return_from
 from ..commonlisp.faces.prolog.macro_support import collect_fact, fact_collector, finish_fact_group
-from .lisp_data import choose_package, constant, inserted, plan_package
+from . import answer_lists
+from .answer_lists import in_goal, spliced_in_goal
+from .lisp_data import choose_package, constant, inserted, is_about_lists, plan_package
 
 __all__ = [
     "AsynchronousModule",
@@ -54,6 +56,7 @@ __all__ = [
     "failure_type",
     "finish_fact_group",
     "function",
+    "in_goal",
     "inserted",
     "items",
     "get_param",
@@ -67,7 +70,9 @@ __all__ = [
     "prepare_tag",
     "publish",
     "refill",
+    "lists",
     "spliced",
+    "spliced_in_goal",
     "use_package",
     "users_or_ours",
     "wait_for",
@@ -90,6 +95,9 @@ class Symbols:
         return found
 
 
+lists = answer_lists.Lists()
+
+
 class Branching(Symbols):
     """Its attributes are the functions behind the operators with branches; what Python code raised leaves them as the same exception."""
 
@@ -101,6 +109,8 @@ class Branching(Symbols):
 
 def function(package, name):
     """The function that a symbol of a package of ours names. It takes keywords as Python writes them."""
+    if is_about_lists(package, name):
+        return answer_lists.list_function(package, name)
     found = function_of(intern(name, package))
     return found if takes_keywords(found) else _with_keyword_objects(found)
 
@@ -172,8 +182,9 @@ def publish(symbol, function_):
         return function_
     if callable(function_):
         symbol = own_symbol(symbol)
-        symbol.function = _as_lisp_calls(function_)
+        symbol.function = answer_lists.for_lisp(_as_lisp_calls(function_))
         symbol.function_changed()
+        answer_lists.published(symbol)
     return symbol
 
 

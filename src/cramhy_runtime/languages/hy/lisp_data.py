@@ -151,30 +151,51 @@ def _is_call_of(name, model):
     return isinstance(model, models.Expression) and len(model) == 2 and model[0] == models.Symbol(name)
 
 
-def template_form(model, package):
-    """A Hy form for the Lisp data that a template means: what stands behind ``~`` is evaluated, what stands behind ``~@`` is spliced in."""
+def template_form(model, package, functor=None):
+    """A Hy form for the Lisp data that a template means: what stands behind ``~`` is evaluated, what stands behind ``~@`` is spliced in.
+
+    functor: in the template of a goal, the Hy form for the functor of the goal around; ``NO_FUNCTOR`` where there is none.
+    """
     if _is_call_of("unquote", model):
-        return insertion("inserted", model[1], package)
+        return insertion("inserted" if functor is None else "in-goal", model[1], package, functor)
     if not _has_insertions(model):
         return constant_form(lisp_data(model, package))
     items, tail = list(model), None
+    if functor is not None:
+        functor = _functor_of(items, package, functor)
     if len(items) > 2 and items[-2] == models.Symbol(".") and items[0] != models.Symbol("."):
         items, tail = items[:-2], items[-1]
-    parts = [_part(item, package) for item in items]
+    parts = [_part(item, package, functor) for item in items]
     if tail is None:
         return models.Expression([call_of("lisp-list"), *parts])
-    return models.Expression([call_of("lisp-list-ending"), template_form(tail, package), *parts])
+    return models.Expression([call_of("lisp-list-ending"), template_form(tail, package, functor), *parts])
 
 
-def _part(item, package):
+NO_FUNCTOR = models.Symbol("None")
+
+
+def _functor_of(items, package, outer):
+    """The Hy form for the functor of a list in a goal: its first symbol. What a function gets is the function's at any depth."""
+    if not isinstance(items[0], models.Symbol):
+        return outer if _is_functions(outer) else NO_FUNCTOR
+    found = symbol_of(str(items[0]), package)
+    return outer if _is_functions(outer) or not isinstance(found, Symbol) else constant_form(found)
+
+
+def _is_functions(functor):
+    return any(str(part).endswith(("|LISP-FUN|", "|LISP-PRED|")) for part in functor) if isinstance(functor, models.Expression) else False
+
+
+def _part(item, package, functor):
     if _is_call_of("unquote-splice", item):
-        return models.Expression([models.Symbol("unpack-iterable"), insertion("spliced", item[1], package)])
-    return template_form(item, package)
+        spliced = insertion("spliced" if functor is None else "spliced-in-goal", item[1], package, functor)
+        return models.Expression([models.Symbol("unpack-iterable"), spliced])
+    return template_form(item, package, functor)
 
 
-def insertion(function, code, package):
+def insertion(function, code, package, *functor):
     """A Hy form that evaluates ``code`` and makes Lisp data of its value, by the function of `calls` that is named."""
-    return models.Expression([call_of(function), code, models.String(package.name)])
+    return models.Expression([call_of(function), code, models.String(package.name), *(each for each in functor if each is not None)])
 
 
 def _has_insertions(model):
@@ -216,6 +237,34 @@ BRANCHING = "TOP-LEVEL NAMED-TOP-LEVEL PAR PURSUE TRY-ALL TRY-IN-ORDER TRY-EACH-
 """The functions of CRAMHY that raise what a branch failed with: in Hy it is the exception that the branch raised."""
 
 
+GOALS = ("PROLOG", "RETE-ASSERT", "RETE-RETRACT", "RETE-HOLDS", "RETE-PROVE")
+"""Functions whose first argument is a goal, a fact or a pattern of facts, or a list of them."""
+GIVE_LISTS = {
+    "CRAM-PROLOG": ("PROLOG", "RETE-HOLDS", "RETE-PROVE"),
+    "CRAM-UTILITIES": (
+        "FORCE-LL",
+        "LAZY-APPEND",
+        "LAZY-CDR",
+        "LAZY-FILTER",
+        "LAZY-FLATTEN",
+        "LAZY-MAPCAN",
+        "LAZY-MAPCAR",
+        "LAZY-RESTS",
+        "LAZY-SKIP",
+        "LAZY-TAKE",
+    ),
+    "CRAM-DESIGNATORS": ("DESIG-PROP-VALUES", "GET-ALL-DESIGNATORS"),
+}
+"""Package → the functions that give a list: ``nil`` is an empty one for Hy."""
+TAKE_LISTS = {"CRAM-UTILITIES": ("LAZY-CAR", "LAZY-ELT", "LAZY-FOLD", "LAZY-LIST-P")}
+"""Package → the functions that only take lists."""
+
+
+def is_about_lists(package, name):
+    """Whether Hy calls the function ``name`` of ``package`` by `list_function`."""
+    return name in GIVE_LISTS.get(package, ()) or name in TAKE_LISTS.get(package, ())
+
+
 def call_of(name):
     """A Hy form for what `calls` calls ``name``."""
     return _ours("calls", name)
@@ -229,6 +278,8 @@ def function_form(package, name):
     """A Hy form for the function that a symbol of a package of ours names now."""
     if name != name.upper() or "_" in name or "." in name or "." in package:
         return models.Expression([call_of("function"), models.String(package), models.String(name)])
+    if is_about_lists(package, name):
+        return _ours("calls", "lists", package.lower(), name.lower())
     if package == "CRAMHY" and name in BRANCHING:
         return _ours("branching", name.lower())
     symbol = _ours("symbols", package.lower(), name.lower())

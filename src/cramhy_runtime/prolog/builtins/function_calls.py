@@ -118,7 +118,14 @@ def lisp_value(m, function, arguments):
     kind = value.__class__
     if kind is Cons or kind is Symbol or kind is Keyword or kind is bool:
         return import_term(value, m.names)
+    if kind not in _ATOMS and function in RESULTS:
+        return RESULTS[function](value)
     return value
+
+
+RESULTS = {}
+"""The symbol of a function that was written in Hy → what makes Lisp data of its result. Such a result may be a collection of Python."""
+_ATOMS = frozenset((int, float, str, type(None)))
 
 
 def lisp_fun(m, function, arguments, result):

@@ -27,7 +27,7 @@ from collections import deque
 from types import BuiltinFunctionType, FunctionType, GeneratorType, MethodType
 from cramhy_runtime.kernel.typing_names import Any, NoReturn, Self, annotations_of
 
-from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, Cons, Keyword, Symbol, list_from
+from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, Cons, EmptyList, Keyword, Symbol, list_from
 from cramhy_runtime.ground.python_names import attribute_symbols
 from cramhy_runtime.ground.packages import KEYWORD, Package, ensure_package, named_package, near_names, package_names, printed
 from cramhy_runtime.ground.dynamic import binding
@@ -336,16 +336,32 @@ def make_goal(functor: Symbol, arguments: tuple[object, ...]) -> Goal:
     """
     if functor in _CALLS and arguments and callable(arguments[0]) and not isinstance(arguments[0], Name):
         return Goal(Cons(_CALLS[functor], Cons(arguments[0], _lisp_list(arguments[1:]))))
-    if functor in _CALLS or functor in python_predicates:  # functions get the objects that are written
+    if gets_objects(functor):
         return Goal(Cons(functor, _lisp_list(arguments)))
     if functor in _OF_LISTS:
         for argument in arguments:
-            if argument.__class__ is dict:
-                raise TypeError(
-                    f"The goal {python_name(functor.name)} is about lists, and a dict is none: {shortened(argument)}. "
-                    "Write list(d) for its keys, list(d.values()) for its values, or list(d.items())."
-                )
+            _refuse_dict(functor, argument)
     return Goal(Cons(functor, _lisp_list(arguments, True)))
+
+
+def gets_objects(functor: Symbol) -> bool:
+    """Whether the arguments of a goal of ``functor`` are those of a function of Python, which gets collections as they are."""
+    return functor in _CALLS or functor in python_predicates
+
+
+def list_argument(functor: Symbol | None, thing: Any) -> Any:
+    """The Lisp data for ``thing`` as an argument of ``functor``: a collection of Python is a list. What cannot be one is a TypeError."""
+    if functor in _OF_LISTS:
+        _refuse_dict(functor, thing)
+    return to_lisp(thing, True)
+
+
+def _refuse_dict(functor: Symbol | None, thing: object) -> None:
+    if thing.__class__ is dict and functor is not None:
+        raise TypeError(
+            f"The goal {python_name(functor.name)} is about lists, and a dict is none: {shortened(thing)}. "
+            "Write list(d) for its keys, list(d.values()) for its values, or list(d.items())."
+        )
 
 
 python_predicates: set[Symbol] = set()
@@ -387,7 +403,7 @@ def to_lisp(thing: Any, collections: bool = False) -> Any:
     kind = thing.__class__
     if kind is str or kind is int or kind is float or thing is None or thing is True:
         return thing
-    if kind is list or kind is tuple:
+    if kind is list or kind is tuple or kind is EmptyList:
         return _lisp_list(thing, collections)
     if thing is False:
         return None
