@@ -120,6 +120,19 @@ def refuse_code_in_designator(parts):
             refuse_code_in_designator(model)
 
 
+def refuse_case(model, names=None):
+    """Raise ValueError if two names in a list of Lisp data differ by case only: Lisp has one symbol for both."""
+    names = {} if names is None else names
+    if isinstance(model, models.Symbol):
+        other = names.setdefault(str(model).upper(), str(model))
+        if other != str(model):
+            raise ValueError(f"{other} and {model} differ by case only, and to Lisp they are one name; give one of them another name")
+    elif isinstance(model, (models.Expression, models.List, models.Tuple)):
+        if not (_is_call_of("unquote", model) or _is_call_of("unquote-splice", model)):
+            for part in model:
+                refuse_case(part, names)
+
+
 _KINDS = {models.FString: "f-string", models.Dict: "dict", models.Set: "set", models.Bytes: "bytes"}
 
 

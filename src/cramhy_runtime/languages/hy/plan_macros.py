@@ -36,6 +36,7 @@ from .lisp_data import (
     is_backquoted,
     lisp_data,
     package_of,
+    refuse_case,
     refuse_code_in_designator,
     template_form,
 )
@@ -95,6 +96,10 @@ def operator_macro(operator, body=None):
         try:
             if operator.name in DESIGNATORS:
                 refuse_code_in_designator(arguments)
+                refuse_case(models.List(arguments))
+            elif operator.name == "DEF-FACT-GROUP":
+                for fact in arguments:
+                    refuse_case(fact)
             call, form = lisp_call(operator, arguments, package_of(_hy_compiler.module.__name__))
             if body is not None:
                 return with_places(body(_hy_compiler, *arguments), written)
@@ -228,11 +233,16 @@ def lisp_arguments(function, arguments, package, functor=None):
 
 def _argument(model, package, functor=None):
     """An argument that is an object of Lisp as it stands, a quoted name or a keyword, as a constant; any other as it is."""
+    if isinstance(model, models.Expression) and len(model) == 2 and model[0] in _DATA:
+        refuse_case(model[1])
     if isinstance(model, models.Expression) and len(model) == 2 and model[0] == models.Symbol("quote"):
         return constant_form(lisp_data(model[1], package))
     if is_backquoted(model):
         return template_form(model[1], package, functor)
     return constant_form(lisp_data(model, package)) if isinstance(model, models.Keyword) else model
+
+
+_DATA = (models.Symbol("quote"), models.Symbol("quasiquote"))
 
 
 def _positional(function):
