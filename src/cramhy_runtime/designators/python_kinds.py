@@ -277,7 +277,7 @@ def properties(designator: Designator) -> list[tuple[str, Any]]:
 def property_values(designator: Designator, name: str | Symbol) -> list[Any]:
     """All values of the key ``name`` in order, converted for Python."""
     wanted = _key(name).name
-    return [_value(designator, entry) for entry in _entries_of(designator) if entry.car.name == wanted]
+    return [_value(designator, entry) for entry in _entries_of(designator) if entry.car.name.replace("_", "-") == wanted]
 
 
 def every(designator: D) -> D:
@@ -323,6 +323,8 @@ def _entry(designator: Designator, name: str) -> Cons | None:
     for entry in _entries_of(designator):
         if entry.car.name == name:
             return entry
+    if "-" in name:  # code in Lisp may have written it with underscores
+        return next((entry for entry in _entries_of(designator) if entry.car.name.replace("_", "-") == name), None)
     return None
 
 

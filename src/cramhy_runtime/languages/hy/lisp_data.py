@@ -32,6 +32,9 @@ USED = (
 )
 """The packages that the package of a Hy module uses. Where two of them have different symbols of one name, the first counts."""
 
+DESIGNATORS = ("A", "AN", "ALL")
+"""The operators that make designators."""
+
 _chosen: dict[str, str] = per_image({})
 """Module → the package that it chose."""
 
@@ -98,7 +101,7 @@ def lisp_data(model, package):
 
 def refuse_code(model):
     """Raise ValueError if a model is read as a list, and looks as if it were evaluated: ``~n`` without a backquote, ``?pose.x``."""
-    if _is_call_of("unquote", model) or _is_call_of("unquote-splice", model):
+    if is_call_of("unquote", model) or is_call_of("unquote-splice", model):
         raise ValueError(f"{written(model)} is evaluated in a template only, behind a backquote: `(a ~b)")
     if isinstance(model, models.Expression) and len(model) > 2 and model[0] == models.Symbol(".") and str(model[1]).startswith("?"):
         raise ValueError(f"{written(model)} is no Lisp data: attributes are not evaluated in it; give the value a variable first")
@@ -109,8 +112,8 @@ def refuse_code_in_designator(parts):
     for model in parts:
         code = isinstance(model, (models.FString, models.Dict, models.Set, models.Bytes))
         dotted = isinstance(model, models.Expression) and len(model) > 2 and model[0] == models.Symbol(".")
-        if code or dotted or _is_call_of("unquote", model) or _is_call_of("unquote-splice", model):
-            value = hy.repr(model[1]).removeprefix("'") if _is_call_of("unquote", model) else written(model)
+        if code or dotted or is_call_of("unquote", model) or is_call_of("unquote-splice", model):
+            value = hy.repr(model[1]).removeprefix("'") if is_call_of("unquote", model) else written(model)
             kind = _KINDS.get(type(model), "attribute" if dotted else "~ without a backquote")
             raise ValueError(
                 f"{written(model)} is not evaluated in a designator ({kind}): only ?variables are. "
@@ -128,7 +131,7 @@ def refuse_case(model, names=None):
         if other != str(model):
             raise ValueError(f"{other} and {model} differ by case only, and to Lisp they are one name; give one of them another name")
     elif isinstance(model, (models.Expression, models.List, models.Tuple)):
-        if not (_is_call_of("unquote", model) or _is_call_of("unquote-splice", model)):
+        if not (is_call_of("unquote", model) or is_call_of("unquote-splice", model)):
             for part in model:
                 refuse_case(part, names)
 
@@ -157,10 +160,11 @@ def inserted(value, package):
 
 def is_backquoted(model):
     """Whether a model is a template, `` `(a ~b)``."""
-    return _is_call_of("quasiquote", model)
+    return is_call_of("quasiquote", model)
 
 
-def _is_call_of(name, model):
+def is_call_of(name, model):
+    """Whether ``model`` is ``(name part)``."""
     return isinstance(model, models.Expression) and len(model) == 2 and model[0] == models.Symbol(name)
 
 
@@ -169,7 +173,7 @@ def template_form(model, package, functor=None):
 
     functor: in the template of a goal, the Hy form for the functor of the goal around; ``NO_FUNCTOR`` where there is none.
     """
-    if _is_call_of("unquote", model):
+    if is_call_of("unquote", model):
         return insertion("inserted" if functor is None else "in-goal", model[1], package, functor)
     if not _has_insertions(model):
         return constant_form(lisp_data(model, package))
@@ -200,7 +204,7 @@ def _is_functions(functor):
 
 
 def _part(item, package, functor):
-    if _is_call_of("unquote-splice", item):
+    if is_call_of("unquote-splice", item):
         spliced = insertion("spliced" if functor is None else "spliced-in-goal", item[1], package, functor)
         return models.Expression([models.Symbol("unpack-iterable"), spliced])
     return template_form(item, package, functor)
@@ -213,7 +217,7 @@ def insertion(function, code, package, *functor):
 
 def _has_insertions(model):
     if isinstance(model, (models.Expression, models.List, models.Tuple)):
-        return _is_call_of("unquote", model) or _is_call_of("unquote-splice", model) or any(map(_has_insertions, model))
+        return is_call_of("unquote", model) or is_call_of("unquote-splice", model) or any(map(_has_insertions, model))
     return False
 
 

@@ -23,10 +23,11 @@ from cramhy_runtime.ground.packages import find_package, registered
 from ..operators import OPERATORS, operator_of
 from ..operators.declaration import hy_shape
 from ..operators.grammar import WrongShape
-from . import calls
+from . import calls, properties
 from .call_parts import lisp_call
 from .expansion import expand, expression, word
 from .lisp_data import (
+    DESIGNATORS,
     GOALS,
     NO_FUNCTOR,
     call_of,
@@ -64,7 +65,6 @@ WITHOUT_PREFIX = (
 )
 """The packages whose names are known as they are. Where two of them have one name, the first counts."""
 
-DESIGNATORS = ("A", "AN", "ALL")
 FOR_PYTHON = {
     ("CRAM-LANGUAGE", "WAIT-FOR"): "wait-for",
     ("CRAM-LANGUAGE-IMPLEMENTATION", "WAIT-FOR"): "wait-for",
@@ -97,9 +97,9 @@ def operator_macro(operator, body=None):
             if operator.name in DESIGNATORS:
                 refuse_code_in_designator(arguments)
                 refuse_case(models.List(arguments))
-            elif operator.name == "DEF-FACT-GROUP":
-                for fact in arguments:
-                    refuse_case(fact)
+                arguments = properties.in_designator(arguments)
+            elif operator.name == "WITH-DESIG-PROPS" and isinstance(arguments[0], models.Sequence):
+                arguments = (models.List(map(properties.key, arguments[0])), *arguments[1:])
             call, form = lisp_call(operator, arguments, package_of(_hy_compiler.module.__name__))
             if body is not None:
                 return with_places(body(_hy_compiler, *arguments), written)
@@ -163,6 +163,7 @@ def function_macro(symbol, name=None):
         _tell_prompt(_hy_compiler.module)
         here = package_of(_hy_compiler.module.__name__)
         try:
+            arguments = properties.in_call(lisp_name, arguments)
             made = lisp_arguments(symbol.function, arguments, here, NO_FUNCTOR if lisp_name in GOALS else None)
         except (ValueError, Condition) as problem:
             raise refusal(_hy_compiler, _hy_compiler.this, str(problem)) from None
