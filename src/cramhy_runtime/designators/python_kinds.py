@@ -223,7 +223,9 @@ def _pair(pair: Any) -> Cons:
 
 
 def _key(key: str | Symbol) -> Symbol:
-    return kw[lisp_name(key)] if isinstance(key, str) else key
+    if isinstance(key, str):
+        return kw[lisp_name(key)]
+    return key if isinstance(key, Symbol) else to_lisp(key)
 
 
 class _Readable:

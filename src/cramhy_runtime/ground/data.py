@@ -151,6 +151,8 @@ class Keyword(Symbol):
         """Whether they are the same object. It warns who compares a keyword with the text of its name, which is never equal."""
         if self is other:
             return True
+        if other.__class__ in STANDS_FOR:
+            return STANDS_FOR[other.__class__](other) is self
         if isinstance(other, str) and other.lstrip(":").upper().replace("_", "-") == self.name:
             written = self.name.lower().replace("-", "_")
             warnings.warn(
@@ -165,6 +167,10 @@ class Keyword(Symbol):
 
     def __repr__(self) -> str:
         return ":" + self.name
+
+
+STANDS_FOR: dict[type, Callable[[Any], object]] = {}
+"""A class of Python → the object of Lisp that one of its objects stands for: a keyword of Hy stands for that of Lisp."""
 
 
 class UndefinedFunction:
@@ -235,6 +241,7 @@ def _answers_for_itself(cls: type) -> bool:
     if answer is None:
         answer = (
             cls is EmptyList
+            or cls in STANDS_FOR
             or hasattr(cls, "__bool__")
             and (
                 cls.__name__ in ("bool", "bool_", "NAType")  # numpy.bool has another name before numpy 2; pandas.NA refuses to answer
@@ -252,11 +259,15 @@ def _answers_for_itself(cls: type) -> bool:
 def plain_truth(value: Any) -> Any:
     """``value``, or Python's ``True`` or ``False`` for a truth value of another library. Lisp's own code compares with nothing else.
 
+    For an object that stands for one of Lisp, such as a keyword of Hy, it is that one.
+
     An array without dimensions is one if its elements are truth values.
     """
     cls = value.__class__
     if cls in TRUE_CLASSES or value is None or not _answers_for_itself(cls) or cls is EmptyList:
         return value
+    if cls in STANDS_FOR:
+        return STANDS_FOR[cls](value)
     if cls.__name__ in ("bool", "bool_"):
         return bool(value)
     return bool(value) if value.shape == () and str(value.dtype).removeprefix("torch.") == "bool" else value

@@ -16,7 +16,7 @@ from cramhy_runtime.cpl.forms import plans
 from cramhy_runtime.cpl.tree.tags import enter_with_tags, execute_tag, make_tag_task, prepare_tag
 from cramhy_runtime.ground.classes import find_class
 from cramhy_runtime.ground.conditions import unknown_key
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from
+from cramhy_runtime.ground.data import STANDS_FOR, Cons, Keyword, Symbol, list_from
 from cramhy_runtime.ground.data import values as as_values
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.keyword_calls import lispify
@@ -28,7 +28,7 @@ from cramhy_runtime.kernel.budget import budget
 from cramhy_runtime.process_modules import AsynchronousModule
 from ..commonlisp.compiler.support import BlockExit, block_value, end_block, return_from
 from ..commonlisp.faces.prolog.macro_support import collect_fact, fact_collector, finish_fact_group
-from . import answer_lists
+from . import answer_lists, keywords
 from .answer_lists import in_goal, spliced_in_goal
 from .lisp_data import choose_package, constant, inserted, is_about_lists, plan_package
 
@@ -38,6 +38,7 @@ __all__ = [
     "Cons",
     "RetryCounter",
     "Symbols",
+    "as_lisp",
     "block",
     "budget",
     "call_plan",
@@ -61,6 +62,7 @@ __all__ = [
     "items",
     "get_param",
     "has_param",
+    "keyword_values",
     "lispify",
     "publish_message",
     "set_param",
@@ -96,6 +98,7 @@ class Symbols:
 
 
 lists = answer_lists.Lists()
+keyword_values = keywords.Values()
 
 
 class Branching(Symbols):
@@ -159,6 +162,12 @@ def block(body):
 def items(elements):
     """The elements that a form goes through, as a list of Lisp: Python's lists and all that can be iterated will do."""
     return elements if elements is None or isinstance(elements, Cons) else list_from(list(elements))
+
+
+def as_lisp(value):
+    """The object of Lisp that the value of a variable in a designator stands for, such as a keyword, or the value."""
+    kind = value.__class__
+    return STANDS_FOR[kind](value) if kind in STANDS_FOR else value
 
 
 def lisp_list(*items):

@@ -29,7 +29,7 @@ from collections import deque
 from types import BuiltinFunctionType, FunctionType, GeneratorType, MethodType
 from cramhy_runtime.kernel.typing_names import Any, NoReturn, Self, annotations_of
 
-from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, Cons, EmptyList, Keyword, Symbol, list_from
+from cramhy_runtime.ground.data import STANDS_FOR, WRITABLE_STRINGS, Character, Cons, EmptyList, Keyword, Symbol, list_from
 from cramhy_runtime.ground.python_names import attribute_symbols, hy_name
 from cramhy_runtime.ground.packages import KEYWORD, Package, ensure_package, named_package, near_names, package_names, printed
 from cramhy_runtime.ground.dynamic import binding
@@ -434,6 +434,8 @@ def to_lisp(thing: Any, collections: bool = False) -> Any:
         return function_symbol(thing)
     if kind.__module__ == "numpy" and getattr(thing, "shape", None) == () and hasattr(thing, "item"):
         return to_lisp(thing.item())  # a number of numpy's is the number
+    if kind in STANDS_FOR:
+        return STANDS_FOR[kind](thing)
     return collection(thing) if collections else thing
 
 
