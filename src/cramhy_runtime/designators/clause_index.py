@@ -99,7 +99,7 @@ class ClauseIndex:
 
     def _for_shape(self, shape):
         """(A function that picks the arguments from the dict of values, the call function)."""
-        type_, keys = shape[0], shape[1:]
+        type_, keys = shape[0], frozenset(shape[1:])
         rules = [rule for rule in self.rules if rule.fits(type_, keys)]
         if not rules:
             return _nothing, _failing
@@ -139,8 +139,8 @@ class _Rule:
                 del self.goals[0]
 
     def fits(self, type_, keys):
-        """Whether a designator of that type, with these keys, can satisfy the clause."""
-        if not all(key in keys for key in self.values):
+        """Whether a designator of that type, with this set of keys, can satisfy the clause."""
+        if not keys.issuperset(self.values):
             return False
         wanted = self.values.get(TYPE)
         return not isinstance(wanted, Keyword) or wanted is type_
