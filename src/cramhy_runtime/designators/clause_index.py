@@ -28,6 +28,7 @@ from operator import itemgetter
 
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from
 from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.prolog.compiler.compiler import compile_clauses
 from cramhy_runtime.prolog.engine.database import Clause, Predicate, changed, functor_entry, traced
 from cramhy_runtime.prolog.builtins.function_calls import BREAK_ON_LISP_ERRORS
@@ -127,7 +128,8 @@ class _Rule:
     """A clause. ``values`` are the properties for which its first goals ask: key → pattern."""
 
     def __init__(self, clause):
-        self.clause, self.values = clause, {}
+        self.clause = clause
+        self.values: dict[Keyword, Any] = {}
         self.goals = list(clause.goals or ())
         designator = clause.head.cdr.car if isinstance(clause.head.cdr, Cons) else None
         if variable(designator) and designator is not ANONYMOUS and proper(clause.head):

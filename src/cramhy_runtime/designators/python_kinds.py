@@ -167,9 +167,10 @@ def _define_for_derived(kind: Kind) -> None:
 def _derived(kind: Kind) -> list[Kind]:
     """The kinds derived from ``kind``, one for each type but its own, those derived directly first."""
     found: dict[Any, Any] = {kind.type_: kind}
-    waiting = [kind]
+    waiting: list[Any] = [kind]
     while waiting:
-        for other in type.__subclasses__(waiting.pop(0)):
+        derived: list[Any] = type.__subclasses__(waiting.pop(0))
+        for other in derived:
             found.setdefault(other.type_, other)
             waiting.append(other)
     return list(found.values())[1:]
@@ -306,7 +307,8 @@ def replace(designator: D, **changed: object) -> D:
         else:
             description.append(entry)
     description += [lisp_list(kw[name], to_lisp(value)) for name, value in left.items() if name not in done and value is not None]
-    return new(designator.__class__, list_from(description))
+    made: D = new(designator.__class__, list_from(description))
+    return made
 
 
 def value_of(designator: Designator, key: Symbol) -> Any:

@@ -13,8 +13,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from cramhy_runtime.kernel.images import per_image
+from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.ground.conditions import SimpleError, as_name, error, style_warn
-from cramhy_runtime.ground.data import Cons, list_from, python_list
+from cramhy_runtime.ground.data import Cons, Symbol, list_from, python_list
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.packages import keyword
@@ -77,7 +78,7 @@ class Store:
         return list(index.get(key, {}).items())
 
 
-def _key(row, columns):
+def _key(row: list[Any], columns: tuple[int, ...]) -> tuple[Any, ...]:
     return tuple([content_key(row[column]) for column in columns])
 
 
@@ -132,12 +133,12 @@ class Network:
         _tell_all([match.announce if asserted else match.take_back for _, match in news])
 
 
-def _shape(pattern):
+def _shape(pattern: Any) -> tuple[Any, ...]:
     """A key that is the same for patterns that differ in the names of variables only."""
     return _shape_of(pattern, {})
 
 
-def _shape_of(pattern, numbers):
+def _shape_of(pattern: Any, numbers: dict[Symbol, int]) -> tuple[Any, ...]:
     shape = []
     while isinstance(pattern, Cons):
         shape.append(_part(pattern.car, numbers))
@@ -145,7 +146,7 @@ def _shape_of(pattern, numbers):
     return (*shape, "." if pattern is not None else None, _part(pattern, numbers))
 
 
-def _part(item, numbers):
+def _part(item: Any, numbers: dict[Symbol, int]) -> Any:
     if item is ANONYMOUS:
         return "_"
     if variable(item):
@@ -153,12 +154,12 @@ def _part(item, numbers):
     return ("list", _shape_of(item, numbers)) if _is_open(item) else ("c", content_key(item))
 
 
-def _is_open(item):
+def _is_open(item: object) -> bool:
     """Whether ``item`` is a list with variables in it."""
     return isinstance(item, Cons) and vars_in(item) is not None
 
 
-def _first_key(pattern):
+def _first_key(pattern: Any) -> Any:
     """The key of the first element of all facts of the pattern; ``None`` if it is a variable."""
     return None if not isinstance(pattern, Cons) or variable(pattern.car) or _is_open(pattern.car) else content_key(pattern.car)
 

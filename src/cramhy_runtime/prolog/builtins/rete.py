@@ -22,6 +22,7 @@ from cramhy_runtime.ground.dispatch.generic_functions import generic, specialize
 from cramhy_runtime.utilities.lazy_lists import force_ll, from_iterator, lazy_cdr
 from cramhy_runtime.utilities.patterns import ANONYMOUS, compared_by_python, equal, substitute_vars, variable, vars_in
 from cramhy_runtime.kernel.images import Cell, per_image
+from cramhy_runtime.kernel.typing_names import Any
 
 from .native_predicates import predicate
 from ..symbols import sym
@@ -48,12 +49,12 @@ def _see_who_has_identity(function):
         _plain.value = frozenset() if about_atoms else _ATOMS
 
 
-def identity(obj):
+def identity(obj: Any) -> Any:
     """The `object_id` of ``obj``."""
     return obj if obj.__class__ in _plain.value else one(object_id(obj))
 
 
-def content_key(obj):
+def content_key(obj: Any) -> Any:
     """A hashable value that is the same for two elements of facts exactly if they are the same for Prolog. It may hold ``id(obj)``.
 
     A list that is circular is the same as itself only.
@@ -170,12 +171,12 @@ class Memory:
 memory = per_image(Memory())
 
 
-def same(one_element, other):
+def same(one_element: object, other: object) -> bool:
     """Whether two elements of facts are the same for Prolog."""
-    return equal(one_element, other)
+    return bool(equal(one_element, other))
 
 
-def match_fact(pattern, fact, bindings, test=same):
+def match_fact(pattern: Any, fact: Any, bindings: dict[Symbol, Any], test: Any = same) -> dict[Symbol, Any] | None:
     """A copy of the dict ``bindings``, extended so that ``pattern`` equals ``fact``, or ``None`` if that is impossible.
 
     test: compares two elements that are no variables. Only with `same` are lists in the pattern looked into.
@@ -193,7 +194,7 @@ def match_fact(pattern, fact, bindings, test=same):
     return None
 
 
-def _element_matches(item, value, bindings, test):
+def _element_matches(item: Any, value: Any, bindings: dict[Symbol, Any], test: Any) -> bool:
     if variable(item):
         if item is ANONYMOUS:
             return True
@@ -206,7 +207,7 @@ def _element_matches(item, value, bindings, test):
     return truth(one(test(identity(item), identity(value))))
 
 
-def _list_matches(pattern, value, bindings):
+def _list_matches(pattern: Any, value: Any, bindings: dict[Symbol, Any]) -> bool:
     while pattern.__class__ is Cons and value.__class__ is Cons:
         if pattern is value and vars_in(pattern) is None:
             return True

@@ -165,7 +165,7 @@ class Answer(Mapping[str, Any]):
     def _pairs(self) -> list[tuple[str, Any]]:
         return [(name, self[name]) for name in self._values]
 
-    def in_lisp(self, symbol: Symbol) -> Any:
+    def in_lisp(self, symbol: Symbol) -> object:
         """The value of the variable ``symbol`` as Lisp data; the symbol itself if the answer leaves it open."""
         return self._values.get(_variable_name(symbol), symbol)
 

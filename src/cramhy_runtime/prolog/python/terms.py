@@ -411,7 +411,7 @@ def shortened(thing: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-_COLLECTIONS = (range, type({}.keys()), type({}.values()), type({}.items()), deque)
+_COLLECTIONS: tuple[type, ...] = (range, type({}.keys()), type({}.values()), type({}.items()), deque)
 _OF_LISTS = {sym(f"CRAM-PROLOG::{name}") for name in ("MEMBER", "LENGTH", "APPEND", "NTH", "TAKE")}
 
 
