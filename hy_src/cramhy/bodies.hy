@@ -4,8 +4,9 @@ The other operators come from their declarations (`cramhy_runtime/languages/oper
 becomes a function of no arguments, so what it assigns is its own unless it says `nonlocal`, and Hy's `return` belongs to that function:
 `whenever` is left by `(break)`, a form that Lisp leaves by `return` by `(leave value)`."
 
-(import hy.models [Expression Keyword List Sequence Symbol]
-        cramhy_runtime.languages.hy.lisp-data [constant-form lisp-data package-of])
+(import hy.models [Expression List Sequence Symbol]
+        cramhy_runtime.languages.hy.lisp-data [constant-form lisp-data package-of refuse-case]
+        cramhy_runtime.languages.hy.properties [in-goal])
 
 (defn _here [compiler]
   "The Lisp package of the module that is compiled."
@@ -160,32 +161,24 @@ becomes a function of no arguments, so what it assigns is its own unless it says
 
 ;; ------------------------------------------------------------------------------------------------- Prolog
 
-(setv _property-goals #{"desig-prop" "desig:desig-prop" "cram-designators:desig-prop"}
-      _function-goals #{"lisp-fun" "lisp-pred" "prolog:lisp-fun" "prolog:lisp-pred" "cram-prolog:lisp-fun" "cram-prolog:lisp-pred"})
+(setv _function-goals #{"lisp-fun" "lisp-pred" "prolog:lisp-fun" "prolog:lisp-pred" "cram-prolog:lisp-fun" "cram-prolog:lisp-pred"})
 
 (defn _goal [form functions]
-  "A goal as it is written in Hy, as Lisp wants it: the properties of a designator are keywords. The functions that it calls go to `functions`."
+  "A goal as it is written in Hy. The functions that it calls go to `functions`."
   (setv name (if (and (isinstance form Sequence) (len form)) (str (get form 0)) None))
   (cond
-    (and (in name _property-goals) (= (len form) 3) (isinstance (get form 2) Sequence))
-      (Expression [(get form 0) (get form 1) (Expression (map _property (get form 2)))])
     (and (in name _function-goals) (> (len form) 1) (isinstance (get form 1) Symbol))
       (do (.append functions (get form 1)) form)
     (isinstance form #(Expression List hy.models.Tuple)) (Expression (lfor part form (_goal part functions)))
     True form))
-
-(defn _property [part]
-  "A word of a property becomes a keyword, a variable stays."
-  (if (and (isinstance part Symbol) (not (.startswith part #("?" "_"))))
-    (Keyword (str part))
-    part))
 
 (defn _with-facts [form collector compiler]
   "`form` with each `(<- head goal...)` in it become a call that collects it."
   (cond
     (and (isinstance form Expression) (len form) (in (get form 0) ['<- 'prolog:<- 'cram-prolog:<-]))
       (do
-        (setv functions [] goals (lfor goal (cut form 1 None) (_goal goal functions)) fact (_constant compiler (Expression goals)))
+        (refuse-case form)
+        (setv functions [] goals (lfor goal (cut form 1 None) (_goal (in-goal goal) functions)) fact (_constant compiler (Expression goals)))
         (for [name functions]
           (setv fact `((hy.R.cramhy._ours calls calling) ~fact ~(_constant compiler name) (fn [] ~name))))
         (.replace `((hy.R.cramhy._ours calls collect-fact) ~collector ~fact) form))

@@ -40,7 +40,8 @@ from cramhy_runtime.ground.printing import define_printer, print_unreadable
 from cramhy_runtime.prolog.builtins import native_predicates as natives
 from cramhy_runtime.prolog.python.ground import reasoning
 from cramhy_runtime.prolog.python.rules import fact_group, remove_fact_group
-from cramhy_runtime.prolog.python.terms import USER, Goal, Name, P, V, import_predicates, kw, lisp_name, to_lisp, to_python
+from cramhy_runtime.prolog.python.spelling import lisp_name
+from cramhy_runtime.prolog.python.terms import USER, Goal, Name, P, V, import_predicates, kw, to_lisp, to_python
 from cramhy_runtime.prolog.explanations.failure_reasons import explains
 from cramhy_runtime.prolog.terms.terms import deref, import_term
 from ..utilities.lazy_lists import from_iterator

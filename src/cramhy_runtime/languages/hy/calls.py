@@ -16,7 +16,7 @@ from cramhy_runtime.cpl.forms import plans
 from cramhy_runtime.cpl.tree.tags import enter_with_tags, execute_tag, make_tag_task, prepare_tag
 from cramhy_runtime.ground.classes import find_class
 from cramhy_runtime.ground.conditions import unknown_key
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from
+from cramhy_runtime.ground.data import STANDS_FOR, Cons, Keyword, Symbol, list_from
 from cramhy_runtime.ground.data import values as as_values
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.keyword_calls import lispify
@@ -28,7 +28,9 @@ from cramhy_runtime.kernel.budget import budget
 from cramhy_runtime.process_modules import AsynchronousModule
 from ..commonlisp.compiler.support import BlockExit, block_value, end_block, return_from
 from ..commonlisp.faces.prolog.macro_support import collect_fact, fact_collector, finish_fact_group
-from .lisp_data import choose_package, constant, inserted, plan_package
+from . import answer_lists, keywords
+from .answer_lists import in_goal, spliced_in_goal
+from .lisp_data import choose_package, constant, inserted, is_about_lists, plan_package
 
 __all__ = [
     "AsynchronousModule",
@@ -36,6 +38,7 @@ __all__ = [
     "Cons",
     "RetryCounter",
     "Symbols",
+    "as_lisp",
     "block",
     "budget",
     "call_plan",
@@ -54,10 +57,12 @@ __all__ = [
     "failure_type",
     "finish_fact_group",
     "function",
+    "in_goal",
     "inserted",
     "items",
     "get_param",
     "has_param",
+    "keyword_values",
     "lispify",
     "publish_message",
     "set_param",
@@ -67,7 +72,9 @@ __all__ = [
     "prepare_tag",
     "publish",
     "refill",
+    "lists",
     "spliced",
+    "spliced_in_goal",
     "use_package",
     "users_or_ours",
     "wait_for",
@@ -90,6 +97,10 @@ class Symbols:
         return found
 
 
+lists = answer_lists.Lists()
+keyword_values = keywords.Values()
+
+
 class Branching(Symbols):
     """Its attributes are the functions behind the operators with branches; what Python code raised leaves them as the same exception."""
 
@@ -101,6 +112,8 @@ class Branching(Symbols):
 
 def function(package, name):
     """The function that a symbol of a package of ours names. It takes keywords as Python writes them."""
+    if is_about_lists(package, name):
+        return answer_lists.list_function(package, name)
     found = function_of(intern(name, package))
     return found if takes_keywords(found) else _with_keyword_objects(found)
 
@@ -151,6 +164,12 @@ def items(elements):
     return elements if elements is None or isinstance(elements, Cons) else list_from(list(elements))
 
 
+def as_lisp(value):
+    """The object of Lisp that the value of a variable in a designator stands for, such as a keyword, or the value."""
+    kind = value.__class__
+    return STANDS_FOR[kind](value) if kind in STANDS_FOR else value
+
+
 def lisp_list(*items):
     """A list of Lisp."""
     return list_from(items)
@@ -172,8 +191,9 @@ def publish(symbol, function_):
         return function_
     if callable(function_):
         symbol = own_symbol(symbol)
-        symbol.function = _as_lisp_calls(function_)
+        symbol.function = answer_lists.for_lisp(_as_lisp_calls(function_))
         symbol.function_changed()
+        answer_lists.published(symbol)
     return symbol
 
 

@@ -226,7 +226,10 @@ class Translation:
     def list_(self, *forms):
         made = None
         for form in reversed(forms):
-            made = expression(call_of("Cons"), self.hy(form), made)
+            item = self.hy(form)
+            if isinstance(form, Symbol) and form.name.startswith("?"):  # a variable in a designator
+                item = expression(call_of("as-lisp"), item)
+            made = expression(call_of("Cons"), item, made)
         return models.as_model(made)
 
     def funcall(self, function, *arguments):

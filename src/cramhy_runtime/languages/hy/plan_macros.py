@@ -23,10 +23,13 @@ from cramhy_runtime.ground.packages import find_package, registered
 from ..operators import OPERATORS, operator_of
 from ..operators.declaration import hy_shape
 from ..operators.grammar import WrongShape
-from . import calls
+from . import calls, properties
 from .call_parts import lisp_call
 from .expansion import expand, expression, word
 from .lisp_data import (
+    DESIGNATORS,
+    GOALS,
+    NO_FUNCTOR,
     call_of,
     constant_form,
     function_form,
@@ -34,6 +37,7 @@ from .lisp_data import (
     is_backquoted,
     lisp_data,
     package_of,
+    refuse_case,
     refuse_code_in_designator,
     template_form,
 )
@@ -61,7 +65,6 @@ WITHOUT_PREFIX = (
 )
 """The packages whose names are known as they are. Where two of them have one name, the first counts."""
 
-DESIGNATORS = ("A", "AN", "ALL")
 FOR_PYTHON = {
     ("CRAM-LANGUAGE", "WAIT-FOR"): "wait-for",
     ("CRAM-LANGUAGE-IMPLEMENTATION", "WAIT-FOR"): "wait-for",
@@ -93,6 +96,10 @@ def operator_macro(operator, body=None):
         try:
             if operator.name in DESIGNATORS:
                 refuse_code_in_designator(arguments)
+                refuse_case(models.List(arguments))
+                arguments = properties.in_designator(arguments)
+            elif operator.name == "WITH-DESIG-PROPS" and isinstance(arguments[0], models.Sequence):
+                arguments = (models.List(map(properties.key, arguments[0])), *arguments[1:])
             call, form = lisp_call(operator, arguments, package_of(_hy_compiler.module.__name__))
             if body is not None:
                 return with_places(body(_hy_compiler, *arguments), written)
@@ -156,10 +163,13 @@ def function_macro(symbol, name=None):
         _tell_prompt(_hy_compiler.module)
         here = package_of(_hy_compiler.module.__name__)
         try:
-            made = lisp_arguments(symbol.function, arguments, here)
+            arguments = properties.in_call(lisp_name, arguments)
+            made = lisp_arguments(symbol.function, arguments, here, NO_FUNCTOR if lisp_name in GOALS else None)
         except (ValueError, Condition) as problem:
             raise refusal(_hy_compiler, _hy_compiler.this, str(problem)) from None
-        if lisp_name in OF_GOALS and made and made[0] is arguments[0]:
+        if lisp_name in GOALS and made and made[0] is arguments[0]:
+            made[0] = insertion("in-goal", made[0], here, NO_FUNCTOR)
+        elif lisp_name == "VAR-VALUE" and made and made[0] is arguments[0]:
             made[0] = insertion("inserted", made[0], here)
         theirs = name is not None and (may_be_the_users(name, _hy_compiler) or is_bound(_hy_compiler, mangle(name)))
         function = call_of(FOR_PYTHON[package, lisp_name]) if (package, lisp_name) in FOR_PYTHON else function_form(package, lisp_name)
@@ -173,10 +183,6 @@ def function_macro(symbol, name=None):
 
     macro.symbol = symbol  # for the Tab key
     return macro
-
-
-OF_GOALS = {"PROLOG", "VAR-VALUE"}
-"""Functions whose first argument is a goal or a variable of one, which Hy code may have made as a model or as lists."""
 
 
 def _users_or(function, name, compiler):
@@ -208,28 +214,36 @@ def _with_keyword_objects(arguments, package):
     return others + keywords
 
 
-def lisp_arguments(function, arguments, package):
-    """Hy models for the arguments of a function of ours: quoted data is Lisp's, a keyword in the place of a parameter is an object."""
+def lisp_arguments(function, arguments, package, functor=None):
+    """Hy models for the arguments of a function of ours: quoted data is Lisp's, a keyword in the place of a parameter is an object.
+
+    functor: as of `template_form`, for the functions of goals.
+    """
     positional = _positional(function)
     made, position, rest = [], 0, list(arguments)
     while rest:
         argument = rest.pop(0)
         if isinstance(argument, models.Keyword):
             if position >= positional and rest:
-                made += [argument, _argument(rest.pop(0), package)]
+                made += [argument, _argument(rest.pop(0), package, functor)]
                 continue
-        made.append(_argument(argument, package))
+        made.append(_argument(argument, package, functor))
         position += 1
     return made
 
 
-def _argument(model, package):
+def _argument(model, package, functor=None):
     """An argument that is an object of Lisp as it stands, a quoted name or a keyword, as a constant; any other as it is."""
+    if isinstance(model, models.Expression) and len(model) == 2 and model[0] in _DATA:
+        refuse_case(model[1])
     if isinstance(model, models.Expression) and len(model) == 2 and model[0] == models.Symbol("quote"):
         return constant_form(lisp_data(model[1], package))
     if is_backquoted(model):
-        return template_form(model[1], package)
+        return template_form(model[1], package, functor)
     return constant_form(lisp_data(model, package)) if isinstance(model, models.Keyword) else model
+
+
+_DATA = (models.Symbol("quote"), models.Symbol("quasiquote"))
 
 
 def _positional(function):

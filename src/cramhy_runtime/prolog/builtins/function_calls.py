@@ -11,6 +11,7 @@ from __future__ import annotations
 import operator
 
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.ground.catching import CATCHABLE, Case, HandlerExit, caught
 from cramhy_runtime.ground.conditions import Error, SimpleWarning, StorageCondition, type_error, undefined_function, warn
 from cramhy_runtime.ground.data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, is_ratio, lisp_list, truth
@@ -21,6 +22,9 @@ from cramhy_runtime.utilities.lazy_lists import force_ll
 from ..engine.failing_calls import note_place
 from ..symbols import CUT, PROLOG, sym
 from ..terms.terms import TermTail, Var, import_term, raw, resolve, undo, unify
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 BREAK_ON_LISP_ERRORS = special(PROLOG.intern("*BREAK-ON-LISP-ERRORS*"))
 
@@ -118,7 +122,14 @@ def lisp_value(m, function, arguments):
     kind = value.__class__
     if kind is Cons or kind is Symbol or kind is Keyword or kind is bool:
         return import_term(value, m.names)
+    if kind not in _ATOMS and function in RESULTS:
+        return RESULTS[function](value)
     return value
+
+
+RESULTS: dict[Symbol, Callable[[Any], Any]] = {}
+"""The symbol of a function that was written in Hy → what makes Lisp data of its result. Such a result may be a collection of Python."""
+_ATOMS = frozenset((int, float, str, type(None)))
 
 
 def lisp_fun(m, function, arguments, result):
