@@ -82,9 +82,12 @@ def test_rete_holds(lisp):
 
 def test_facts_with_content_are_compared_as_prolog_does(lisp):
     """A difference to the original, which compares by ``eql``, see docs/differences.md."""
-    assert lisp("""(rete-assert '(name "rob" 1.0 (a)))
+    assert (
+        lisp("""(rete-assert '(name "rob" 1.0 (a)))
                    (list (rete-holds '(name "rob" 1.0 (a))) (rete-holds '(name "rob" 1.0 (a)) #'cl:eql) (rete-holds '(name "bob" 1.0 (a)))
-                         (force-ll (rete-holds '(name ?x 1.0 (?y)))))""") == '((NIL) NIL NIL (((?Y . A) (?X . "rob"))))'
+                         (force-ll (rete-holds '(name ?x 1.0 (?y)))))""")
+        == '((NIL) NIL NIL (((?Y . A) (?X . "rob"))))'
+    )
     assert lisp("(rete-assert '(n 1)) (list (rete-holds '(n 1.0)) (rete-holds '(n 1)))") == "(NIL (NIL))"
 
 
