@@ -8,6 +8,7 @@ import hy
 import pytest
 
 import cramhy  # noqa: F401  teaches Hy's keywords
+from cramhy_runtime.designators.python_grounding import _verdict
 from cramhy_runtime.prolog import kw
 
 
@@ -101,3 +102,11 @@ def test_match_finds_keywords_of_lisp(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
     found = importlib.import_module("keywords_in_match").found
     assert found == [2, "arm", 1, True, 1, 2, 2, kw.driving]
+
+
+def test_a_validator_may_answer_with_a_keyword_of_hy_and_a_text_is_refused_without_a_warning():
+    assert _verdict(of_hy("accept")) is kw.accept
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(TypeError, match="not 'accept'"):
+            _verdict("accept")

@@ -348,8 +348,8 @@ def _verdict(answer: Any) -> Keyword:
         return REJECT
     if answer is None:
         return UNKNOWN
-    if answer in VERDICTS:
-        found: Keyword = answer
+    found = to_lisp(answer)  # a keyword of Hy is Lisp's
+    if isinstance(found, Keyword) and found in VERDICTS:
         return found
     raise TypeError(f"A validator returns True, False, None or kw.maybe_reject, not {answer!r}.")
 
