@@ -5,7 +5,8 @@ becomes a function of no arguments, so what it assigns is its own unless it says
 `whenever` is left by `(break)`, a form that Lisp leaves by `return` by `(leave value)`."
 
 (import hy.models [Expression Keyword List Sequence Symbol]
-        cramhy_runtime.languages.hy.lisp-data [constant-form lisp-data package-of])
+        cramhy_runtime.languages.hy.lisp-data [constant-form lisp-data package-of]
+        cramhy_runtime.languages.hy.operator-bodies [hidden])
 
 (defn _here [compiler]
   "The Lisp package of the module that is compiled."
@@ -106,10 +107,13 @@ becomes a function of no arguments, so what it assigns is its own unless it says
       (do
         (setv name (_tagged form))
         (.replace
-          `((fn []
-              (nonlocal ~name)
-              (setv ~name ((hy.R.cramhy._ours calls prepare-tag) ~name))
-              ((hy.R.cramhy._ours calls execute-tag) ~name (fn [] ~@(map _with-tag-calls (cut form 2 None))))))
+          (Expression
+            [(hidden
+               `(fn []
+                  (nonlocal ~name)
+                  (setv ~name ((hy.R.cramhy._ours calls prepare-tag) ~name))
+                  ((hy.R.cramhy._ours calls execute-tag) ~name ~(hidden `(fn [] ~@(map _with-tag-calls (cut form 2 None))) ":tag")))
+               "with-tags")])
           form))
     (and (isinstance form Sequence) (not (_has-tags-of-its-own form)))
       (.replace ((type form) (map _with-tag-calls form)) form)
@@ -119,11 +123,13 @@ becomes a function of no arguments, so what it assigns is its own unless it says
   "The body, in which `(:tag name form...)` runs its forms as the task `name`: a variable of the body that others can order or suspend."
   (setv body (list (map _with-choices body)) names (_tag-names (List body) []))
   (if names
-    `((fn []
-        ~@(lfor name names
-            `(setv ~name ((hy.R.cramhy._ours calls make-tag-task) ~(_constant _hy-compiler name))))
-        ((hy.R.cramhy._ours calls enter-with-tags))
-        ~@(map _with-tag-calls body)))
+    (Expression
+      [(hidden
+         `(fn [~@names]
+            ((hy.R.cramhy._ours calls enter-with-tags))
+            ~@(map _with-tag-calls body))
+         "with-tags")
+       #* (lfor name names `((hy.R.cramhy._ours calls make-tag-task) ~(_constant _hy-compiler name)))])
     `(do ~@body)))
 
 ;; ------------------------------------------------------------------------------------------------- 8: plan functions

@@ -39,6 +39,7 @@ __all__ = [
     "block",
     "budget",
     "call_plan",
+    "call_service",
     "calling",
     "checkpoint",
     "choose_package",
@@ -182,6 +183,13 @@ def publish_message(topic, message):
     from cramhy_runtime.ros.python import publish
 
     return publish(topic, message)
+
+
+def call_service(service, *rest):
+    """`checked_call_service` of roslisp."""
+    from cramhy_runtime.ros.roslisp.services import checked_call_service
+
+    return checked_call_service(service, *rest)
 
 
 def get_param(key, *default):

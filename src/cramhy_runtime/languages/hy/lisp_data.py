@@ -216,6 +216,18 @@ BRANCHING = "TOP-LEVEL NAMED-TOP-LEVEL PAR PURSUE TRY-ALL TRY-IN-ORDER TRY-EACH-
 """The functions of CRAMHY that raise what a branch failed with: in Hy it is the exception that the branch raised."""
 
 
+FOR_PYTHON = {
+    ("CRAM-LANGUAGE", "WAIT-FOR"): "wait-for",
+    ("CRAM-LANGUAGE-IMPLEMENTATION", "WAIT-FOR"): "wait-for",
+    ("ROSLISP", "CALL-SERVICE"): "call-service",
+    ("ROSLISP", "PUBLISH"): "publish-message",
+    ("ROSLISP", "GET-PARAM"): "get-param",
+    ("ROSLISP", "SET-PARAM"): "set-param",
+    ("ROSLISP", "HAS-PARAM"): "has-param",
+}
+"""Functions that ask more of their arguments, or give other values, in Hy and Python than in Lisp → their names in ``calls``."""
+
+
 def call_of(name):
     """A Hy form for what `calls` calls ``name``."""
     return _ours("calls", name)
@@ -226,7 +238,9 @@ def _ours(*path):
 
 
 def function_form(package, name):
-    """A Hy form for the function that a symbol of a package of ours names now."""
+    """A Hy form for the function that a symbol of a package of ours names now, or for the one that Python has in its place."""
+    if (package, name) in FOR_PYTHON:
+        return call_of(FOR_PYTHON[package, name])
     if name != name.upper() or "_" in name or "." in name or "." in package:
         return models.Expression([call_of("function"), models.String(package), models.String(name)])
     if package == "CRAMHY" and name in BRANCHING:

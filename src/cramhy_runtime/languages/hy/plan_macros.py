@@ -62,16 +62,6 @@ WITHOUT_PREFIX = (
 """The packages whose names are known as they are. Where two of them have one name, the first counts."""
 
 DESIGNATORS = ("A", "AN", "ALL")
-FOR_PYTHON = {
-    ("CRAM-LANGUAGE", "WAIT-FOR"): "wait-for",
-    ("CRAM-LANGUAGE-IMPLEMENTATION", "WAIT-FOR"): "wait-for",
-    ("ROSLISP", "PUBLISH"): "publish-message",
-    ("ROSLISP", "GET-PARAM"): "get-param",
-    ("ROSLISP", "SET-PARAM"): "set-param",
-    ("ROSLISP", "HAS-PARAM"): "has-param",
-}
-"""Functions that ask more of their arguments, or give other values, in Hy and Python than in Lisp → their names in ``calls``."""
-
 WITH_PREFIX = (*WITHOUT_PREFIX, "CRAM-LANGUAGE-IMPLEMENTATION", "ACTIONLIB-LISP", "CL-TRANSFORMS-STAMPED", "TURTLESIM")
 
 
@@ -155,14 +145,15 @@ def function_macro(symbol, name=None):
     def macro(_hy_compiler, *arguments):
         _tell_prompt(_hy_compiler.module)
         here = package_of(_hy_compiler.module.__name__)
+        local = name is not None and is_bound(_hy_compiler, mangle(name))  # of the operator around: it takes keywords as objects
         try:
-            made = lisp_arguments(symbol.function, arguments, here)
+            made = lisp_arguments(symbol.function, arguments, here, all_objects=local)
         except (ValueError, Condition) as problem:
             raise refusal(_hy_compiler, _hy_compiler.this, str(problem)) from None
         if lisp_name in OF_GOALS and made and made[0] is arguments[0]:
             made[0] = insertion("inserted", made[0], here)
-        theirs = name is not None and (may_be_the_users(name, _hy_compiler) or is_bound(_hy_compiler, mangle(name)))
-        function = call_of(FOR_PYTHON[package, lisp_name]) if (package, lisp_name) in FOR_PYTHON else function_form(package, lisp_name)
+        theirs = local or name is not None and may_be_the_users(name, _hy_compiler)
+        function = function_form(package, lisp_name)
         if any(map(_is_keyword, made)) and not calls.takes_keywords(symbol.function):
             if theirs or any(map(_is_mapping, made)):
                 function = expression(call_of("function"), models.String(package), models.String(lisp_name))
@@ -208,9 +199,12 @@ def _with_keyword_objects(arguments, package):
     return others + keywords
 
 
-def lisp_arguments(function, arguments, package):
-    """Hy models for the arguments of a function of ours: quoted data is Lisp's, a keyword in the place of a parameter is an object."""
-    positional = _positional(function)
+def lisp_arguments(function, arguments, package, all_objects=False):
+    """Hy models for the arguments of a function of ours: quoted data is Lisp's, a keyword in the place of a parameter is an object.
+
+    all_objects: whether each keyword is one.
+    """
+    positional = len(arguments) if all_objects else _positional(function)
     made, position, rest = [], 0, list(arguments)
     while rest:
         argument = rest.pop(0)
