@@ -6,6 +6,7 @@ becomes a function of no arguments, so what it assigns is its own unless it says
 
 (import hy.models [Expression Keyword List Sequence Symbol]
         cramhy_runtime.languages.hy.lisp-data [constant-form lisp-data package-of]
+        cramhy_runtime.languages.hy.goal-functions [named]
         cramhy_runtime.languages.hy.operator-bodies [hidden])
 
 (defn _here [compiler]
@@ -166,18 +167,15 @@ becomes a function of no arguments, so what it assigns is its own unless it says
 
 ;; ------------------------------------------------------------------------------------------------- Prolog
 
-(setv _property-goals #{"desig-prop" "desig:desig-prop" "cram-designators:desig-prop"}
-      _function-goals #{"lisp-fun" "lisp-pred" "prolog:lisp-fun" "prolog:lisp-pred" "cram-prolog:lisp-fun" "cram-prolog:lisp-pred"})
+(setv _property-goals #{"desig-prop" "desig:desig-prop" "cram-designators:desig-prop"})
 
-(defn _goal [form functions]
-  "A goal as it is written in Hy, as Lisp wants it: the properties of a designator are keywords. The functions that it calls go to `functions`."
+(defn _goal [form]
+  "A goal as it is written in Hy, as Lisp wants it: the properties of a designator are keywords."
   (setv name (if (and (isinstance form Sequence) (len form)) (str (get form 0)) None))
   (cond
     (and (in name _property-goals) (= (len form) 3) (isinstance (get form 2) Sequence))
       (Expression [(get form 0) (get form 1) (Expression (map _property (get form 2)))])
-    (and (in name _function-goals) (> (len form) 1) (isinstance (get form 1) Symbol))
-      (do (.append functions (get form 1)) form)
-    (isinstance form #(Expression List hy.models.Tuple)) (Expression (lfor part form (_goal part functions)))
+    (isinstance form #(Expression List hy.models.Tuple)) (Expression (map _goal form))
     True form))
 
 (defn _property [part]
@@ -191,9 +189,9 @@ becomes a function of no arguments, so what it assigns is its own unless it says
   (cond
     (and (isinstance form Expression) (len form) (in (get form 0) ['<- 'prolog:<- 'cram-prolog:<-]))
       (do
-        (setv functions [] goals (lfor goal (cut form 1 None) (_goal goal functions)) fact (_constant compiler (Expression goals)))
-        (for [name functions]
-          (setv fact `((hy.R.cramhy._ours calls calling) ~fact ~(_constant compiler name) (fn [] ~name))))
+        (setv names {} goals (named (Expression (map _goal (cut form 1 None))) names) fact (_constant compiler goals))
+        (for [[name function] (.items names)]
+          (setv fact `((hy.R.cramhy._ours calls calling) ~fact ~(_constant compiler name) (fn [] ~function))))
         (.replace `((hy.R.cramhy._ours calls collect-fact) ~collector ~fact) form))
     (isinstance form Sequence)
       (.replace ((type form) (lfor part form (_with-facts part collector compiler))) form)

@@ -54,8 +54,8 @@ def callable_part(given: T, form: str, role: str, written: str = "drive") -> T:
     text = text if len(text) <= 60 else text[:57] + "..."
     raise TypeError(
         f"cpl.{form} takes a function as {role}, and calls it, but was given {text} (of the type {type(given).__name__}). If that is "
-        f"what a call such as drive() gave, the call was over before cpl.{form} began. Write cpl.{form}({written}), without the parentheses "
-        f"behind drive, or with arguments cpl.{form}({written.replace('drive', 'lambda: drive(2)')})."
+        f"what a call such as drive() gave, the call was over before cpl.{form} began. Write cpl.{form}({written}), without the "
+        f"parentheses behind drive, or with arguments cpl.{form}({written.replace('drive', 'lambda: drive(2)')})."
     )
 
 

@@ -114,8 +114,8 @@ def _kernel(clock: object, backend: object, seed: object, time_limit: float | No
     active = kernel.active()
     if active is not None and current_task() is not None:
         error(
-            "A plan was started inside of a plan. Call its function as it is: it then runs as a part of this plan, in the time of this one. "
-            "A plan in another time (clock=) is run before this one or after it, or in a process of its own."
+            "A plan was started inside of a plan. Call its function as it is: it then runs as a part of this plan, in the time of this "
+            "one. A plan in another time (clock=) is run before this one or after it, or in a process of its own."
         )
     given = {"clock": clock, "backend": backend, "seed": seed, "time_limit": time_limit}
     options: dict[str, Any] = {name: value for name, value in given.items() if value is not None}

@@ -59,7 +59,9 @@ class Policy:
         clauses = self.init, self.check, self.recover, self.clean_up = init, check, recover, clean_up
         for name, clause in zip(("init", "check", "recover", "clean_up"), clauses):
             if clause is not None:
-                plain_function(callable_part(clause, "make_policy", f"the clause {name}", f"name, {name}=drive"), f"the clause {name} of a policy")
+                plain_function(
+                    callable_part(clause, "make_policy", f"the clause {name}", f"name, {name}=drive"), f"the clause {name} of a policy"
+                )
 
 
 class Store:

@@ -41,7 +41,12 @@ _constants: dict[str, object] = per_image({})
 
 def package_of(module):
     """The Lisp package of the Hy module of that name; it is made when there is none."""
-    return plan_package(_chosen.get(module) or default_package_name(module))
+    return plan_package(package_name(module))
+
+
+def package_name(module):
+    """The name of that package."""
+    return _chosen.get(module) or default_package_name(module)
 
 
 def default_package_name(module):
@@ -100,15 +105,26 @@ def refuse_code(model):
     """Raise ValueError if a model is read as a list, and looks as if it were evaluated: ``~n`` without a backquote, ``?pose.x``."""
     if _is_call_of("unquote", model) or _is_call_of("unquote-splice", model):
         raise ValueError(f"{written(model)} is evaluated in a template only, behind a backquote: `(a ~b)")
-    if isinstance(model, models.Expression) and len(model) > 2 and model[0] == models.Symbol(".") and str(model[1]).startswith("?"):
+    if is_dotted(model) and str(model[1]) != "None":
         raise ValueError(f"{written(model)} is no Lisp data: attributes are not evaluated in it; give the value a variable first")
+
+
+def is_dotted(model):
+    """Whether a model is an attribute, ``pose.x``."""
+    return isinstance(model, models.Expression) and len(model) > 2 and model[0] == models.Symbol(".")
+
+
+def own_symbol(symbol):
+    """``symbol``, or one of that name in no package if it is Lisp's or ours: a function ``list`` of Hy must not be that of Lisp."""
+    built_in = symbol.package is not None and symbol.package.built_in
+    return Symbol(symbol.name) if built_in else symbol
 
 
 def refuse_code_in_designator(parts):
     """Raise ValueError if in the parts of a designator, or deeper, stands code: only ``?variables`` are evaluated there."""
     for model in parts:
         code = isinstance(model, (models.FString, models.Dict, models.Set, models.Bytes))
-        dotted = isinstance(model, models.Expression) and len(model) > 2 and model[0] == models.Symbol(".")
+        dotted = is_dotted(model)
         if code or dotted or _is_call_of("unquote", model) or _is_call_of("unquote-splice", model):
             value = hy.repr(model[1]).removeprefix("'") if _is_call_of("unquote", model) else written(model)
             kind = _KINDS.get(type(model), "attribute" if dotted else "~ without a backquote")
@@ -140,6 +156,11 @@ def inserted(value, package):
 
 
 # --------------------------------------------------------------------------------------------------------------- backquotes
+
+
+def is_quoted(model):
+    """Whether a model is data as it stands, ``'(a b)``."""
+    return _is_call_of("quote", model)
 
 
 def is_backquoted(model):

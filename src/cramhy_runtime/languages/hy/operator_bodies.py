@@ -1,17 +1,18 @@
 """The bodies of operators in Hy: functions that a reader of the program does not see.
 
-``(par (setv found "cup") (sleep 1))`` calls a function with two functions, one for each branch. For Python their variables are their own,
-and a ``return`` ends such a function. A reader sees forms in a row. So the bodies are compiled as they are read:
+``(par (setv found "cup") (sleep 1))`` calls a function with two functions, one for each branch. For Python their variables are their
+own, and a ``return`` ends such a function. A reader sees forms in a row. So the bodies are compiled as they are read:
 
 * What a body assigns by ``setv``, ``setx``, ``+=``, ``del`` or ``defn`` is a variable of the function around the operator, if that
-  function, or another body in it, has or reads a variable of that name. Otherwise it is the body's own: branches do not share what only they have.
-  ``for``, ``with``, ``except`` and ``import`` bind variables of the body in any case, since branches at once would take them from each other.
-* ``(return value)`` in a clause of ``with-failure-handling`` leaves that form, as ``return`` of Lisp does. In any other body it would end
-  the body alone, and so would ``break`` and ``continue`` lose the loop around the operator, and ``yield`` make a generator of the body.
-  They are refused, unless the operator is the last form of the function around it, so that its value is what the function returns.
+  function, or another body in it, has or reads a variable of that name. Otherwise it is the body's own: branches do not share what only
+  they have. ``for``, ``with``, ``except`` and ``import`` bind variables of the body in any case, since branches at once would take them
+  from each other.
+* ``(return value)`` in a clause of ``with-failure-handling`` leaves that form, as ``return`` of Lisp does. In any other body it would
+  end the body alone, and so would ``break`` and ``continue`` lose the loop around the operator, and ``yield`` make a generator of the
+  body. They are refused. Only ``return`` may stand in an operator that is the last form of the function around it, whose value that is.
 
-The macro ``_body`` stands in each such function in front of its forms. It leaves a `Mark` there, which `settle` finds when the whole form
-of the file is compiled; only then is it known which variables there are. `settle` adds ``nonlocal`` and ``global`` to Python's syntax tree.
+The macro ``_body`` stands in each such function before its forms. It leaves a `Mark` there, which `settle` finds when the whole form of
+the file is compiled; only then is it known which variables there are. `settle` adds ``nonlocal`` and ``global`` to Python's syntax tree.
 """
 
 from __future__ import annotations
@@ -22,12 +23,12 @@ import builtins
 from hy import models
 from hy.compiler import Result
 from hy.errors import HySyntaxError
-from hy.scoping import ScopeFn, ScopeGen, ScopeGlobal, ScopeLet
+from hy.scoping import ScopeFn, ScopeGen, ScopeLet
 
 IN_PLACE = frozenset(
-    "block top-level named-top-level try-in-order try-each-in-order with-failure-handling with-task with-task-suspended with-task-tree-node "
-    "without-scheduling with-scheduling retry-after-suspension on-suspension with-tags with-policy with-named-policy with-policies "
-    "with-named-policies with-process-modules-running with-process-module-aliases with-process-module-registered-running "
+    "block top-level named-top-level try-in-order try-each-in-order with-failure-handling with-task with-task-suspended "
+    "with-task-tree-node without-scheduling with-scheduling retry-after-suspension on-suspension with-tags "
+    "with-policy with-named-policy with-policies with-named-policies with-process-modules-running with-process-module-aliases with-process-module-registered-running "
     "with-designator-solution-filter with-episode-knowledge with-last-episode-knowledge with-lock-held with-facts-asserted".split()
 )
 """The operators that run their body where they stand, and whose value is the body's. A ``block`` is in what a definition stands for."""
@@ -70,7 +71,7 @@ class BodyScope(ScopeFn):
 
 
 def body(_hy_compiler, operator, *forms):
-    """The macro that is around the forms of a body: what Hy's compiler makes of them, behind a `Mark` where there is something to settle."""
+    """The macro around the forms of a body: what Hy's compiler makes of them, behind a `Mark` where there is something to settle."""
     scope = _hy_compiler.scope
     if type(scope) is ScopeFn:
         scope.__class__ = BodyScope

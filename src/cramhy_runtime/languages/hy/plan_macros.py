@@ -26,12 +26,14 @@ from ..operators.grammar import WrongShape
 from . import calls
 from .call_parts import lisp_call
 from .expansion import expand, expression, word
+from .goal_functions import named
 from .lisp_data import (
     call_of,
     constant_form,
     function_form,
     insertion,
     is_backquoted,
+    is_quoted,
     lisp_data,
     package_of,
     refuse_code_in_designator,
@@ -144,14 +146,16 @@ def function_macro(symbol, name=None):
 
     def macro(_hy_compiler, *arguments):
         _tell_prompt(_hy_compiler.module)
-        here = package_of(_hy_compiler.module.__name__)
+        here, names = package_of(_hy_compiler.module.__name__), {}
+        if lisp_name in OF_GOALS and arguments and (is_quoted(arguments[0]) or is_backquoted(arguments[0])):
+            arguments = (models.Expression([arguments[0][0], named(arguments[0][1], names)]), *arguments[1:])
         local = name is not None and is_bound(_hy_compiler, mangle(name))  # of the operator around: it takes keywords as objects
         try:
             made = lisp_arguments(symbol.function, arguments, here, all_objects=local)
         except (ValueError, Condition) as problem:
             raise refusal(_hy_compiler, _hy_compiler.this, str(problem)) from None
-        if lisp_name in OF_GOALS and made and made[0] is arguments[0]:
-            made[0] = insertion("inserted", made[0], here)
+        if lisp_name in OF_GOALS and made:
+            made[0] = insertion("inserted", made[0], here) if made[0] is arguments[0] else asked(made[0], names, here)
         theirs = local or name is not None and may_be_the_users(name, _hy_compiler)
         function = function_form(package, lisp_name)
         if any(map(_is_keyword, made)) and not calls.takes_keywords(symbol.function):
@@ -219,11 +223,19 @@ def lisp_arguments(function, arguments, package, all_objects=False):
 
 def _argument(model, package):
     """An argument that is an object of Lisp as it stands, a quoted name or a keyword, as a constant; any other as it is."""
-    if isinstance(model, models.Expression) and len(model) == 2 and model[0] == models.Symbol("quote"):
+    if is_quoted(model):
         return constant_form(lisp_data(model[1], package))
     if is_backquoted(model):
         return template_form(model[1], package)
     return constant_form(lisp_data(model, package)) if isinstance(model, models.Keyword) else model
+
+
+def asked(form, names, package):
+    """``form``, which makes a goal, with the functions of Hy that ``lisp-fun`` calls in it: ``names``, as `named` has found them."""
+    for symbol, function in names.items():
+        meant = expression(word("fn"), models.List(), function)
+        form = expression(call_of("asking"), form, constant_form(lisp_data(symbol, package)), meant)
+    return form
 
 
 def _positional(function):

@@ -76,7 +76,7 @@ class Ahead:
 
 
 def _end_of_lisp(text, start):
-    """Where the Lisp that begins at ``start`` ends: before ``(in-hy)`` at the beginning of a line, outside of forms, strings and comments."""
+    """Where Lisp that begins at ``start`` ends: before ``(in-hy)`` at the beginning of a line, and not in a form, string or comment."""
     for found in _WAY_BACK.finditer(text, start):
         if not incomplete(text[start : found.start()]):
             return found.start()
