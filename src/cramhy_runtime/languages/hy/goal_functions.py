@@ -122,7 +122,7 @@ def _with_called(form, symbol, called):
 
 
 def of_a_module(symbol):
-    """The function that a global variable of a Hy module has under the name of ``symbol``, which is of the module's package; or ``None``."""
+    """The function that a global variable of a Hy module has under the name of ``symbol``, of the module's package; or ``None``."""
     package = symbol.package
     if package is None or package.built_in:
         return None

@@ -23,12 +23,13 @@ import builtins
 from hy import models
 from hy.compiler import Result
 from hy.errors import HySyntaxError
-from hy.scoping import ScopeFn, ScopeGen, ScopeLet
+from hy.scoping import OuterVar, ScopeFn, ScopeGen, ScopeGlobal, ScopeLet
 
 IN_PLACE = frozenset(
     "block top-level named-top-level try-in-order try-each-in-order with-failure-handling with-task with-task-suspended "
     "with-task-tree-node without-scheduling with-scheduling retry-after-suspension on-suspension with-tags "
-    "with-policy with-named-policy with-policies with-named-policies with-process-modules-running with-process-module-aliases with-process-module-registered-running "
+    "with-policy with-named-policy with-policies with-named-policies with-process-modules-running "
+    "with-process-module-aliases with-process-module-registered-running "
     "with-designator-solution-filter with-episode-knowledge with-last-episode-knowledge with-lock-held with-facts-asserted".split()
 )
 """The operators that run their body where they stand, and whose value is the body's. A ``block`` is in what a definition stands for."""
@@ -67,6 +68,8 @@ class BodyScope(ScopeFn):
                 if isinstance(scope, BodyScope) and name in scope.parameters or isinstance(scope, ScopeGen) and name in scope.iterators:
                     break
                 scope = scope.parent
+            if name in getattr(scope, "nonlocal_vars", ()) and not isinstance(scope, ScopeGlobal):
+                return self.access(node, *(() if index is None else (index,)))
         return super().assign(node)
 
 
@@ -127,7 +130,7 @@ class Variables:
         self.node, self.around, self.inside = node, around, []
         self.mark = next((each for each in getattr(node, "body", None) or () if isinstance(each, Mark)), None) if _is_def(node) else None
         self.read, self.assigned, self.bound, self.parameters = set(), set(), set(), set()
-        self.declared = {}  # name → "nonlocal" or "global"
+        self.declared = {}  # name → the statement that declares it ``nonlocal`` or ``global``
         if around is not None:
             around.inside.append(self)
 
@@ -169,8 +172,8 @@ class Variables:
             self.add(node.value)
         elif isinstance(node, ast.Name):
             (self.read if isinstance(node.ctx, ast.Load) else self.assigned).add(node.id)
-        elif isinstance(node, (ast.Global, ast.Nonlocal)) or type(node).__name__ == "OuterVar":
-            self.declared.update(dict.fromkeys(node.names, "global" if isinstance(node, ast.Global) else "nonlocal"))
+        elif isinstance(node, (ast.Global, ast.Nonlocal, OuterVar)):
+            self.declared.update(dict.fromkeys(node.names, node))
         else:
             for field, part in ast.iter_fields(node):
                 if field in ("target", "optional_vars") and isinstance(node, (ast.For, ast.AsyncFor, ast.withitem, ast.comprehension)):
@@ -216,17 +219,18 @@ class Variables:
             body.append(ast.copy_location(ast.Pass(), self.node))
 
     def _declarations(self, known):
-        found = {"nonlocal": [], "global": []}
+        found = []
         for name in sorted(self.assigned - self.parameters - self.declared.keys()):
             owner = self._owner(name, known)
             if owner is not None:
-                kind = owner.declared.get(name, "nonlocal") if owner.is_function else "global"
-                found[kind].append(name)
-                self.declared[name] = kind
+                said = owner.declared.get(name) or (ast.Nonlocal if owner.is_function else ast.Global)([name])
+                if isinstance(said, OuterVar):  # Hy will find out which of the two it is
+                    said = OuterVar(said, said._scope, [name])
+                self.declared[name] = said
+                found.append(type(said)([name]) if isinstance(said, (ast.Nonlocal, ast.Global)) else said)
                 if owner.is_function and name not in owner.has():
                     owner.make(name)
-        kinds = {"nonlocal": ast.Nonlocal, "global": ast.Global}
-        return [kinds[kind](names) for kind, names in found.items() if names]
+        return found
 
     def _owner(self, name, known):
         """The outermost `Variables` around this body that have the variable ``name``; ``None`` if it is the body's own."""
