@@ -1,8 +1,8 @@
 "The operators that Hy writes in another way than Lisp: where a variable is Python's, a class is Python's, or a local macro is not needed.
 
 The other operators come from their declarations (`cramhy_runtime/languages/operators`); these stand in their place in plain Hy. A body
-becomes a function of no arguments, so what it assigns is its own unless it says `nonlocal`, and Hy's `return` belongs to that function:
-`whenever` is left by `(break)`, a form that Lisp leaves by `return` by `(leave value)`."
+becomes a function of no arguments, which `operator_bodies` hides: it assigns the variables of the function around. `whenever` is left by
+`(break)`, a form that Lisp leaves by `return` by `(leave value)`."
 
 (import hy.models [Expression Keyword List Sequence Symbol]
         cramhy_runtime.languages.hy.lisp-data [constant-form lisp-data package-of]

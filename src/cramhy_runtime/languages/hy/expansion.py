@@ -5,6 +5,7 @@ The operator's expander makes a Lisp form of the call's parts, which `call_parts
 with the user's parameters, what is quoted is a constant, and the user's code stands in the middle as it was written, with its lines.
 
 A ``block`` named nil, which ``return`` leaves in Lisp, is left by ``(leave value)``: Hy's ``return`` belongs to the function around it.
+`operator_bodies` says what the bodies assign, and where ``return`` may stand.
 """
 
 from __future__ import annotations
