@@ -97,9 +97,10 @@ def _apply(function, arguments):
                 break
     code = function.function
     if code.__class__ is UndefinedFunction:
-        code = next(filter(None, (find(function) for find in FINDERS)), None)
-        if code is None:
+        found = next(filter(None, (find(function) for find in FINDERS)), None)
+        if found is None:
             return undefined_function(function, tuple(arguments), {})
+        code = found
     value = code(*arguments)
     if value.__class__ is MultipleValues:
         return value[0] if len(value) else None
