@@ -167,8 +167,8 @@ def test_without_a_kernel_the_functions_say_what_to_do():
     with pytest.raises(kernel.KernelError) as told:
         kernel.now()
     assert str(told.value) == (
-        "No kernel is running. Make the call in a plan: cpl.run(drive), without parentheses behind drive, or `with cpl.plan():` around the "
-        "call. Or call kernel.start() first; the caller becomes the main task."
+        "No kernel is running. Make the call in a plan: cpl.run(drive), without the parentheses behind drive, or `with cpl.plan():` around "
+        "the call. Or call kernel.start() first; the caller becomes the main task."
     )
 
 

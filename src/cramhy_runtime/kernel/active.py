@@ -194,8 +194,8 @@ def active() -> Kernel | None:
 
 def _none() -> NoReturn:
     raise KernelError(
-        "No kernel is running. Make the call in a plan: cpl.run(drive), without parentheses behind drive, or `with cpl.plan():` around the "
-        "call. Or call kernel.start() first; the caller becomes the main task."
+        "No kernel is running. Make the call in a plan: cpl.run(drive), without the parentheses behind drive, or `with cpl.plan():` around "
+        "the call. Or call kernel.start() first; the caller becomes the main task."
     )
 
 
