@@ -13,7 +13,7 @@ from types import FunctionType
 
 from hy import models
 
-from cramhy_runtime.ground.data import EmptyList
+from cramhy_runtime.ground.data import EmptyList, MultipleValues
 from cramhy_runtime.ground.packages import intern
 from cramhy_runtime.prolog.builtins.function_calls import RESULTS
 from cramhy_runtime.prolog.python.terms import gets_objects, list_argument, to_lisp
@@ -79,6 +79,16 @@ def for_lisp(function):
     if not hasattr(function, "python"):
         call.python = function
     return call
+
+
+def in_rules(function):
+    """``function``, a function or class of Hy, for rules only: its results are what Python's values are in goals."""
+
+    def call(*arguments):
+        found = function(*arguments)
+        return found if found.__class__ is MultipleValues else _result(found)
+
+    return functools.update_wrapper(call, function, updated=())
 
 
 def published(symbol):

@@ -44,7 +44,12 @@ _constants: dict[str, object] = per_image({})
 
 def package_of(module):
     """The Lisp package of the Hy module of that name; it is made when there is none."""
-    return plan_package(_chosen.get(module) or default_package_name(module))
+    return plan_package(package_name(module))
+
+
+def package_name(module):
+    """The name of that package."""
+    return _chosen.get(module) or default_package_name(module)
 
 
 def default_package_name(module):
@@ -103,15 +108,26 @@ def refuse_code(model):
     """Raise ValueError if a model is read as a list, and looks as if it were evaluated: ``~n`` without a backquote, ``?pose.x``."""
     if is_call_of("unquote", model) or is_call_of("unquote-splice", model):
         raise ValueError(f"{written(model)} is evaluated in a template only, behind a backquote: `(a ~b)")
-    if isinstance(model, models.Expression) and len(model) > 2 and model[0] == models.Symbol(".") and str(model[1]).startswith("?"):
+    if is_dotted(model) and str(model[1]) != "None":
         raise ValueError(f"{written(model)} is no Lisp data: attributes are not evaluated in it; give the value a variable first")
+
+
+def is_dotted(model):
+    """Whether a model is an attribute, ``pose.x``."""
+    return isinstance(model, models.Expression) and len(model) > 2 and model[0] == models.Symbol(".")
+
+
+def own_symbol(symbol):
+    """``symbol``, or one of that name in no package if it is Lisp's or ours: a function ``list`` of Hy must not be that of Lisp."""
+    built_in = symbol.package is not None and symbol.package.built_in
+    return Symbol(symbol.name) if built_in else symbol
 
 
 def refuse_code_in_designator(parts):
     """Raise ValueError if in the parts of a designator, or deeper, stands code: only ``?variables`` are evaluated there."""
     for model in parts:
         code = isinstance(model, (models.FString, models.Dict, models.Set, models.Bytes))
-        dotted = isinstance(model, models.Expression) and len(model) > 2 and model[0] == models.Symbol(".")
+        dotted = is_dotted(model)
         if code or dotted or is_call_of("unquote", model) or is_call_of("unquote-splice", model):
             value = hy.repr(model[1]).removeprefix("'") if is_call_of("unquote", model) else written(model)
             kind = _KINDS.get(type(model), "attribute" if dotted else "~ without a backquote")
@@ -156,6 +172,11 @@ def inserted(value, package):
 
 
 # --------------------------------------------------------------------------------------------------------------- backquotes
+
+
+def is_quoted(model):
+    """Whether a model is data as it stands, ``'(a b)``."""
+    return is_call_of("quote", model)
 
 
 def is_backquoted(model):
@@ -282,6 +303,18 @@ def is_about_lists(package, name):
     return name in GIVE_LISTS.get(package, ()) or name in TAKE_LISTS.get(package, ())
 
 
+FOR_PYTHON = {
+    ("CRAM-LANGUAGE", "WAIT-FOR"): "wait-for",
+    ("CRAM-LANGUAGE-IMPLEMENTATION", "WAIT-FOR"): "wait-for",
+    ("ROSLISP", "CALL-SERVICE"): "call-service",
+    ("ROSLISP", "PUBLISH"): "publish-message",
+    ("ROSLISP", "GET-PARAM"): "get-param",
+    ("ROSLISP", "SET-PARAM"): "set-param",
+    ("ROSLISP", "HAS-PARAM"): "has-param",
+}
+"""Functions that ask more of their arguments, or give other values, in Hy and Python than in Lisp → their names in ``calls``."""
+
+
 def call_of(name):
     """A Hy form for what `calls` calls ``name``."""
     return _ours("calls", name)
@@ -292,7 +325,9 @@ def _ours(*path):
 
 
 def function_form(package, name):
-    """A Hy form for the function that a symbol of a package of ours names now."""
+    """A Hy form for the function that a symbol of a package of ours names now, or for the one that Python has in its place."""
+    if (package, name) in FOR_PYTHON:
+        return call_of(FOR_PYTHON[package, name])
     if name != name.upper() or "_" in name or "." in name or "." in package:
         return models.Expression([call_of("function"), models.String(package), models.String(name)])
     if is_about_lists(package, name):
