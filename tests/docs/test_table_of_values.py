@@ -10,7 +10,7 @@ import pytest
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.ground.printing import prin1_to_string
-from cramhy_runtime.ros import message_building, wire
+from cramhy_runtime.ros import message_building, received, wire
 from cramhy_runtime.ros.python import get_param, message_class, ros_node, set_param
 from cramhy_runtime.ros.roslisp import parameters
 from cramhy_runtime.session import Image
@@ -27,7 +27,7 @@ def as_parameter(value):
 def as_field(kind):
     def sent(value):
         message = wire.transmit(message_class(kind)(data=value))
-        return message_building.msg_slot_value(message, "DATA"), message.data
+        return message_building.msg_slot_value(received.for_lisp(message), "DATA"), received.for_python(message).data
 
     return sent
 
@@ -44,6 +44,7 @@ BORDERS = {
     "a field `float64`": as_field("std_msgs/Float64"),
     "a field `string`": as_field("std_msgs/String"),
     "a field `float64[]`": as_field("std_msgs/Float64MultiArray"),
+    "a field `uint8[]`": as_field("std_msgs/UInt8MultiArray"),
     "a fluent": as_fluent,
 }
 ROWS = [
@@ -61,9 +62,13 @@ ROWS = [
     ("a field `bool`", "True", "T", "True"),
     ("a field `int32`", "3", "3", "3"),
     ("a field `float64`", "3", "3.0d0", "3.0"),
+    ("a field `float64`", "float('inf')", ":POSITIVE-INFINITY", "float('inf')"),
     ("a field `string`", "'ä€'", '"ä€"', "'ä€'"),
     ("a field `float64[]`", "()", "#()", "[]"),
     ("a field `float64[]`", "[1, 2.5]", "#(1.0d0 2.5d0)", "[1.0, 2.5]"),
+    ("a field `float64[]`", "[float('-inf')]", "#(:NEGATIVE-INFINITY)", "[float('-inf')]"),
+    ("a field `uint8[]`", "[1, 255]", "#(1 255)", "bytearray(b'\\x01\\xff')"),
+    ("a field `uint8[]`", "b'\\x01'", "#(1)", "bytearray(b'\\x01')"),
     ("a fluent", "False", "NIL", "False"),
     ("a fluent", "None", "NIL", "None"),
     ("a fluent", "(1, 2)", None, "(1, 2)"),

@@ -10,6 +10,7 @@ import reprlib
 
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
+from .arrays import OCTETS, QUICK
 from .definition_text import INTEGERS
 from .messages import RosMessage
 from .wire import plain
@@ -55,14 +56,14 @@ def _check_of(field: Field) -> Check | None:
     one = _check_of_one(field)
     if one is None or not field.is_array:
         return one
-    narrow = {"uint8": 1, "char": 1}.get(field.base)
+    quick, narrow = QUICK.get(field.base), field.base in OCTETS
 
     def check_all(values: Any, name: str) -> None:
-        if narrow and (values.__class__ in (bytes, bytearray) or getattr(values, "dtype", None) == "uint8"):
+        if narrow and (isinstance(values, (bytes, bytearray)) or getattr(values, "dtype", None) == "uint8"):
             return
         if hasattr(values, "tolist"):
             values = values.tolist()
-        if isinstance(values, (list, tuple)):
+        if isinstance(values, (list, tuple)) and (quick is None or quick(values) is None):
             for index, value in enumerate(values):
                 one(value, f"{name}[{index}]")
 

@@ -61,6 +61,7 @@ __all__ = [
     "lispify",
     "publish_message",
     "set_param",
+    "subscribe_to",
     "lisp_list",
     "lisp_list_ending",
     "make_tag_task",
@@ -182,6 +183,13 @@ def publish_message(topic, message):
     from cramhy_runtime.ros.python import publish
 
     return publish(topic, message)
+
+
+def subscribe_to(topic, topic_type, callback, *, max_queue_length=None):
+    """`ros.python.subscribe`."""
+    from cramhy_runtime.ros.python import subscribe
+
+    return subscribe(topic, topic_type, callback, max_queue_length=max_queue_length)
 
 
 def get_param(key, *default):

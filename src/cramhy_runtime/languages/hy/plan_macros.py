@@ -66,6 +66,7 @@ FOR_PYTHON = {
     ("CRAM-LANGUAGE", "WAIT-FOR"): "wait-for",
     ("CRAM-LANGUAGE-IMPLEMENTATION", "WAIT-FOR"): "wait-for",
     ("ROSLISP", "PUBLISH"): "publish-message",
+    ("ROSLISP", "SUBSCRIBE"): "subscribe-to",
     ("ROSLISP", "GET-PARAM"): "get-param",
     ("ROSLISP", "SET-PARAM"): "set-param",
     ("ROSLISP", "HAS-PARAM"): "has-param",
