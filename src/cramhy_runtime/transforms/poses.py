@@ -10,7 +10,7 @@ from cramhy_runtime.ground.conditions import error, warn, wrong_argument_count
 from cramhy_runtime.ground.data import truth
 from cramhy_runtime.ground.packages import keyword
 
-from .coercion import ByValue, array_elements, instance, no_method, slot_reader
+from .coercion import ByValue, array_elements, instance, no_method, part, slot_reader
 from .quaternions import TOLERANCE, Quaternion, general, inverse, multiply, normalize, normalized, quaternion, rotated, unit, yaw
 from .vectors import Vector3, make_3d_vector, point, vector
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, overload
@@ -29,10 +29,12 @@ class Transform(ByValue):
 
     lisp_name = "CL-TRANSFORMS::TRANSFORM"
     initargs = {"TRANSLATION": "translation", "ROTATION": "rotation"}
+    translation: Vector3 = part("translation", "The move, a vector.")
+    rotation: Quaternion = part("rotation", "The turn, of unit length.")
 
     def __init__(self, translation: Vector3 | None = None, rotation: Rotation | None = None):
-        self.translation = Vector3() if translation is None else translation
-        self.rotation = Quaternion() if rotation is None else unit(rotation)
+        self._translation = Vector3() if translation is None else translation
+        self._rotation = Quaternion() if rotation is None else unit(rotation)
 
     def __repr__(self) -> str:
         return f"#<TRANSFORM {self.translation!r} {self.rotation!r}>"
@@ -43,10 +45,12 @@ class Pose(ByValue):
 
     lisp_name = "CL-TRANSFORMS::POSE"
     initargs = {"ORIGIN": "origin", "ORIENTATION": "orientation"}
+    origin: Vector3 = part("origin", "The place.")
+    orientation: Quaternion = part("orientation", "The direction, of unit length.")
 
     def __init__(self, origin: Vector3 | None = None, orientation: Rotation | None = None):
-        self.origin = Vector3() if origin is None else origin
-        self.orientation = Quaternion() if orientation is None else unit(orientation)
+        self._origin = Vector3() if origin is None else origin
+        self._orientation = Quaternion() if orientation is None else unit(orientation)
 
     def __repr__(self) -> str:
         return f"#<POSE {self.origin!r} {self.orientation!r}>"
@@ -57,10 +61,12 @@ class Twist(ByValue):
 
     lisp_name = "CL-TRANSFORMS::TWIST"
     initargs = {"TRANSLATION": "translation", "ROTATION": "rotation"}
+    translation: Vector3 = part("translation", "The linear part, a vector.")
+    rotation: Vector3 = part("rotation", "The angular part, a vector.")
 
     def __init__(self, translation: Vector3 | None = None, rotation: Vector3 | None = None):
-        self.translation = Vector3() if translation is None else translation
-        self.rotation = Vector3() if rotation is None else rotation
+        self._translation = Vector3() if translation is None else translation
+        self._rotation = Vector3() if rotation is None else rotation
 
 
 class Wrench(ByValue):
@@ -68,8 +74,7 @@ class Wrench(ByValue):
 
     lisp_name = "CL-TRANSFORMS::WRENCH"
     initargs = Twist.initargs
-    translation: Vector3
-    rotation: Vector3
+    translation, rotation = Twist.translation, Twist.rotation
     __init__ = Twist.__init__
 
 
@@ -85,7 +90,7 @@ orientation: Callable[[Pose], Quaternion] = slot_reader("orientation", Pose)
 def unchecked_transform(translation: Vector3, rotation: Quaternion) -> Transform:
     """A transform whose rotation is taken as it is."""
     made = Transform.__new__(Transform)
-    made.translation, made.rotation = translation, rotation
+    made._translation, made._rotation = translation, rotation
     return made
 
 
@@ -186,7 +191,7 @@ def transform(tr: Transform, x: Any) -> Any:
 def unchecked_pose(origin: Vector3, orientation: Quaternion) -> Pose:
     """A pose whose orientation is of unit length already."""
     made = Pose.__new__(Pose)
-    made.origin, made.orientation = origin, orientation
+    made._origin, made._orientation = origin, orientation
     return made
 
 
