@@ -28,6 +28,7 @@ from cramhy_runtime.ground.classes import make_instance
 from cramhy_runtime.ground.packages import is_symbol, keyword, near_names, symbol_name
 from cramhy_runtime.ground.pickling import class_reference, referenced
 from ..utilities.lazy_lists import LazyTail
+from ..utilities.patterns import NOTHING
 from ..utilities.small_functions import current_timestamp
 from .protocol import equate
 from .symbols import DESIG_PROPS
@@ -546,7 +547,8 @@ def value_of(pair):
     """The second element of a property, or nil."""
     rest = pair.cdr
     if isinstance(rest, Cons):
-        return rest.car
+        value = rest.car
+        return None if value is False or value is NOTHING else value
     return None if rest is None else type_error(rest, "LIST")
 
 

@@ -31,6 +31,7 @@ from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.ground.python_names import lisp_spelling
 from cramhy_runtime.prolog.python.ground import reasoning
 from cramhy_runtime.prolog.python.terms import kw, lisp_name, nil_as, python_name, shortened, show, to_lisp, to_python
+from cramhy_runtime.utilities.patterns import NOTHING
 from . import defaults as _defaults  # noqa: F401  the predicates and the generators that come along
 from .classes import ALL, ActionDesignator, Designator, HumanDesignator, LocationDesignator, MotionDesignator, ObjectDesignator, new
 
@@ -200,7 +201,7 @@ def _check_body(field: str, value: Any, annotations: dict[str, Any], of: str) ->
 
 def _pair(pair: Any) -> Cons:
     if isinstance(pair, (tuple, list)) and len(pair) == 2 and isinstance(pair[0], (str, Symbol)):
-        return lisp_list(_key(pair[0]), to_lisp(pair[1]))
+        return lisp_list(_key(pair[0]), to_lisp(pair[1]) if pair[1] is not None else NOTHING)
     raise TypeError(f'{pair!r} is no property. In front of the keyword arguments stand pairs: ("goal", value).')
 
 
@@ -313,7 +314,7 @@ def _value(designator: Designator, entry: Cons) -> Any:
         return to_python(value)
     name = python_name(entry.car.name)
     kind = declaration(designator, name)
-    return to_python(None, nil_as(kind.fields[name], None) if kind is not None else None)
+    return to_python(None, nil_as(kind.fields[name], None) if kind is not None else list)
 
 
 def declaration(designator: Designator, name: str) -> Kind | None:

@@ -128,7 +128,7 @@ def component(index: int) -> Component:
 
 
 class Fixed(property):
-    """A part of a vector, a pose or the like. Python cannot assign it in our own classes, which compare by value; Lisp's `slot-value` can."""
+    """A part of a vector or a pose. Python cannot assign it in our own classes, which compare by value; Lisp's `slot-value` can."""
 
     def __set__(self, obj: Any, value: object) -> None:
         if type(obj).__module__.startswith("cramhy_runtime.t"):  # transforms and tf; classes of users are theirs

@@ -44,6 +44,31 @@ _COMPARED_BY_LISP = (TRUE_CLASSES | {DoubleFloat} | equality.EQUAL_TO_THEMSELVES
 """Classes whose objects only ``equal`` compares, though Python finds more of them equal: ``True`` and 1, ``0.0`` and ``-0.0``."""
 
 
+class Nothing:
+    """The class of `NOTHING`."""
+
+    __slots__ = ()
+
+    def __bool__(self):
+        return False
+
+    def __repr__(self):
+        return "None"
+
+    def __reduce__(self):
+        return "NOTHING"
+
+    def __copy__(self):
+        return self
+
+    def __deepcopy__(self, memo):
+        return self
+
+
+NOTHING = Nothing()
+"""Python's None in a term. There ``nil`` is the empty list, and False is itself. All three are one term, and Lisp gets ``nil`` for each."""
+
+
 def same_atom(a, b):
     """CL ``equal`` for atoms, as a Python bool; the engine's innermost test, so the common kinds come first.
 
@@ -59,6 +84,8 @@ def same_atom(a, b):
         return a == b
     if equality.equal(a, b) is not None:
         return True
+    if a is None or a is False or a is NOTHING:
+        return b is None or b is False or b is NOTHING
     return kind is b.__class__ and kind not in _COMPARED_BY_LISP and _is_value(kind) and bool(a == b)
 
 

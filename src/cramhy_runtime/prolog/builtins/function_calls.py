@@ -18,6 +18,7 @@ from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.source_places import exception_position
 
 from cramhy_runtime.utilities.lazy_lists import force_ll
+from cramhy_runtime.utilities.patterns import NOTHING
 from ..engine.failing_calls import note_place
 from ..symbols import CUT, PROLOG, sym
 from ..terms.terms import TermTail, Var, import_term, raw, resolve, undo, unify
@@ -87,7 +88,7 @@ def _apply(function, arguments):
         return type_error(function, "SYMBOL")
     if function.package is not CUT:
         for item in arguments:
-            if item.__class__ is Cons:
+            if item.__class__ is Cons or item is NOTHING or item is False:
                 arguments = [_whole(item) for item in arguments]
                 break
     code = function.function
@@ -100,7 +101,9 @@ def _apply(function, arguments):
 
 
 def _whole(item):
-    """``item``; if it is a lazy list of ``findall``, compute it completely, as plan code expects of a list."""
+    """``item``, but ``nil`` for Python's None and False. A lazy list of ``findall`` is computed, as plan code expects of a list."""
+    if item is NOTHING or item is False:
+        return None
     if item.__class__ is Cons:
         cell = item
         while cell.__class__ is Cons:
