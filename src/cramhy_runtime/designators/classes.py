@@ -34,7 +34,7 @@ from .protocol import equate
 from .symbols import DESIG_PROPS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from cramhy_runtime.kernel import Task
     from .signatures import MakeDesignator
@@ -147,7 +147,7 @@ _new = object.__new__
 
 def _made(cls: Any, description: Cons | None = None) -> Any:
     """A designator of the class ``cls``, or an object with its slots."""
-    made = _new(_Slots)
+    made: Any = _new(_Slots)
     made.description = description
     made.parent = made.successor = made.effective = made.timestamp = made.data = None
     made.quantifier = A
@@ -225,7 +225,7 @@ class Designator(_Slots):
 
 def attached(designator: Designator) -> dict[str, Any]:
     """The dict in which rooms keep what they found out of ``designator``. Its copies know that, too."""
-    found: dict[str, Any] | None = designator._attached
+    found = designator._attached
     if found is None:
         found = designator._attached = {}
     return found
@@ -375,14 +375,14 @@ def type_keyword(designator):
     return _types.get(designator.__class__)
 
 
-def new(cls, description):
+def new(cls: Any, description: Any) -> Any:
     """A designator of the class ``cls``, made as ``make-instance`` makes it."""
     if cls in STANDARD and not PORTS.classes.customized(cls):
         return _made(cls, description)
     return _maker(cls)(description)
 
 
-def _maker(cls):
+def _maker(cls: Any) -> Any:
     """The function of a description that makes a designator of the class ``cls`` as ``make-instance`` makes it.
 
     It is `_made`, if users have not customized how its objects are made.
@@ -451,20 +451,20 @@ def make_all_designator(class_: Keyword, description: Cons | None = None) -> Des
     return designator
 
 
-def get_all_designators():
+def get_all_designators() -> Cons | None:
     """All living designators, the oldest first."""
     return list_from(living())
 
 
-def living():
+def living() -> list[Designator]:
     """All living designators, the oldest first, as a Python list."""
     return [designator for reference in list(_live.value) if isinstance(designator := reference(), Designator)]
 
 
-def keep_living(kept):
+def keep_living(kept: Iterable[Designator]) -> None:
     """Let `get_all_designators` tell of no designator that exists now, save those in ``kept``."""
-    kept = {id(designator) for designator in kept}
-    _live.value[:] = [reference for reference in _live.value if id(reference()) in kept]
+    numbers = {id(designator) for designator in kept}
+    _live.value[:] = [reference for reference in _live.value if id(reference()) in numbers]
 
 
 # ------------------------------------------------------------------------------------------------------- derived designators

@@ -20,7 +20,7 @@ from .messages import RosMessage, part_class
 from .wire import fresh
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
 M = TypeVar("M", bound="RosMessage")
 Receiver = TypeVar("Receiver", bound="Callable[[Any], Any]")
@@ -77,23 +77,27 @@ def _finiteness(cls: type[RosMessage]) -> Callable[[Any], bool] | None:
     A keyword among them may be a TypeError.
     """
     scope: dict[str, Any] = {"isfinite": math.isfinite}
-    tests = []
-    for field in cls.fields:
-        value = f"message.{field.attribute}"
-        test = "isfinite({0})"
-        if not field.primitive:
-            part = _finiteness(part_class(field.base))
-            if part is None:
-                continue
-            scope[f"finite_{field.attribute}"] = part
-            test = f"finite_{field.attribute}({{0}})"
-        elif field.base not in _FLOATS:
-            continue
-        tests.append(f"all(map({test.partition('(')[0]}, {value}))" if field.is_array else test.format(value))
+    tests = list(_tests(cls, "message", scope))
     lines = [f"return {' and '.join(tests)}"]
     made = generated_function(f"finiteness of {cls.ros_type}", "finite", ["message"], lines, scope) if tests else None
     _finite[cls] = made
     return made
+
+
+def _tests(cls: type[RosMessage], message: str, scope: dict[str, Any]) -> Iterator[str]:
+    """The expressions that are true if the floats of the ``message``, an expression itself, are finite."""
+    for field in cls.fields:
+        value = f"{message}.{field.attribute}"
+        if field.base in _FLOATS:
+            yield f"all(map(isfinite, {value}))" if field.is_array else f"isfinite({value})"
+        elif not field.primitive and not field.is_array:
+            yield from _tests(part_class(field.base), value, scope)
+        elif not field.primitive:
+            part = _finiteness(part_class(field.base))
+            if part is not None:
+                name = f"part{len(scope)}"
+                scope[name] = part
+                yield f"all(map({name}, {value}))"
 
 
 def _changed(message: M, bases: tuple[str, ...], convert: Callable[[Any], Any]) -> M:

@@ -117,22 +117,22 @@ def copy_transform(transform: Transform, *, translation: Vector3 | None = None, 
     """A transform like ``transform`` with parts replaced."""
     instance(transform, Transform, "TRANSFORM")
     return make_transform(
-        transform.translation if translation is None else translation, transform.rotation if rotation is None else rotation
+        transform._translation if translation is None else translation, transform._rotation if rotation is None else rotation
     )
 
 
 def transform_inv(trans: Transform) -> Transform:
     """The transform back."""
     instance(trans, Transform, "TRANS")
-    turned_back = inverse(general(trans.rotation))
-    tx, ty, tz = point(trans.translation)
+    turned_back = inverse(general(trans._rotation))
+    tx, ty, tz = point(trans._translation)
     return _computed(rotated(turned_back, (-tx, -ty, -tz)), turned_back)
 
 
 def moved(trans: Transform, components: Three) -> Three:
     """The components of a point, a tuple, after the transform."""
-    vx, vy, vz = rotated(general(trans.rotation), components)
-    tx, ty, tz = point(trans.translation)
+    vx, vy, vz = rotated(general(trans._rotation), components)
+    tx, ty, tz = point(trans._translation)
     return tx + vx, ty + vy, tz + vz
 
 
@@ -144,7 +144,7 @@ def transform_star(*transforms: Transform) -> Transform:
     for outer in transforms[-2::-1]:
         instance(outer, Transform, "TRANSFORM")
         instance(result, Transform, "TRANSFORM")
-        result = _computed(moved(outer, point(result.translation)), multiply(general(outer.rotation), general(result.rotation)))
+        result = _computed(moved(outer, point(result._translation)), multiply(general(outer._rotation), general(result._rotation)))
     return result
 
 
@@ -213,7 +213,7 @@ def make_2d_pose(x: float, y: float, theta: float) -> Pose:
 def copy_pose(pose: Pose, *, origin: Vector3 | None = None, orientation: Rotation | None = None) -> Pose:
     """A pose like ``pose`` with parts replaced."""
     instance(pose, Pose, "POSE")
-    return make_pose(pose.origin if origin is None else origin, pose.orientation if orientation is None else orientation)
+    return make_pose(pose._origin if origin is None else origin, pose._orientation if orientation is None else orientation)
 
 
 def reference_transform(pose: PoseOrTransform) -> Transform:
@@ -226,20 +226,20 @@ def reference_transform(pose: PoseOrTransform) -> Transform:
 def pose_to_transform(pose: Pose) -> Transform:
     """The transform from the coordinates of ``pose`` to those that it is given in."""
     instance(pose, Pose, "POSE")
-    return unchecked_transform(pose.origin, pose.orientation)
+    return unchecked_transform(pose._origin, pose._orientation)
 
 
 def transform_to_pose(transform: Transform) -> Pose:
     """The pose with the components of a transform."""
     instance(transform, Transform, "TRANSFORM")
-    return make_pose(transform.translation, transform.rotation)
+    return make_pose(transform._translation, transform._rotation)
 
 
 def transform_pose(tr: Transform, p: Pose) -> Pose:
     """The pose ``p`` after the transform ``tr``."""
     instance(tr, Transform, "TR")
     moved = transform_star(tr, pose_to_transform(p))
-    return unchecked_pose(moved.translation, moved.rotation)
+    return unchecked_pose(moved._translation, moved._rotation)
 
 
 # ------------------------------------------------------------------------------------------------------- twists and wrenches
@@ -277,4 +277,4 @@ def copy_wrench(wrench: Wrench, *, translation: Vector3 | None = None, rotation:
 
 def _copy(obj: T, cls: type[T], parameter: str, translation: Vector3 | None, rotation: Vector3 | None) -> T:
     instance(obj, cls, parameter)
-    return cls(obj.translation if translation is None else translation, obj.rotation if rotation is None else rotation)
+    return cls(obj._translation if translation is None else translation, obj._rotation if rotation is None else rotation)
