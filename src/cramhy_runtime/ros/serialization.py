@@ -121,7 +121,7 @@ def _read_field(field: Field, take: Callable[[int], bytes]) -> Any:
     count = field.length or _LENGTH.unpack(take(4))[0]
     if field.base in OCTETS:
         return Octets(take(count))
-    if field.base in _FORMATS and field.base != "bool":
+    if field.base in _FORMATS and field.base not in ("bool", "byte"):
         form = struct.Struct(f"<{count}{_FORMATS[field.base]}")
         numbers = form.unpack(take(form.size))
         return QUICK[field.base](numbers) if field.base in ("float32", "float64") else list(numbers)
@@ -134,6 +134,8 @@ def _read_one(base: str, take: Callable[[int], bytes]) -> Any:
         (number,) = struct.unpack("<" + form, take(struct.calcsize(form)))
         if base == "bool":
             return bool(number)
+        if base == "byte":
+            return number & 255  # as it arrives from a topic
         return lisp_float(number) if base in ("float32", "float64") else number
     if base == "string":
         return take(_LENGTH.unpack(take(4))[0]).decode("utf-8", "replace")
