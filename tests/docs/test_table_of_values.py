@@ -6,10 +6,11 @@ import pytest
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.designators import Action, Motion, action_grounding, desig_prop_value, forget
+from cramhy_runtime.ground.data import python_list
 from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.process_modules import executive, perform
 from cramhy_runtime.prolog import P, V, fact_group, facts_asserted, findall, function, kw, query, remove_fact_group
-from cramhy_runtime.ros import message_building, messages, wire
+from cramhy_runtime.ros import message_building, messages, received, wire
 from cramhy_runtime.ros.python import get_param, message_class, ros_node, set_param
 from cramhy_runtime.ros.roslisp import parameters
 from cramhy_runtime.session import Image
@@ -42,7 +43,7 @@ def as_parameter(value):
 def as_field(kind):
     def sent(value):
         message = wire.transmit(message_class(f"{PACKAGE}/Of{FIELDS.index(kind)}")(data=value))
-        return message_building.msg_slot_value(message, "DATA"), message.data
+        return message_building.msg_slot_value(received.for_lisp(message), "DATA"), received.for_python(message).data
 
     return sent
 
@@ -65,6 +66,13 @@ def as_declared(name):
     return made
 
 
+def as_lisp(goal):
+    """The value of ``?x`` in the first answer that Lisp gets."""
+    answer = python_list(query.prolog(goal.form))[0]
+    return next(pair.cdr for pair in python_list(answer) if pair.car is V.x.symbol)
+    return found
+
+
 def as_fact(value):
     goal = P.table_of_values(V.x)
     with facts_asserted(P.table_of_values(value)), fact_group("table of values") as group:
@@ -73,14 +81,14 @@ def as_fact(value):
     try:
         (answer,) = findall(V.x, goal)
         assert asserted == answer
-        return query.first(goal.form, V.x.symbol), answer
+        return as_lisp(goal), answer
     finally:
         remove_fact_group("table of values")
 
 
 def as_result_of_function(value):
     goal = function(name=P.value_of_table)(lambda: value)(V.x)
-    return query.first(goal.form, V.x.symbol), findall(V.x, goal)[0]
+    return as_lisp(goal), findall(V.x, goal)[0]
 
 
 def as_result_of_plan(value):
@@ -133,13 +141,14 @@ ROWS = [
     ("a field `float32`", "3", "3.0d0", "3.0"),
     ("a field `float64`", "3", "3.0d0", "3.0"),
     ("a field `float64`", "0.1", "0.1d0", "0.1"),
+    ("a field `float64`", "float('inf')", ":POSITIVE-INFINITY", "float('inf')"),
     ("a field `string`", "'ä€'", '"ä€"', "'ä€'"),
     ("a field `string`", "None", '""', "''"),
     ("a field `time`", "1.5", "1.5d0", "1.5"),
     ("a field `duration`", "1.5", "1.5d0", "1.5"),
     ("a field `bool[]`", "[True, False]", "#(T NIL)", "[True, False]"),
-    ("a field `uint8[]`", "b'ab'", "#(97 98)", "[97, 98]"),
-    ("a field `uint8[]`", "np.array([1, 2], np.uint8)", "#(1 2)", "[1, 2]"),
+    ("a field `uint8[]`", "b'ab'", "#(97 98)", "bytearray(b'ab')"),
+    ("a field `uint8[]`", "np.array([1, 2], np.uint8)", "#(1 2)", "bytearray(b'\\x01\\x02')"),
     ("a field `int32[]`", "range(3)", "#(0 1 2)", "[0, 1, 2]"),
     ("a field `int32[]`", "[]", "#()", "[]"),
     ("a field `float64[]`", "()", "#()", "[]"),
@@ -150,6 +159,8 @@ ROWS = [
     ("a field `time[]`", "[1.5]", "#(1.5d0)", "[1.5]"),
     ("a field `geometry_msgs/Point`", "Point(x=1)", None, "Point(x=1)"),
     ("a field `geometry_msgs/Point[]`", "[Point(x=1)]", None, "[Point(x=1)]"),
+    ("a field `float64[]`", "[float('-inf')]", "#(:NEGATIVE-INFINITY)", "[float('-inf')]"),
+    ("a field `uint8[]`", "[1, 255]", "#(1 255)", "bytearray(b'\\x01\\xff')"),
     ("a fluent", "False", "NIL", "False"),
     ("a fluent", "None", "NIL", "None"),
     ("a fluent", "'a'", '"a"', "'a'"),
@@ -157,15 +168,15 @@ ROWS = [
     ("a fluent", "[]", "#()", "[]"),
     ("a fluent", "(1, 2)", None, "(1, 2)"),
     ("a fluent", "{'a': 1}", None, "{'a': 1}"),
-    ("a property", "False", "NIL", "None"),
+    ("a property", "False", "NIL", "False"),
     ("a property", "True", "T", "True"),
     ("a property", "3", "3", "3"),
     ("a property", "1.5", "1.5", "1.5"),
     ("a property", "'a'", '"a"', "'a'"),
     ("a property", "kw.left", ":LEFT", "kw.left"),
     ("a property", "P.cup", "PYTHON-USER:CUP", "P.cup"),
-    ("a property", "[]", "NIL", "None"),
-    ("a property", "['a', False]", '("a" NIL)', "['a', None]"),
+    ("a property", "[]", "NIL", "[]"),
+    ("a property", "['a', False]", '("a" NIL)', "['a', False]"),
     ("a property", "(1, 2)", "(1 2)", "[1, 2]"),
     ("a property", "{'a': 1}", None, "{'a': 1}"),
     ("a property", "{2, 1}", None, "{1, 2}"),
@@ -173,8 +184,8 @@ ROWS = [
     ("a property declared `bool`", "True", "T", "True"),
     ("a property declared `list`", "[]", "NIL", "[]"),
     ("a property declared `list`", "[1]", "(1)", "[1]"),
-    ("a fact", "False", "NIL", "[]"),
-    ("a fact", "None", "NIL", "[]"),
+    ("a fact", "False", "NIL", "False"),
+    ("a fact", "None", "NIL", "None"),
     ("a fact", "True", "T", "True"),
     ("a fact", "3", "3", "3"),
     ("a fact", "1.5", "1.5", "1.5"),
@@ -182,12 +193,12 @@ ROWS = [
     ("a fact", "kw.left", ":LEFT", "kw.left"),
     ("a fact", "P.cup", "PYTHON-USER:CUP", "P.cup"),
     ("a fact", "[]", "NIL", "[]"),
-    ("a fact", "['a', False]", '("a" NIL)', "['a', []]"),
+    ("a fact", "['a', False, None]", '("a" NIL NIL)', "['a', False, None]"),
     ("a fact", "(1, 2)", "(1 2)", "[1, 2]"),
     ("a fact", "{'a': 1}", None, "{'a': 1}"),
     ("a fact", "{2, 1}", "(1 2)", "[1, 2]"),
-    ("the result of a `@function`", "False", "NIL", "[]"),
-    ("the result of a `@function`", "None", "NIL", "[]"),
+    ("the result of a `@function`", "False", "NIL", "False"),
+    ("the result of a `@function`", "None", "NIL", "None"),
     ("the result of a `@function`", "True", "T", "True"),
     ("the result of a `@function`", "3", "3", "3"),
     ("the result of a `@function`", "1.5", "1.5", "1.5"),
@@ -195,7 +206,7 @@ ROWS = [
     ("the result of a `@function`", "kw.left", ":LEFT", "kw.left"),
     ("the result of a `@function`", "P.cup", "PYTHON-USER:CUP", "P.cup"),
     ("the result of a `@function`", "[]", "NIL", "[]"),
-    ("the result of a `@function`", "['a', False]", '("a" NIL)', "['a', []]"),
+    ("the result of a `@function`", "['a', False]", '("a" NIL)', "['a', False]"),
     ("the result of a `@function`", "(1, 2)", "(1 2)", "[1, 2]"),
     ("the result of a `@function`", "{'a': 1}", None, "{'a': 1}"),
     ("the result of a `@function`", "{2, 1}", "(1 2)", "[1, 2]"),

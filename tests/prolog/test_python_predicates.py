@@ -87,8 +87,8 @@ def test_what_nil_is_for_a_function_is_said_by_its_annotation():
         got.append([plain, items, flag, name, other])
         return True
 
-    assert holds(takes(None, None, None, None, None))
-    assert got == [[[], [], False, None, []]]
+    assert holds(takes([], [], [], [], [])) and holds(takes(None, None, None, None, None)) and holds(takes(*[False] * 5))
+    assert got == [[[], [], False, None, []], [None] * 5, [False] * 5]
 
 
 @pytest.mark.skipif(sys.version_info < (3, 14), reason="Python computes annotations when it defines the function")

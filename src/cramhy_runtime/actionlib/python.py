@@ -18,6 +18,9 @@ from __future__ import annotations
 
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar
 
+from cramhy_runtime.ros.messages import RosMessage
+from cramhy_runtime.ros.received import for_python
+
 from . import calls, server
 from .client import ActionClient
 from .goals import ABORTED, PREEMPTED, SUCCEEDED
@@ -26,7 +29,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from cramhy_runtime.ground.data import Keyword
-    from cramhy_runtime.ros.messages import RosMessage
 
 F = TypeVar("F", bound="Callable[..., object]")
 
@@ -40,7 +42,7 @@ def action_server(name: str, action_type: str) -> Callable[[F], F]:
     """
 
     def serve(function: F) -> F:
-        server.start_action_server(name, action_type, function, separate_thread=True)
+        server.start_action_server(name, action_type, lambda goal: function(for_python(goal)), separate_thread=True)
         return function
 
     return serve
@@ -111,5 +113,6 @@ def call_goal(
         goal = make_goal(client, **fields)
     elif fields:
         raise TypeError("call_goal was given a goal and fields of one. Give one of them: call_goal(client, order=3).")
-    result, state = calls.call_goal(client, goal, timeout=time_limit, feedback_cb=on_feedback)
-    return result, state
+    heard = None if on_feedback is None else lambda feedback: on_feedback(for_python(feedback))
+    result, state = calls.call_goal(client, goal, timeout=time_limit, feedback_cb=heard)
+    return for_python(result) if isinstance(result, RosMessage) else result, state

@@ -22,7 +22,7 @@ from cramhy_runtime import __version__, kernel, storage
 from cramhy_runtime.ground.condition_types import SimpleWarning
 from cramhy_runtime.ground.conditions import warn
 from ..ros import graph
-from ..ros.message_json import MessageJsonError, text_of, to_json_text
+from ..ros.message_json import MessageJsonError, text_of, to_record_text
 from . import chronicler, robot_scene, scene
 from .chunk_index import pack_indexes
 from .chunks import first_chunk
@@ -168,7 +168,7 @@ class Recorder:
 
     def _write(self, topic, message):
         try:
-            text = to_json_text(message)
+            text = to_record_text(message)
         except MessageJsonError as problem:
             warn(SimpleWarning("A message on ~a is not in the recording ~a: ~a", topic, self.path, str(problem)))
             return

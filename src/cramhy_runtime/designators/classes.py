@@ -28,12 +28,13 @@ from cramhy_runtime.ground.classes import make_instance
 from cramhy_runtime.ground.packages import is_symbol, keyword, near_names, symbol_name
 from cramhy_runtime.ground.pickling import class_reference, referenced
 from ..utilities.lazy_lists import LazyTail
+from ..utilities.patterns import NOTHING
 from ..utilities.small_functions import current_timestamp
 from .protocol import equate
 from .symbols import DESIG_PROPS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from cramhy_runtime.kernel import Task
     from .signatures import MakeDesignator
@@ -43,7 +44,6 @@ DESCRIPTION = keyword("DESCRIPTION")
 IN_ERROR_TEXT = special(Symbol("*IN-ERROR-TEXT*"))
 """True while the text of an error is made, which must not cause an error itself."""
 _object_ids = itertools.count(1)
-_live = Cell({}, fresh=True)  # a weak reference to each living designator, in the order of their making: a run must not depend on addresses
 _classes: dict[Any, Any] = per_image({})  # type keyword -> class, or the symbol that is to name it
 _types: dict[type, Any] = per_image({})  # class -> the first keyword registered for it
 _makers: dict[Any, Any] = per_image({})  # type keyword -> the function of a description that makes such a designator, until methods change
@@ -77,8 +77,8 @@ class DesignatorError(SimpleError):
     about: Designator | None = None  # that could not be resolved; the slot DESIGNATOR stays as the original leaves it
 
 
-class Designator:
-    """The root of all designators; see the table of slots in designators.md 2."""
+class _Slots:
+    """The slots of a designator. One is made as an object of this class, since assignments to a `Designator` are checked, which is slow."""
 
     __slots__ = (
         "description",
@@ -93,9 +93,78 @@ class Designator:
         "_object_id",
         "callbacks",
         "resolver",
+        "_attached",
         "__weakref__",
-        "__dict__",
     )
+    if TYPE_CHECKING:
+        description: Cons | None
+        parent: Designator | None
+        successor: Designator | None
+        effective: bool | None
+        timestamp: float | None
+        data: Any
+        quantifier: Keyword
+        solutions: object
+        current_solution: Any
+        _object_id: object
+        callbacks: list[Callable[[Designator], object]] | None
+        resolver: Task[object] | None  # the kernel task that resolves it now
+        _attached: dict[str, Any] | None
+
+
+def setter(name: str) -> Callable[[Designator, object], None]:
+    """The function that sets the slot ``name`` of a designator. An assignment is checked (``python_kinds.py``), and slower."""
+    return getattr(_Slots, name).__set__  # type: ignore[no-any-return]
+
+
+class _Living(list["ref[Designator]"]):
+    """Weak references to designators, in the order of their making: a run must not depend on addresses.
+
+    Those to designators that are gone stay for a while; a reference that removes itself takes as long as the rest of a designator.
+    """
+
+    __slots__ = ("limit",)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.limit = 64
+
+    def copy(self) -> _Living:
+        """Those for another image."""
+        found = _Living()
+        found[:] = self
+        return found
+
+    def shorten(self) -> None:
+        """Remove the references to designators that are gone."""
+        self[:] = [reference for reference in self if reference() is not None]
+        self.limit = 2 * len(self) + 64
+
+
+_live = Cell(_Living(), fresh=True)
+_new = object.__new__
+
+
+def _made(cls: Any, description: Cons | None = None) -> Any:
+    """A designator of the class ``cls``, or an object with its slots."""
+    made: Any = _new(_Slots)
+    made.description = description
+    made.parent = made.successor = made.effective = made.timestamp = made.data = None
+    made.quantifier = A
+    made.solutions = UNBOUND
+    made.current_solution = made._object_id = made.callbacks = made.resolver = made._attached = None
+    made.__class__ = cls
+    living_ones = _live.value
+    living_ones.append(ref(made))
+    if len(living_ones) > living_ones.limit:
+        living_ones.shorten()
+    return made
+
+
+class Designator(_Slots):
+    """The root of all designators; see the table of slots in designators.md 2."""
+
+    __slots__ = ()
     lisp_name = "CRAM-DESIGNATORS::DESIGNATOR"
     initargs = {
         "DESCRIPTION": "description",
@@ -111,20 +180,11 @@ class Designator:
     }
 
     def __init__(self, description: Cons | None = None, parent: Designator | None = None):
-        self.description = description
+        filled = _made(_Slots, description)
+        for name in _Slots.__slots__[:-1]:
+            setattr(self, name, getattr(filled, name))
         self.parent = parent
-        self.successor: Designator | None = None
-        self.effective: bool | None = None
-        self.timestamp: float | None = None
-        self.data: Any = None
-        self.quantifier = A
-        self.solutions: object = UNBOUND
-        self.current_solution: Any = None
-        self._object_id: object = None
-        self.callbacks: list[Callable[[Designator], object]] | None = None
-        self.resolver: Task[object] | None = None  # the kernel task that resolves it now
-        living_ones = _live.value
-        living_ones[ref(self, living_ones.pop)] = None
+        _live.value.append(ref(self))
 
     @property
     def object_id(self) -> object:
@@ -163,6 +223,14 @@ class Designator:
         _fill(self, state)
 
 
+def attached(designator: Designator) -> dict[str, Any]:
+    """The dict in which rooms keep what they found out of ``designator``. Its copies know that, too."""
+    found = designator._attached
+    if found is None:
+        found = designator._attached = {}
+    return found
+
+
 def blank(cls: type[Any], name: Symbol | None = None) -> Designator:
     """A designator of the class ``cls``, or of the one with the Lisp name ``name`` if there is one, with nothing in it."""
     cls = referenced(cls, name)
@@ -184,7 +252,9 @@ def _state(designator: Designator) -> dict[str, Any]:
     """The slots of ``designator`` that a copy has, too."""
     slots = [slot for cls in type(designator).__mro__ for slot in getattr(cls, "__slots__", ()) if slot not in _OF_THE_PROCESS]
     state = {slot: getattr(designator, slot) for slot in slots if hasattr(type(designator), slot) and _has(designator, slot)}
-    return {**state, **designator.__dict__}
+    if designator._attached:
+        state["_attached"] = dict(designator._attached)
+    return {**state, **getattr(designator, "__dict__", {})}
 
 
 def _computed(solutions: Any) -> Any:
@@ -310,18 +380,20 @@ def type_keyword(designator):
     return _types.get(designator.__class__)
 
 
-def new(cls, description):
+def new(cls: Any, description: Any) -> Any:
     """A designator of the class ``cls``, made as ``make-instance`` makes it."""
+    if cls in STANDARD and not PORTS.classes.customized(cls):
+        return _made(cls, description)
     return _maker(cls)(description)
 
 
-def _maker(cls):
+def _maker(cls: Any) -> Any:
     """The function of a description that makes a designator of the class ``cls`` as ``make-instance`` makes it.
 
-    It is the class itself, if users have not customized how its objects are made.
+    It is `_made`, if users have not customized how its objects are made.
     """
     if cls in STANDARD and not PORTS.classes.customized(cls):
-        return cls
+        return functools.partial(_made, cls)
     return functools.partial(make_instance, cls, DESCRIPTION)
 
 
@@ -384,23 +456,20 @@ def make_all_designator(class_: Keyword, description: Cons | None = None) -> Des
     return designator
 
 
-def get_all_designators():
+def get_all_designators() -> Cons | None:
     """All living designators, the oldest first."""
     return list_from(living())
 
 
-def living():
+def living() -> list[Designator]:
     """All living designators, the oldest first, as a Python list."""
-    return [designator for reference in list(_live.value) if (designator := reference()) is not None]
+    return [designator for reference in list(_live.value) if isinstance(designator := reference(), Designator)]
 
 
-def keep_living(kept):
+def keep_living(kept: Iterable[Designator]) -> None:
     """Let `get_all_designators` tell of no designator that exists now, save those in ``kept``."""
-    kept = {id(designator) for designator in kept}
-    living_ones = _live.value
-    for reference in list(living_ones):
-        if id(reference()) not in kept:
-            living_ones.pop(reference, None)
+    numbers = {id(designator) for designator in kept}
+    _live.value[:] = [reference for reference in _live.value if id(reference()) in numbers]
 
 
 # ------------------------------------------------------------------------------------------------------- derived designators
@@ -483,7 +552,8 @@ def value_of(pair):
     """The second element of a property, or nil."""
     rest = pair.cdr
     if isinstance(rest, Cons):
-        return rest.car
+        value = rest.car
+        return None if value is False or value is NOTHING else value
     return None if rest is None else type_error(rest, "LIST")
 
 

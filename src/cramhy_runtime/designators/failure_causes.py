@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
+from .classes import attached
+
 if TYPE_CHECKING:
     from .classes import Designator
 
@@ -16,9 +18,9 @@ _CAUSES = "_causes_of_failure"
 
 def note_causes(designator: Designator, causes: dict[str, bool]) -> None:
     """Remember the keys of ``causes``, texts about Lisp functions that signalled while ``designator`` was resolved."""
-    designator.__dict__[_CAUSES] = causes
+    attached(designator)[_CAUSES] = causes
 
 
 def because(designator: Designator, explanation: str) -> str:
     """``explanation`` of why ``designator`` is not resolved, after what is known of its causes."""
-    return "\n".join([*designator.__dict__.get(_CAUSES, ()), explanation])
+    return "\n".join([*attached(designator).get(_CAUSES, ()), explanation])

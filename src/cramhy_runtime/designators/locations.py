@@ -24,7 +24,7 @@ from cramhy_runtime.prolog.engine.database import extended
 from ..prolog.query import ask
 from cramhy_runtime.prolog.terms.terms import Var
 from ..utilities.lazy_lists import beginning, from_iterator, lazy_cdr, tail
-from .classes import LocationDesignator
+from .classes import LocationDesignator, attached
 from .failure_causes import because, note_causes
 from .protocol import designator_solutions_equal, next_solution
 from .symbols import sym
@@ -154,13 +154,13 @@ def location_solutions(designator):
     search = Search(designator)
     solutions = beginning(search.rest)
     if solutions is None:
-        designator.__dict__["search"] = search
+        attached(designator)["search"] = search
     return solutions
 
 
 def why_no_place(designator):
     """A function that makes a text: why the last search for ``designator`` found no place."""
-    search = designator.__dict__.pop("search")
+    search = attached(designator).pop("search")
     return lambda: because(designator, search.account())
 
 

@@ -31,7 +31,8 @@ from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.ground.python_names import lisp_spelling
 from cramhy_runtime.prolog.python.ground import reasoning
 from cramhy_runtime.prolog.python.spelling import lisp_name, python_name
-from cramhy_runtime.prolog.python.terms import kw, nil_as, show, to_lisp, to_python
+from cramhy_runtime.prolog.python.terms import kw, nil_as, shortened, show, to_lisp, to_python
+from cramhy_runtime.utilities.patterns import NOTHING
 from . import defaults as _defaults  # noqa: F401  the predicates and the generators that come along
 from .classes import ALL, ActionDesignator, Designator, HumanDesignator, LocationDesignator, MotionDesignator, ObjectDesignator, new
 
@@ -44,6 +45,7 @@ D = TypeVar("D", bound=Designator)
 TYPE = kw.type
 _OWN = frozenset(name for cls in Designator.__mro__ for name in vars(cls) if not name.startswith("_"))
 """The attributes that every designator has beside its properties."""
+_SLOTS = frozenset(name for cls in Designator.__mro__ for name in getattr(cls, "__slots__", ()))
 _declared: dict[tuple[type, Keyword], list[Kind]] = per_image({})
 """(class of designators, type) → the classes that declare it, the newest first."""
 
@@ -219,7 +221,7 @@ def _check_body(field: str, value: Any, annotations: dict[str, Any], of: str) ->
 
 def _pair(pair: Any) -> Cons:
     if isinstance(pair, (tuple, list)) and len(pair) == 2 and isinstance(pair[0], (str, Symbol)):
-        return lisp_list(_key(pair[0]), to_lisp(pair[1]))
+        return lisp_list(_key(pair[0]), to_lisp(pair[1]) if pair[1] is not None else NOTHING)
     raise TypeError(f'{pair!r} is no property. In front of the keyword arguments stand pairs: ("goal", value).')
 
 
@@ -338,7 +340,7 @@ def _value(designator: Designator, entry: Cons) -> Any:
         return to_python(value)
     name = python_name(entry.car.name)
     kind = declaration(designator, name)
-    return to_python(None, nil_as(kind.fields[name], None) if kind is not None else None)
+    return to_python(None, nil_as(kind.fields[name], None) if kind is not None else list)
 
 
 def declaration(designator: Designator, name: str) -> Kind | None:
@@ -381,6 +383,33 @@ def _item(self: Designator, key: str | Symbol) -> Any:
     return _value(self, found)
 
 
+def _assigned(self: Designator, name: str, value: object) -> None:
+    """Set a slot of the designator, not a property, nor an attribute that it does not have."""
+    cls = type(self)
+    if name in _SLOTS or name[:2] == "__" or hasattr(getattr(cls, name, None), "__set__"):
+        object.__setattr__(self, name, value)
+    elif cls.__dictoffset__ and _entry(self, lisp_name(name)) is None:
+        object.__setattr__(self, name, value)  # a class of Lisp's or of users' has slots of its own
+    else:
+        raise AttributeError(_unchanged(self, name, value), name=name, obj=self)
+
+
+def _item_assigned(self: Designator, key: str | Symbol, value: object) -> None:
+    raise TypeError(_unchanged(self, key if isinstance(key, str) else python_name(key.name), value))
+
+
+def _item_deleted(self: Designator, key: str | Symbol) -> None:
+    _item_assigned(self, key, None)
+
+
+def _unchanged(designator: Designator, name: str, value: object) -> str:
+    kind = type_name(designator)
+    return (
+        f"The properties of a designator do not change: {name} cannot be set. Make another one, which has the new value: "
+        f"replace({kind}, {name}={shortened(value)}), from cramhy_runtime.designators."
+    )
+
+
 def _contains(self: Designator, key: str | Symbol) -> bool:
     return _entry(self, _key(key).name) is not None
 
@@ -397,7 +426,10 @@ def _names(self: Designator) -> list[str]:
 
 for _special, _function in (
     ("__getattr__", _attribute),
+    ("__setattr__", _assigned),
     ("__getitem__", _item),
+    ("__setitem__", _item_assigned),
+    ("__delitem__", _item_deleted),
     ("__contains__", _contains),
     ("__iter__", None),
     ("__repr__", _representation),

@@ -18,7 +18,7 @@ from cramhy_runtime.ground.data import UNSUPPLIED, Cons
 from cramhy_runtime.prolog.python.ground import reasoning
 from cramhy_runtime.prolog.python.terms import in_python_names, to_lisp, to_python
 from . import equating, protocol
-from .classes import Designator, DesignatorError
+from .classes import attached, Designator, DesignatorError
 from .resolution import known
 
 P = ParamSpec("P")
@@ -65,9 +65,9 @@ def _as_python(designator: Designator, found: Any) -> Any:
     """A solution as Python sees it; a list is the same Python list each time."""
     if found.__class__ is not Cons:
         return to_python(found)
-    known_as = designator.__dict__.get("in_python")
+    known_as = attached(designator).get("in_python")
     if known_as is None or known_as[0] is not found:
-        known_as = designator.__dict__["in_python"] = (found, to_python(found))
+        known_as = attached(designator)["in_python"] = (found, to_python(found))
     return known_as[1]
 
 

@@ -32,6 +32,7 @@ from .classes import (
     MotionDesignator,
     ObjectDesignator,
     new,
+    setter,
 )
 from .equating import youngest
 from .failure_causes import note_causes
@@ -70,6 +71,10 @@ The distance between two effective designators; nil if one is not effective.""",
 )
 
 
+set_resolver, set_effective, set_timestamp = setter("resolver"), setter("effective"), setter("timestamp")
+set_solutions, set_data, set_current_solution = setter("solutions"), setter("data"), setter("current_solution")
+
+
 def unresolved(designator, control, told=None):
     """Signal that ``designator`` cannot be resolved, with the text ``control``. ``told`` is a function that makes the hint."""
     problem = DesignatorError(control, designator)
@@ -98,15 +103,15 @@ def _reference(designator=UNSUPPLIED, role=UNSUPPLIED, *more):
     me = kernel.current()
     while designator.resolver is not None:
         await_resolver(designator, me)
-    designator.resolver = me
+    set_resolver(designator, me)
     try:
         result = resolve_designator(designator, DEFAULT_ROLE.value if role is UNSUPPLIED else role)
-        designator.effective = True
+        set_effective(designator, True)
         if designator.timestamp is None:
-            designator.timestamp = current_timestamp()
+            set_timestamp(designator, current_timestamp())
         return result
     finally:
-        designator.resolver = None
+        set_resolver(designator, None)
         serve(designator)
 
 
@@ -149,25 +154,26 @@ def _resolve_by_prolog(designator, role=None):
     if solutions is UNBOUND:
         predicate = MOTION_GROUNDING if isinstance(designator, MotionDesignator) else ACTION_GROUNDING
         proof = Groundings(predicate, designator)
-        solutions = designator.solutions = beginning(proof.rest)
+        solutions = beginning(proof.rest)
+        set_solutions(designator, solutions)
         if solutions is None and proof.warned is not None:
             note_causes(designator, proof.warned.causes)
     value = solutions.car if solutions is not None else None
     if value is None:
         kind = "motion" if isinstance(designator, MotionDesignator) else "action"
         return unresolved(designator, f"Cannot resolve {kind} designator ~a.")
-    designator.data = value
+    set_data(designator, value)
     return value
 
 
 @resolve_designator.method(LocationDesignator, None)
 def _resolve_location(designator, role=None):
     if designator.data is None:
-        designator.data = location_solutions(designator)
+        set_data(designator, location_solutions(designator))
         if designator.data is None:
             return unresolved(designator, "Unable to resolve designator `~a'", told=why_no_place(designator))
     if designator.current_solution is None:
-        designator.current_solution = lazy_car(designator.data)
+        set_current_solution(designator, lazy_car(designator.data))
     return designator.current_solution
 
 
@@ -191,7 +197,7 @@ def _next_location(designator):
     if rest is None:
         return None
     successor = new(designator.__class__, designator.description)
-    successor.data = rest
+    set_data(successor, rest)
     return equate(designator, successor)
 
 
@@ -212,7 +218,7 @@ def _next_grounding(designator):
     if rest is None:
         return None
     successor = new(ActionDesignator if isinstance(designator, ActionDesignator) else MotionDesignator, designator.description)
-    successor.solutions = rest
+    set_solutions(successor, rest)
     return equate(designator, successor)
 
 

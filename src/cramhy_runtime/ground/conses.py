@@ -79,12 +79,9 @@ class Cons:
         while True:
             for _ in STRETCH:
                 yield cell.car
-                rest = cell.cdr
-                if rest.__class__ is not Cons:
-                    rest = cell._computed_rest()
-                    if rest is None:
-                        return
-                cell = rest
+                cell = cell.cdr
+                if cell.__class__ is not Cons and (cell is None or (cell := _computed(cell)) is None):
+                    return
             checkpoint()
 
     def _computed_rest(self) -> Cons | None:
@@ -103,17 +100,17 @@ class Cons:
         count, cell, lazy = 1, self, 0
         while True:
             for _ in STRETCH:
-                rest = cell.cdr
-                if rest.__class__ is not Cons:
-                    rest, lazy = cell._computed_rest(), lazy + 1
-                    if rest is None:
+                cell = cell.cdr
+                if cell.__class__ is not Cons:
+                    if cell is None or (cell := _computed(cell)) is None:
                         return count
+                    lazy += 1
                     if lazy > ENDLESS:
                         raise OverflowError(
                             f"This lazy list has given {ENDLESS} elements and goes on, so it has no length. "
                             "Take as many as you need: itertools.islice(answers, 10)."
                         )
-                cell, count = rest, count + 1
+                count += 1
             checkpoint()
             if count > ENDLESS > count - len(STRETCH) - 1 and isinstance(list_end(self), Cons):
                 raise OverflowError("This list is circular, so it has no length.")
@@ -143,7 +140,7 @@ class Cons:
             for item in self:
                 if not _same_elements(item, next(theirs, UNSUPPLIED)):
                     return False
-            return next(theirs, UNSUPPLIED) is UNSUPPLIED and list_end(self) is None
+            return next(theirs, UNSUPPLIED) is UNSUPPLIED and _computed_end(self) is None
         return NotImplemented
 
     __hash__ = object.__hash__
@@ -167,6 +164,20 @@ class Cons:
         if cell is not None:
             parts += [".", "..." if isinstance(cell, Cons) else repr(cell)]
         return "(" + " ".join(parts) + ")"
+
+
+def _computed(rest):
+    """The cons that ``rest``, the end of what is computed of a list, stands for; ``None`` if the list ends there."""
+    if isinstance(rest, LazyRest):
+        rest = rest.computed()
+    return rest if isinstance(rest, Cons) else None
+
+
+def _computed_end(cell):
+    """What ends the list ``cell``, which has been iterated."""
+    while (rest := cell._computed_rest()) is not None:
+        cell = rest
+    return cell.cdr
 
 
 Sequence.register(Cons)  # for ``match``, and for who asks whether something is a sequence

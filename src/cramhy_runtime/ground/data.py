@@ -149,8 +149,8 @@ class Keyword(Symbol):
 
     def __eq__(self, other: object) -> bool:
         """Whether they are the same object. It warns who compares a keyword with the text of its name, which is never equal."""
-        if self is other:
-            return True
+        if other.__class__ is Keyword:
+            return self is other
         if other.__class__ in STANDS_FOR:
             return STANDS_FOR[other.__class__](other) is self
         if isinstance(other, str) and other.lstrip(":").upper().replace("_", "-") == self.name:

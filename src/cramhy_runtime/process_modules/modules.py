@@ -26,7 +26,7 @@ from cramhy_runtime.cpl.fluents.fluents import make_fluent
 from ..cpl.statuses import EVAPORATED
 from cramhy_runtime.cpl.statuses import FAILED as TASK_FAILED
 from ..cpl.task_variables import inherit
-from ..designators.classes import Designator
+from ..designators.classes import Designator, attached
 from ..designators.equating import current_desig
 from cramhy_runtime.ground.python_exceptions import from_python
 from cramhy_runtime.ground.conditions import DEBUGGER_HOOK, Error, enter_debugger, error, handler_bind, restart_case, type_error
@@ -112,13 +112,13 @@ class Results:
         inputs, number = self._inputs, id(designator)
         inputs.pop(number, None)
         inputs[number] = weakref.ref(designator, lambda gone: inputs.pop(number, None))
-        designator.__dict__.setdefault("_results_of_modules", {})[self._key] = values
+        attached(designator).setdefault("_results_of_modules", {})[self._key] = values
 
     def take(self, wanted):
         """Take the values for the first designator in ``wanted`` that has some, or for any designator if it is empty; or ``None``."""
         for number in [id(designator) for designator in wanted] or list(self._inputs):
             if number in self._inputs:
-                return self._inputs.pop(number)().__dict__["_results_of_modules"].pop(self._key)
+                return attached(self._inputs.pop(number)())["_results_of_modules"].pop(self._key)
         return None
 
 

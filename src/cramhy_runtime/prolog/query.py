@@ -26,7 +26,7 @@ from .engine.database import find_predicate
 from cramhy_runtime.utilities.lazy_lists import beginning, tail
 from .engine.joins import find_join
 from .engine.machine import SOLVED, Machine
-from cramhy_runtime.utilities.patterns import ANONYMOUS, entry, var_value, variables_of
+from cramhy_runtime.utilities.patterns import ANONYMOUS, entry, for_lisp, var_value, variables_of
 from .terms.terms import UNSET, Var, import_term, resolve
 
 _PLAIN = frozenset([Symbol, Keyword, int, str, float, DoubleFloat])
@@ -62,6 +62,7 @@ class Proof(Machine):
                 value = resolve(variable)
                 if value is symbol:
                     continue
+                value = for_lisp(value)
             result = Cons(Cons(symbol, value), result)
         return result
 

@@ -13,7 +13,7 @@ from cramhy_runtime.ground.data import Symbol, list_from
 from cramhy_runtime.ground.packages import find_package_or_error, keyword, sym
 from cramhy_runtime.robot_world.placements import Placement, of_pose
 from cramhy_runtime.robot_world.pictures import movies, stills, views
-from cramhy_runtime.tf.stamped import PoseStamped
+from cramhy_runtime.tf.stamped import PoseStamped, copy_pose_stamped
 
 from .libraries import lisp, load
 from .poses import Place, at, pose_of
@@ -96,8 +96,7 @@ class World:
         placement: Placement = (self.robot if name is None else self._thing(name)).placement
         x, y, z = map(float, placement.position)
         made = at(x, y, z)
-        made.orientation = placement.pose().orientation
-        return made
+        return copy_pose_stamped(made, orientation=placement.pose().orientation)
 
     def place(self, name: Name | None = None) -> tuple[float, float, float]:
         """Where a thing is, in whole millimetres; by default the robot."""

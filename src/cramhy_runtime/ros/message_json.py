@@ -4,7 +4,7 @@
 would get. The data come from outside, so anything wrong in them raises `MessageJsonError`. A page with many turtles needs
 thousands of messages per second, so each type has one generated Python function per direction.
 
-* A number that is not finite is written as null, and null is read as not-a-number.
+* A number that is not finite is written as null, and null is read as not-a-number. Recordings keep infinities (`to_record_text`).
 * ``uint8[]`` and ``char[]`` are written as base64 texts, and read from base64 texts or lists.
 * A time is written as ``{"secs", "nsecs"}``; ROS 2's ``{"sec", "nanosec"}`` and ``"now"`` are read too.
 * Texts are Unicode on both sides, as they are in UTF-8 on ROS's wire.
@@ -24,9 +24,9 @@ from cramhy_runtime.ground.data import DoubleFloat, LispString, truth
 from cramhy_runtime.ground.numbers import is_real, single
 from cramhy_runtime.utilities.generated_functions import generated_function
 from . import messages
+from .arrays import NONFINITE, QUICK, Octets, as_float, lisp_float
 from .definition_text import INTEGERS
 from .messages import RosMessage
-from .wire import NONFINITE, lisp_float
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NamedTuple, Self, TypeVar
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ class MessageJsonError(ValueError):
 
 def to_json(message: RosMessage) -> dict[str, Any]:
     """``message`` as plain data for ``json.dumps``: a dict by field name. A value without JSON raises `MessageJsonError`."""
-    encode: Callable[[RosMessage], dict[str, Any]] = _as_data.encoders.get(message.__class__) or _encoder(message.__class__, _as_data)
+    encode: Callable[[RosMessage], dict[str, Any]] = DATA_FORM.encoders.get(message.__class__) or encoder(message.__class__, DATA_FORM)
     try:
         return encode(message)
     except (TypeError, ValueError, AttributeError, OverflowError):  # infinities as symbols, and what nobody has checked yet
@@ -101,10 +101,23 @@ def to_json(message: RosMessage) -> dict[str, Any]:
 def to_json_text(message: RosMessage) -> str:
     """The text of ``message``: what `text_of` makes of `to_json`, but faster. A value without JSON raises `MessageJsonError`."""
     try:
-        encode: Callable[[RosMessage], str] = _as_text.encoders.get(message.__class__) or _encoder(message.__class__, _as_text)
+        encode: Callable[[RosMessage], str] = _as_text.encoders.get(message.__class__) or encoder(message.__class__, _as_text)
         return encode(message)
     except (TypeError, ValueError, AttributeError, OverflowError):
         return text_of(to_json(message))
+
+
+def to_record_text(message: RosMessage) -> str:
+    """As `to_json_text`, but an infinity is written as ``1e999``, which readers of JSON take for one: a recording keeps it."""
+    try:
+        encode: Callable[[RosMessage], str] = _as_text.encoders.get(message.__class__) or encoder(message.__class__, _as_text)
+        return encode(message)
+    except (TypeError, ValueError, AttributeError, OverflowError):
+        try:
+            encode = _as_record.encoders.get(message.__class__) or encoder(message.__class__, _as_record)
+            return encode(message)
+        except (TypeError, ValueError, AttributeError, OverflowError):
+            return text_of(to_json(message))
 
 
 def from_json(cls: type[M], data: object, now: float | None = None) -> M:
@@ -275,13 +288,13 @@ def _read_bytes(name):
     def read(value):
         if value.__class__ is str:
             try:
-                return list(base64.b64decode(value, validate=True))
+                return Octets(base64.b64decode(value, validate=True))
             except (binascii.Error, ValueError):
                 raise _wrong(name, value, "a text must be base64") from None
         if value.__class__ is not list:
             raise _wrong(name, value, "write a list, or a text in base64")
-        if all(element.__class__ is int and 0 <= element <= 255 for element in value):
-            return list(value)
+        if QUICK["uint8"](value) is not None:
+            return Octets(value)
         index = next(i for i, element in enumerate(value) if element.__class__ is not int or not 0 <= element <= 255)
         raise _wrong(name, value[index], f"element {index} is no integer from 0 to 255")
 
@@ -314,19 +327,20 @@ def _write_floats(values):
     return [float(value) if math.isfinite(value) else None for value in values]
 
 
-class _Form(NamedTuple):
+class Form(NamedTuple):
     """A form of messages: plain data, or the text of those data. Its encoders are generated, one for each type of message.
 
     ``values``: the expression for a value, ``{0}``, of each base type. ``integer``: for those of the other base types. ``row``: for a
-    list whose elements, ``each`` of ``{1}``, are ``{0}``. ``octets`` and ``floats``: for arrays of bytes and of floats. ``message``: what
-    an encoder returns, of the names of the fields and their expressions. ``scope``: what the expressions use. ``encoders``: those made.
+    list whose elements, ``each`` of ``{1}``, are ``{0}``. ``octets``: for ``uint8[]``, ``arrays``: for other arrays, by their base type.
+    ``message``: what an encoder returns, of the names of the fields and their expressions. ``scope``: what the expressions use.
+    ``encoders``: those made.
     """
 
     values: dict[str, str]
     integer: str
     row: str
     octets: str
-    floats: str
+    arrays: dict[str, str]
     message: Callable[[list[tuple[str, str]]], list[str]]
     scope: dict[str, Any]
     encoders: dict[type, Callable[[Any], Any]]
@@ -336,7 +350,7 @@ _FINITE = "if isfinite(value := {0}) else"
 _TRUE = "(value := {0}) is True or truth(value)"
 _TEXT = "value if (value := {0}).__class__ is str and value.isascii() else string(value)"
 
-_as_data = _Form(
+DATA_FORM = Form(
     values={
         **dict.fromkeys(("float32", "float64"), f"float(value) {_FINITE} None"),
         "bool": _TRUE,
@@ -346,7 +360,7 @@ _as_data = _Form(
     integer="{0}",
     row="[{0} for each in {1} or ()]",
     octets="octets({0})",
-    floats="floats({0})",
+    arrays=dict.fromkeys(("float32", "float64"), "floats({0})"),
     message=lambda parts: ["return {", *(f"    {name!r}: {value}," for name, value in parts), "}"],
     scope={
         "isfinite": math.isfinite,
@@ -358,7 +372,7 @@ _as_data = _Form(
     },
     encoders={},
 )
-_as_text = _Form(
+_as_text = Form(
     values={
         **dict.fromkeys(("float32", "float64"), f"numbers[value] {_FINITE} 'null'"),
         "bool": f"'true' if {_TRUE} else 'false'",
@@ -368,18 +382,32 @@ _as_text = _Form(
     integer="digits(value) if (value := {0}).__class__ is int else text(value)",
     row="'[' + ','.join([{0} for each in {1} or ()]) + ']'",
     octets="text(octets({0}))",
-    floats="text(floats({0}))",
+    arrays=dict.fromkeys(("float32", "float64"), "text(floats({0}))"),
     message=lambda parts: [
         "return '{" + ",".join([f'"{name}":%s' for name, _ in parts]) + "}' % (",
         *(f"    {value}," for _, value in parts),
         ")",
     ],
-    scope={**_as_data.scope, "numbers": float_texts, "quoted": json.encoder.encode_basestring, "digits": int.__repr__, "text": text_of},
+    scope={**DATA_FORM.scope, "numbers": float_texts, "quoted": json.encoder.encode_basestring, "digits": int.__repr__, "text": text_of},
     encoders={},
 )
 
 
-def _encoder(cls, form):
+def _record_number(value):
+    number = as_float(value)
+    return float_texts[number] if math.isfinite(number) else "null" if number != number else "1e999" if number > 0 else "-1e999"
+
+
+_as_record = _as_text._replace(
+    values={**_as_text.values, **dict.fromkeys(("float32", "float64"), "number({0})")},
+    arrays=dict.fromkeys(("float32", "float64"), "'[' + ','.join(map(number, {0} or ())) + ']'"),
+    scope={**_as_text.scope, "number": _record_number},
+    encoders={},
+)
+"""As `_as_text`, for messages with floats that are not finite."""
+
+
+def encoder(cls, form):
     """Generate, compile and keep the function that turns a message of class ``cls`` into ``form``."""
     if not (isinstance(cls, type) and issubclass(cls, RosMessage)):
         raise MessageJsonError(f"Only a message can be sent, not an object of class {getattr(cls, '__name__', cls)}.")
@@ -388,12 +416,12 @@ def _encoder(cls, form):
         value, text = f"message.{field.attribute}", form.values.get(field.base, form.integer)
         if not field.primitive:
             part = _part_class(field)
-            scope[f"part_{field.attribute}"] = form.encoders.get(part) or _encoder(part, form)
+            scope[f"part_{field.attribute}"] = form.encoders.get(part) or encoder(part, form)
             text = f"part_{field.attribute}({{0}})"
         if _is_binary(field):
             text = form.octets.format(value)
-        elif field.is_array and field.base in ("float32", "float64"):
-            text = form.floats.format(value)
+        elif field.is_array and field.base in form.arrays:
+            text = form.arrays[field.base].format(value)
         elif field.is_array:
             text = form.row.format(text.format("each"), value)
         else:
@@ -528,7 +556,7 @@ def _reading(field, scope, cls):
 
 def _elements(value, length, type_name):
     """``value``, checked to be a list, of the right length when that is not 0."""
-    if value.__class__ is not list:
+    if value.__class__ is not list and value.__class__ is not Octets:
         raise _wrong(type_name, value)
     if length and len(value) != length:
         raise _mismatch(type_name, f"a list of {_counted(len(value), 'element')}")

@@ -104,6 +104,8 @@ def _same(field: Field, one: Any, other: Any) -> bool:
         return True
     if not field.is_array:
         return bool(one == other) or field.base == "bool" and not truth(one) and not truth(other)
+    if isinstance(one, bytearray) and isinstance(other, bytearray):
+        return one == other
     one, other = _listed(one), _listed(other)
     return one == other or field.base == "bool" and [*map(truth, one)] == [*map(truth, other)]
 

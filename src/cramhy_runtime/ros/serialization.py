@@ -14,7 +14,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 from cramhy_runtime.ground.data import truth
 from .messages import part_class
-from .wire import NONFINITE, as_float, lisp_float
+from .arrays import OCTETS, QUICK, Octets, as_float, lisp_float, octets
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -63,11 +63,18 @@ def _write_field(field: Field, value: Any, put: Callable[[bytes], object]) -> No
     if not field.is_array:
         _write_one(field.base, value, put)
         return
-    value = value or ()
+    if value is None:
+        value = ()
     if not field.length:
         put(_LENGTH.pack(len(value)))
-    if field.base in _FORMATS:
-        put(struct.pack(f"<{len(value)}{_FORMATS[field.base]}", *(_number(field.base, each) for each in value)))
+    if field.base in OCTETS and (packed := octets(value)) is not None:
+        put(packed)
+    elif field.base in _FORMATS and field.base != "bool":
+        form = f"<{len(value)}{_FORMATS[field.base]}"
+        try:
+            put(struct.pack(form, *value))
+        except struct.error:  # floats that are not finite, and values that nobody has checked
+            put(struct.pack(form, *(_number(field.base, each) for each in value)))
     else:
         for each in value:
             _write_one(field.base, each, put)
@@ -94,7 +101,7 @@ def _number(base: str, value: Any) -> Any:
     if base == "bool":
         return truth(value)
     if base in ("float32", "float64"):
-        return as_float(value) if value in NONFINITE or value.__class__ is not float else value
+        return value if isinstance(value, float) else as_float(value)
     if base == "byte":
         return value - 256 if value > 127 else value
     return value
@@ -112,6 +119,12 @@ def _read_field(field: Field, take: Callable[[int], bytes]) -> Any:
     if not field.is_array:
         return _read_one(field.base, take)
     count = field.length or _LENGTH.unpack(take(4))[0]
+    if field.base in OCTETS:
+        return Octets(take(count))
+    if field.base in _FORMATS and field.base not in ("bool", "byte"):
+        form = struct.Struct(f"<{count}{_FORMATS[field.base]}")
+        numbers = form.unpack(take(form.size))
+        return QUICK[field.base](numbers) if field.base in ("float32", "float64") else list(numbers)
     return [_read_one(field.base, take) for _ in range(count)]
 
 
@@ -121,6 +134,8 @@ def _read_one(base: str, take: Callable[[int], bytes]) -> Any:
         (number,) = struct.unpack("<" + form, take(struct.calcsize(form)))
         if base == "bool":
             return bool(number)
+        if base == "byte":
+            return number & 255  # as it arrives from a topic
         return lisp_float(number) if base in ("float32", "float64") else number
     if base == "string":
         return take(_LENGTH.unpack(take(4))[0]).decode("utf-8", "replace")

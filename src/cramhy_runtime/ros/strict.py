@@ -10,17 +10,22 @@ import reprlib
 
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
+from cramhy_runtime.utilities.generated_functions import generated_function
+
+from .arrays import OCTETS, QUICK
 from .definition_text import INTEGERS
-from .messages import RosMessage
+from .messages import RosMessage, part_class
 from .wire import plain
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from .definition_text import Field
 
     Check = Callable[[Any, str], None]
 
+_fine: dict[type, Callable[[Any], bool]] = {}
+"""Class of messages → the generated function that tells quickly that nothing is wrong with one, as is usual."""
 _checks: dict[type, list[tuple[str, Check]]] = {}
 """Class of messages → the attributes with something to check, and the functions of their value and its full name that check it."""
 
@@ -30,7 +35,37 @@ def check(message: RosMessage) -> None:
 
     Values of other wrong types are left to `wire.transmit`. Floats and texts, of which most messages are made, cost nothing here.
     """
-    _check(message, message.ros_type)
+    cls = message.__class__
+    if not (_fine.get(cls) or _fineness(cls))(message):
+        _check(message, message.ros_type)
+
+
+def _fineness(cls: type[RosMessage]) -> Callable[[Any], bool]:
+    scope: dict[str, Any] = {}
+    tests = list(_tests(cls, "message", scope))
+    lines = [f"return {' and '.join(tests) or 'True'}"]
+    found = _fine[cls] = generated_function(f"fineness of {cls.ros_type}", "fine", ["message"], lines, scope)
+    return found
+
+
+def _tests(cls: type[RosMessage], message: str, scope: dict[str, Any]) -> Iterator[str]:
+    """The expressions that are true if nothing is wrong with the ``message``, an expression itself."""
+    for field in cls.fields:
+        value, name = f"{message}.{field.attribute}", f"name{len(scope)}"
+        if field.is_array:
+            found = _check_of(field)
+            if found is not None:
+                scope[name] = QUICK.get(field.base) if field.primitive else None
+                yield f"({value}.__class__ is list and (not {value} or {name} is not None and {name}({value}) is not None))"
+        elif field.base in INTEGERS:
+            least, most = _range(field.base)
+            yield f"{value}.__class__ is int and {least} <= {value} <= {most}"
+        elif field.base == "bool":
+            yield f"({value} is True or {value} is False)"
+        elif not field.primitive:
+            part = scope[name] = part_class(field.base)
+            yield f"{value}.__class__ is {name}"
+            yield from _tests(part, value, scope)
 
 
 def check_type(message: object, cls: type[RosMessage], place: str) -> None:
@@ -39,7 +74,7 @@ def check_type(message: object, cls: type[RosMessage], place: str) -> None:
         return  # the error of roslisp says more
     if message.ros_type != cls.ros_type:
         raise TypeError(f"{place} has messages of the type {cls.ros_type}, not {message.ros_type}.")
-    _check(message, message.ros_type)
+    check(message)
 
 
 def _check(message: RosMessage, name: str) -> None:
@@ -55,14 +90,14 @@ def _check_of(field: Field) -> Check | None:
     one = _check_of_one(field)
     if one is None or not field.is_array:
         return one
-    narrow = {"uint8": 1, "char": 1}.get(field.base)
+    quick, narrow = QUICK.get(field.base), field.base in OCTETS
 
     def check_all(values: Any, name: str) -> None:
-        if narrow and (values.__class__ in (bytes, bytearray) or getattr(values, "dtype", None) == "uint8"):
+        if narrow and (isinstance(values, (bytes, bytearray)) or getattr(values, "dtype", None) == "uint8"):
             return
         if hasattr(values, "tolist"):
             values = values.tolist()
-        if isinstance(values, (list, tuple)):
+        if isinstance(values, (list, tuple)) and (quick is None or quick(values) is None):
             for index, value in enumerate(values):
                 one(value, f"{name}[{index}]")
 
@@ -71,7 +106,7 @@ def _check_of(field: Field) -> Check | None:
 
 def _check_of_one(field: Field) -> Check | None:
     if field.base in INTEGERS:
-        return _integer(field.base, *INTEGERS[field.base])
+        return _integer(field.base, *_range(field.base))
     if field.base == "bool":
         return _bool
     return None if field.primitive else _part(field.base)
@@ -87,11 +122,14 @@ def _part(base: str) -> Check:
     return check_part
 
 
-def _integer(base: str, bits: int, signed: bool) -> Check:
+def _range(base: str) -> tuple[int, int]:
+    """The least and the greatest integer of the type ``base``."""
+    bits, signed = INTEGERS[base]
     least, most = (-(1 << (bits - 1)), (1 << (bits - 1)) - 1) if signed else (0, (1 << bits) - 1)
-    if base == "byte":
-        least = -128  # rospy has it signed, and roslisp does not
+    return -128 if base == "byte" else least, most  # rospy has it signed, and roslisp does not
 
+
+def _integer(base: str, least: int, most: int) -> Check:
     def check_integer(value: Any, name: str) -> None:
         if value.__class__ is not int:
             value = plain(value)

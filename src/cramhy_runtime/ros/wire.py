@@ -2,8 +2,9 @@
 
 A message may hold any values; sending it checks their types. `transmit` returns the object for a receiver: a fresh one, with
 integers cut to their bits, reals as double-floats (a ``float32`` rounded to 32 bits), booleans as True or False, which is NIL in
-Lisp. Numbers and arrays of numpy are numbers and lists. The sender's task gets the errors of roslisp (roslisp.md 5.2). Their hint says
-where in the message the wrong value is; only an error starts the search for it. `strict.py` has the checks of rospy for Python.
+Lisp. Numbers and arrays of numpy are numbers and lists (``arrays.py``). ``received.py`` makes of it what Python and Lisp get where they
+differ. The sender's task gets the errors of roslisp (roslisp.md 5.2). Their hint says where in the message the wrong value is; only an
+error starts the search for it. `strict.py` has the checks of rospy for Python.
 """
 
 from __future__ import annotations
@@ -15,15 +16,27 @@ from cramhy_runtime.ground.condition_types import FloatingPointOverflow, SimpleE
 from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, LispString, Symbol, truth
 from cramhy_runtime.ground.numbers import is_real, single
 from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
-from cramhy_runtime.ground.packages import intern
 from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.utilities.generated_functions import generated_function
 from . import messages
-from .definition_text import INTEGERS, Field
+from .arrays import (
+    NEGATIVE_INFINITY as NEGATIVE_INFINITY,
+    NONFINITE as NONFINITE,
+    NOT_A_NUMBER as NOT_A_NUMBER,
+    OCTETS,
+    POSITIVE_INFINITY as POSITIVE_INFINITY,
+    QUICK,
+    Octets,
+    as_float as as_float,
+    lisp_float as lisp_float,
+    octets,
+)
+from .definition_text import INTEGERS
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from .definition_text import Field
     from .messages import RosMessage
 
 M = TypeVar("M", bound="RosMessage")
@@ -31,10 +44,6 @@ on_misfit: list[Callable[[str], object]] = []
 """Functions of a text. They are called with the text that roslisp logs before the error about a value that is not a message.
 
 The log of roslisp, a higher module, adds itself here."""
-
-POSITIVE_INFINITY, NEGATIVE_INFINITY, NOT_A_NUMBER = NONFINITE = [
-    intern(name, "KEYWORD") for name in ("POSITIVE-INFINITY", "NEGATIVE-INFINITY", "NOT-A-NUMBER")
-]
 
 
 class Misfit(Exception):
@@ -58,27 +67,9 @@ def _overflow(hint):
     return conditions.error(FloatingPointOverflow(), hint=hint)
 
 
-def as_float(value: float | Symbol) -> float:
-    """A received real as a Python float. The symbols for infinity and not-a-number become floats too."""
-    if value.__class__ is DoubleFloat:
-        return float(value)
-    if isinstance(value, Symbol):
-        return {POSITIVE_INFINITY: math.inf, NEGATIVE_INFINITY: -math.inf}.get(value, math.nan)
-    return float(value)
-
-
 def ros_text(text: str) -> str:
     """``text`` as messages can hold it: half of a surrogate pair, as in the names of some files, becomes a question mark."""
     return text if text.isascii() else text.encode("utf-8", "replace").decode()
-
-
-def lisp_float(value: float) -> DoubleFloat | Symbol:
-    """A float in the form that receivers get: a double-float, or a symbol if it is not finite."""
-    if math.isfinite(value):
-        return DoubleFloat(value)
-    if value != value:
-        return NOT_A_NUMBER
-    return POSITIVE_INFINITY if value > 0 else NEGATIVE_INFINITY
 
 
 def plain(value: Any) -> Any:
@@ -170,27 +161,34 @@ def _part(base):
     return convert
 
 
-def _misfit_of_shape(array):
-    raise _misfit(array, "VECTOR")
+def _elements(value: Any) -> Any:
+    """The elements of the value of an array field that is neither a list nor a tuple."""
+    if value is None:
+        return []
+    if isinstance(value, (str, LispString)):
+        return list(map(Character, str(value)))  # a vector of characters
+    if isinstance(value, (Cons, dict)) or not hasattr(value, "__iter__"):
+        raise _misfit(value, "VECTOR")
+    if hasattr(value, "dtype") and hasattr(value, "tolist"):
+        if value.ndim != 1:
+            raise _misfit(value, "VECTOR")
+        return value.tolist()
+    return list(value)
 
 
 def _array(field, convert):
-    octets = field.base in ("uint8", "char")
+    quick, narrow = QUICK.get(field.base), field.base in OCTETS
 
     def convert_all(value):
-        if value is None:
-            value = []
-        elif isinstance(value, (str, LispString)):
-            value = map(Character, str(value))  # a vector of characters
-        elif isinstance(value, (Cons, dict)) or not hasattr(value, "__iter__"):
-            raise _misfit(value, "VECTOR")
-        elif octets and value.__class__ in (bytes, bytearray) or getattr(getattr(value, "dtype", None), "char", None) == "B":
-            value = bytes(value) if getattr(value, "ndim", 1) == 1 else _misfit_of_shape(value)
-            if octets and not (field.length and len(value) != field.length):
-                return list(value)  # an image has a million
-        elif hasattr(value, "dtype") and hasattr(value, "tolist"):
-            value = value.tolist() if value.ndim == 1 else _misfit_of_shape(value)
-        result = [convert(element) for element in value]
+        result = octets(value) if narrow else None
+        if result is None:
+            if value.__class__ is not list and value.__class__ is not tuple:
+                value = _elements(value)
+            result = quick(value) if quick is not None else None
+            if result is None:
+                result = [convert(element) for element in value]
+            if narrow:
+                result = Octets(result)
         if field.length and len(result) != field.length:
             return conditions.error(
                 SimpleError(
@@ -247,7 +245,7 @@ def transmit(message: M) -> M:
     return signal(f"{message.ros_type}: {path} holds {held}, which {fault}.")
 
 
-def _converter(field):
+def _converter(field: Field) -> Callable[[Any], Any]:
     return _primitives.get(field.base) or _part(field.base)
 
 
@@ -258,7 +256,7 @@ def _misplaced(message):
         parts = [(field.name, value)]
         if field.is_array:
             try:
-                elements = _array(Field(field.name, field.base, 0), lambda element: element)(value)
+                elements = value if isinstance(value, (list, tuple)) else _elements(value)
             except Misfit:
                 return field.name, field.type, value
             parts = [(f"{field.name}[{index}]", element) for index, element in enumerate(elements)]

@@ -125,7 +125,9 @@ class Parcel:
         return png_of(self.form("none"))
 
     def _cbor(self):
-        return cbor_of({"op": "publish", "topic": self.topic, "msg": to_json(self.message)})
+        from ..ros.message_cbor import to_cbor_data
+
+        return cbor_of({"op": "publish", "topic": self.topic, "msg": to_cbor_data(self.message)})
 
     def _cbor_raw(self):
         from ..ros.serialization import serialize

@@ -11,7 +11,7 @@ from cramhy_runtime.ground.conditions import SimpleError, error, warn
 from cramhy_runtime.ground.data import DoubleFloat, LispString
 from cramhy_runtime.ground.numbers import is_real
 from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
-from ..transforms.coercion import check_type, real, slot_reader, wrong_type
+from ..transforms.coercion import check_type, part, real, slot_reader, wrong_type
 from ..transforms.poses import Pose, Transform
 from ..transforms.vectors import Vector3, point, x, y, z
 from . import errors
@@ -43,10 +43,12 @@ class Stamped:
 
     lisp_name = "CL-TRANSFORMS-STAMPED::STAMPED"
     initargs = {"FRAME-ID": "frame_id", "STAMP": "stamp"}
+    frame_id: str = part("frame_id", "The frame.")
+    stamp: float = part("stamp", "The time, in seconds.")
 
     def __init__(self, frame_id: str | None = None, stamp: float | None = None):
-        self.frame_id: str = _frame(frame_id)
-        self.stamp: float = _stamp(stamp)
+        self._frame_id: str = _frame(frame_id)
+        self._stamp: float = _stamp(stamp)
 
 
 class TransformStamped(Stamped, Transform):
@@ -54,6 +56,7 @@ class TransformStamped(Stamped, Transform):
 
     lisp_name = "CL-TRANSFORMS-STAMPED::TRANSFORM-STAMPED"
     initargs = {"CHILD-FRAME-ID": "child_frame_id"}
+    child_frame_id: str = part("child_frame_id", "The frame whose pose it is.")
 
     def __init__(
         self,
@@ -65,7 +68,7 @@ class TransformStamped(Stamped, Transform):
     ):
         Stamped.__init__(self, frame_id, stamp)
         Transform.__init__(self, translation, rotation)
-        self.child_frame_id: str = _frame(child_frame_id, "CHILD-FRAME-ID")
+        self._child_frame_id: str = _frame(child_frame_id, "CHILD-FRAME-ID")
 
 
 class PoseStamped(Stamped, Pose):
@@ -96,7 +99,7 @@ class _VectorInFrame(Stamped, Vector3):
         z: float = DoubleFloat(0),
     ):
         Stamped.__init__(self, frame_id, stamp)
-        self.components = real(x), real(y), real(z)
+        self._components = real(x), real(y), real(z)
         if not x.__class__ is y.__class__ is z.__class__ is DoubleFloat:
             self.given = x, y, z
 

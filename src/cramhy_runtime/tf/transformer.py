@@ -23,7 +23,7 @@ from cramhy_runtime.utilities.wait_queue import time_limit
 from . import errors
 from .buffer import FrameBuffer, Unavailable
 from .frames import unslash_frame
-from .stamped import PointStamped, PoseStamped, TransformStamped, make_point_stamped
+from .stamped import PointStamped, PoseStamped, TransformStamped, make_point_stamped, transform_to_transform_stamped
 from .stamped_messages import from_msg
 
 LOG = ("CL-TF",)
@@ -123,7 +123,7 @@ class TransformListener(Transformer):
 
     def _take(self, transform, stamp):
         if stamp is not None:
-            transform.stamp = stamp
+            transform = transform_to_transform_stamped(transform.frame_id, transform.child_frame_id, stamp, transform)
         self.store(transform, notify=False)
 
     def _refuse(self, problem):

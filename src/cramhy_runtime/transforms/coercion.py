@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from numbers import Real
+from operator import attrgetter
 
 from cramhy_runtime.ground.arrays import InvalidArrayIndex, wrong_rank
 from cramhy_runtime.ground.arrays import LispArray
@@ -129,24 +130,59 @@ def component(index: int) -> Component:
     return FixedComponent(get, index)  # type: ignore[return-value]
 
 
-class FixedComponent(property):
-    """The property of one component. Python cannot assign it in our own classes, which compare by value; Lisp's `slot-value` can."""
+class Fixed(property):
+    """A part of a vector or a pose. Python cannot assign it in our own classes, which compare by value; Lisp's `slot-value` can."""
+
+    def __set__(self, obj: Any, value: object) -> None:
+        if type(obj).__module__.startswith("cramhy_runtime.t"):  # transforms and tf; classes of users are theirs
+            kind = type(obj).__name__
+            copied = _COPIES.get(kind, _COPIES["Vector3"])
+            raise AttributeError(f"A {kind} is not changed after it was made. Make a new one: {kind}(...), or {copied}.")
+        self.set_by_lisp(obj, value)
+
+    def set_by_lisp(self, obj: Any, value: object) -> None:
+        """Change the part, as ``(setf (slot-value v 'x) 5)`` does."""
+        raise NotImplementedError
+
+
+_COPIES = {
+    "Pose": "copy_pose(pose, origin=...)",
+    "PoseStamped": "copy_pose_stamped(pose, stamp=5.0)",
+    "Quaternion": "copy_quaternion(q, w=1.0)",
+    "Twist": "copy_twist(twist, translation=...)",
+    "Wrench": "copy_wrench(wrench, translation=...)",
+    "Transform": "copy_transform(transform, translation=...)",
+    "Vector3": "copy_3d_vector(v, x=5)",
+}
+
+
+class FixedComponent(Fixed):
+    """The property of one component."""
 
     def __init__(self, get: Callable[[Any], float], index: int) -> None:
         super().__init__(get, doc="A component, as the float that Lisp sees.")
         self.index = index
 
-    def __set__(self, obj: Any, value: object) -> None:
-        if type(obj).__module__.startswith("cramhy_runtime.t"):  # transforms and tf; classes of users are theirs
-            kind = type(obj).__name__
-            raise AttributeError(f"A {kind} is not changed after it was made. Make a new one: {kind}(...), or copy_3d_vector(v, x=5).")
-        self.set_by_lisp(obj, value)
+    def set_by_lisp(self, obj: Any, value: object) -> None:
+        components = list(obj._components)
+        components[self.index] = real(value)
+        obj._components = tuple(components)
+
+
+class FixedPart(Fixed):
+    """The property of the part that an object has in the attribute ``_name``, where it is made."""
+
+    def __init__(self, name: str, doc: str) -> None:
+        super().__init__(attrgetter(f"_{name}"), doc=doc)
+        self.attribute = f"_{name}"
 
     def set_by_lisp(self, obj: Any, value: object) -> None:
-        """Change the component, as ``(setf (slot-value v 'x) 5)`` does."""
-        components = list(obj.components)
-        components[self.index] = real(value)
-        obj.components = tuple(components)
+        setattr(obj, self.attribute, value)
+
+
+def part(name: str, doc: str) -> Any:
+    """A property: the part ``name`` of an object that keeps it in ``_name``."""
+    return FixedPart(name, doc)
 
 
 class ByValue:

@@ -48,7 +48,7 @@ def _rotation_rows(components):
 def quaternion_to_matrix(q):
     """The 3 by 3 rotation matrix."""
     instance(q, Quaternion, "Q")
-    return _matrix([[DoubleFloat(item) for item in row] for row in _rotation_rows(q.components)])
+    return _matrix([[DoubleFloat(item) for item in row] for row in _rotation_rows(q._components)])
 
 
 def matrix_to_quaternion(matrix):
@@ -108,5 +108,5 @@ invert_rot_matrix = transpose_rot_matrix
 
 def column_vectors_to_quaternion(x, y, z):
     """The rotation whose matrix has the directions of three vectors as its columns."""
-    columns = [normalize_vector(instance(v, Vector3, name)).components for v, name in ((x, "X"), (y, "Y"), (z, "Z"))]
+    columns = [normalize_vector(instance(v, Vector3, name))._components for v, name in ((x, "X"), (y, "Y"), (z, "Z"))]
     return _quaternion_of(list(zip(*columns)))

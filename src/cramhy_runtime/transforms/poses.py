@@ -10,7 +10,7 @@ from cramhy_runtime.ground.conditions import error, warn, wrong_argument_count
 from cramhy_runtime.ground.data import truth
 from cramhy_runtime.ground.packages import keyword
 
-from .coercion import ByValue, array_elements, instance, no_method, slot_reader
+from .coercion import ByValue, array_elements, instance, no_method, part, slot_reader
 from .quaternions import TOLERANCE, Quaternion, general, inverse, multiply, normalize, normalized, quaternion, rotated, unit, yaw
 from .vectors import Vector3, make_3d_vector, point, vector
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, overload
@@ -29,10 +29,12 @@ class Transform(ByValue):
 
     lisp_name = "CL-TRANSFORMS::TRANSFORM"
     initargs = {"TRANSLATION": "translation", "ROTATION": "rotation"}
+    translation: Vector3 = part("translation", "The move, a vector.")
+    rotation: Quaternion = part("rotation", "The turn, of unit length.")
 
     def __init__(self, translation: Vector3 | None = None, rotation: Rotation | None = None):
-        self.translation = Vector3() if translation is None else translation
-        self.rotation = Quaternion() if rotation is None else unit(rotation)
+        self._translation = Vector3() if translation is None else translation
+        self._rotation = Quaternion() if rotation is None else unit(rotation)
 
     def __repr__(self) -> str:
         return f"#<TRANSFORM {self.translation!r} {self.rotation!r}>"
@@ -43,10 +45,12 @@ class Pose(ByValue):
 
     lisp_name = "CL-TRANSFORMS::POSE"
     initargs = {"ORIGIN": "origin", "ORIENTATION": "orientation"}
+    origin: Vector3 = part("origin", "The place.")
+    orientation: Quaternion = part("orientation", "The direction, of unit length.")
 
     def __init__(self, origin: Vector3 | None = None, orientation: Rotation | None = None):
-        self.origin = Vector3() if origin is None else origin
-        self.orientation = Quaternion() if orientation is None else unit(orientation)
+        self._origin = Vector3() if origin is None else origin
+        self._orientation = Quaternion() if orientation is None else unit(orientation)
 
     def __repr__(self) -> str:
         return f"#<POSE {self.origin!r} {self.orientation!r}>"
@@ -57,10 +61,12 @@ class Twist(ByValue):
 
     lisp_name = "CL-TRANSFORMS::TWIST"
     initargs = {"TRANSLATION": "translation", "ROTATION": "rotation"}
+    translation: Vector3 = part("translation", "The linear part, a vector.")
+    rotation: Vector3 = part("rotation", "The angular part, a vector.")
 
     def __init__(self, translation: Vector3 | None = None, rotation: Vector3 | None = None):
-        self.translation = Vector3() if translation is None else translation
-        self.rotation = Vector3() if rotation is None else rotation
+        self._translation = Vector3() if translation is None else translation
+        self._rotation = Vector3() if rotation is None else rotation
 
 
 class Wrench(ByValue):
@@ -68,8 +74,7 @@ class Wrench(ByValue):
 
     lisp_name = "CL-TRANSFORMS::WRENCH"
     initargs = Twist.initargs
-    translation: Vector3
-    rotation: Vector3
+    translation, rotation = Twist.translation, Twist.rotation
     __init__ = Twist.__init__
 
 
@@ -85,7 +90,7 @@ orientation: Callable[[Pose], Quaternion] = slot_reader("orientation", Pose)
 def unchecked_transform(translation: Vector3, rotation: Quaternion) -> Transform:
     """A transform whose rotation is taken as it is."""
     made = Transform.__new__(Transform)
-    made.translation, made.rotation = translation, rotation
+    made._translation, made._rotation = translation, rotation
     return made
 
 
@@ -112,22 +117,22 @@ def copy_transform(transform: Transform, *, translation: Vector3 | None = None, 
     """A transform like ``transform`` with parts replaced."""
     instance(transform, Transform, "TRANSFORM")
     return make_transform(
-        transform.translation if translation is None else translation, transform.rotation if rotation is None else rotation
+        transform._translation if translation is None else translation, transform._rotation if rotation is None else rotation
     )
 
 
 def transform_inv(trans: Transform) -> Transform:
     """The transform back."""
     instance(trans, Transform, "TRANS")
-    turned_back = inverse(general(trans.rotation))
-    tx, ty, tz = point(trans.translation)
+    turned_back = inverse(general(trans._rotation))
+    tx, ty, tz = point(trans._translation)
     return _computed(rotated(turned_back, (-tx, -ty, -tz)), turned_back)
 
 
 def moved(trans: Transform, components: Three) -> Three:
     """The components of a point, a tuple, after the transform."""
-    vx, vy, vz = rotated(general(trans.rotation), components)
-    tx, ty, tz = point(trans.translation)
+    vx, vy, vz = rotated(general(trans._rotation), components)
+    tx, ty, tz = point(trans._translation)
     return tx + vx, ty + vy, tz + vz
 
 
@@ -139,7 +144,7 @@ def transform_star(*transforms: Transform) -> Transform:
     for outer in transforms[-2::-1]:
         instance(outer, Transform, "TRANSFORM")
         instance(result, Transform, "TRANSFORM")
-        result = _computed(moved(outer, point(result.translation)), multiply(general(outer.rotation), general(result.rotation)))
+        result = _computed(moved(outer, point(result._translation)), multiply(general(outer._rotation), general(result._rotation)))
     return result
 
 
@@ -186,7 +191,7 @@ def transform(tr: Transform, x: Any) -> Any:
 def unchecked_pose(origin: Vector3, orientation: Quaternion) -> Pose:
     """A pose whose orientation is of unit length already."""
     made = Pose.__new__(Pose)
-    made.origin, made.orientation = origin, orientation
+    made._origin, made._orientation = origin, orientation
     return made
 
 
@@ -208,7 +213,7 @@ def make_2d_pose(x: float, y: float, theta: float) -> Pose:
 def copy_pose(pose: Pose, *, origin: Vector3 | None = None, orientation: Rotation | None = None) -> Pose:
     """A pose like ``pose`` with parts replaced."""
     instance(pose, Pose, "POSE")
-    return make_pose(pose.origin if origin is None else origin, pose.orientation if orientation is None else orientation)
+    return make_pose(pose._origin if origin is None else origin, pose._orientation if orientation is None else orientation)
 
 
 def reference_transform(pose: PoseOrTransform) -> Transform:
@@ -221,20 +226,20 @@ def reference_transform(pose: PoseOrTransform) -> Transform:
 def pose_to_transform(pose: Pose) -> Transform:
     """The transform from the coordinates of ``pose`` to those that it is given in."""
     instance(pose, Pose, "POSE")
-    return unchecked_transform(pose.origin, pose.orientation)
+    return unchecked_transform(pose._origin, pose._orientation)
 
 
 def transform_to_pose(transform: Transform) -> Pose:
     """The pose with the components of a transform."""
     instance(transform, Transform, "TRANSFORM")
-    return make_pose(transform.translation, transform.rotation)
+    return make_pose(transform._translation, transform._rotation)
 
 
 def transform_pose(tr: Transform, p: Pose) -> Pose:
     """The pose ``p`` after the transform ``tr``."""
     instance(tr, Transform, "TR")
     moved = transform_star(tr, pose_to_transform(p))
-    return unchecked_pose(moved.translation, moved.rotation)
+    return unchecked_pose(moved._translation, moved._rotation)
 
 
 # ------------------------------------------------------------------------------------------------------- twists and wrenches
@@ -272,4 +277,4 @@ def copy_wrench(wrench: Wrench, *, translation: Vector3 | None = None, rotation:
 
 def _copy(obj: T, cls: type[T], parameter: str, translation: Vector3 | None, rotation: Vector3 | None) -> T:
     instance(obj, cls, parameter)
-    return cls(obj.translation if translation is None else translation, obj.rotation if rotation is None else rotation)
+    return cls(obj._translation if translation is None else translation, obj._rotation if rotation is None else rotation)

@@ -21,6 +21,7 @@ from .coercion import (
     float_argument,
     instance,
     no_method,
+    part,
     real,
     sine_and_cosine,
     wrong_type,
@@ -45,31 +46,33 @@ class Quaternion(ByValue):
     initargs = {"X": "x", "Y": "y", "Z": "z", "W": "w"}
     kind: type[float] = DoubleFloat
     x, y, z, w = component(0), component(1), component(2), component(3)
+    components: Four = part("components", "The components, plain floats.")
+    _components: Four
 
     def __init__(self, x: float = 0.0, y: float = 0.0, z: float = 0.0, w: float = 1.0):
-        self.components: Four = (float(x), float(y), float(z), float(w))
+        self._components: Four = (float(x), float(y), float(z), float(w))
 
     def component(self, index: int) -> float:
-        return self.kind(self.components[index])
+        return self.kind(self._components[index])
 
     def __iter__(self) -> Iterator[float]:
-        return iter(self.components)
+        return iter(self._components)
 
     def __repr__(self) -> str:
-        return "#<QUATERNION ({} {} {} {})>".format(*map(self.kind, self.components))
+        return "#<QUATERNION ({} {} {} {})>".format(*map(self.kind, self._components))
 
 
 def quaternion(components: Four) -> Quaternion:
     """The quaternion with four plain Python floats, which are not coerced."""
     made = Quaternion.__new__(Quaternion)
-    made.components = components
+    made._components = components
     return made
 
 
 def general(q: Rotation) -> Four:
     """The four components of a quaternion, an array of four numbers, or a real r that stands for (0 0 0 r)."""
     if isinstance(q, Quaternion):
-        return q.components
+        return q._components
     if is_real(q):
         return (0.0, 0.0, 0.0, real(q))
     items = elements(q, 4)
@@ -98,7 +101,7 @@ def _has_double(source: Any) -> bool:
 def _numbers(q: Rotation) -> list[float]:
     """The components as Lisp sees them, for functions whose result has the type of the inputs."""
     if isinstance(q, Quaternion):
-        return [q.kind(component) for component in q.components]
+        return [q.kind(component) for component in q._components]
     general(q)
     return [0.0, 0.0, 0.0, q] if is_real(q) else elements(q, 4)
 
@@ -117,7 +120,7 @@ def copy_quaternion(
     q: Quaternion, *, x: float | None = None, y: float | None = None, z: float | None = None, w: float | None = None
 ) -> Quaternion:
     """A copy of ``q`` with components replaced."""
-    old = instance(q, Quaternion, "Q").components
+    old = instance(q, Quaternion, "Q")._components
     return Quaternion(*(before if new is None else real(new) for before, new in zip(old, (x, y, z, w))))
 
 
@@ -368,8 +371,8 @@ def slerp(q1: Quaternion, q2: Quaternion, ratio: float) -> Quaternion:
 
     The original takes the inverse of ``q2`` where it should take -``q2``; here the result is always a rotation.
     """
-    a = check_type(q1, Quaternion, "Q1").components
-    b = check_type(q2, Quaternion, "Q2").components
+    a = check_type(q1, Quaternion, "Q1")._components
+    b = check_type(q2, Quaternion, "Q2")._components
     share, product = real(ratio, "RATIO"), sum(p * q for p, q in zip(a, b))
     if product < 0:
         b, product = tuple(-component for component in b), -product

@@ -13,7 +13,7 @@ from cramhy_runtime.ground.data import Cons, DoubleFloat
 from cramhy_runtime.ground.numbers import is_real
 from cramhy_runtime.ground.packages import sym
 
-from .coercion import ByValue, check_type, component, element, elements, instance, no_method, real, wrong_type
+from .coercion import ByValue, check_type, component, element, elements, instance, no_method, part, real, wrong_type
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -28,31 +28,33 @@ class Vector3(ByValue):
     lisp_name = "CL-TRANSFORMS::3D-VECTOR"
     initargs = {"X": "x", "Y": "y", "Z": "z"}
     x, y, z = component(0), component(1), component(2)
+    components: Three = part("components", "The components, plain floats.")
+    _components: Three
 
     def __init__(self, x: float = 0.0, y: float = 0.0, z: float = 0.0):
-        self.components: Three = (float(x), float(y), float(z))
+        self._components: Three = (float(x), float(y), float(z))
 
     def component(self, index: int) -> DoubleFloat:
-        return DoubleFloat(self.components[index])
+        return DoubleFloat(self._components[index])
 
     def __iter__(self) -> Iterator[float]:
-        return iter(self.components)
+        return iter(self._components)
 
     def __repr__(self) -> str:
-        return "#<3D-VECTOR ({}d0 {}d0 {}d0)>".format(*self.components)
+        return "#<3D-VECTOR ({}d0 {}d0 {}d0)>".format(*self._components)
 
 
 def vector(components: Three) -> Vector3:
     """The vector with three plain Python floats, which are not coerced."""
     made = Vector3.__new__(Vector3)
-    made.components = components
+    made._components = components
     return made
 
 
 def point(value: Place, parameter: str = "V") -> Three:
     """The three components of a point as plain floats."""
     if isinstance(value, Vector3):
-        return value.components
+        return value._components
     items = elements(value, 3)
     if items is None:
         hint = "A list is no point; a vector such as #(1 2 3) is, or (make-3d-vector 1 2 3)." if isinstance(value, Cons) else None
@@ -73,15 +75,15 @@ def make_identity_vector() -> Vector3:
 
 def copy_3d_vector(v: Vector3, *, x: float | None = None, y: float | None = None, z: float | None = None) -> Vector3:
     """A copy of ``v`` with components replaced."""
-    old = instance(v, Vector3, "V").components
+    old = instance(v, Vector3, "V")._components
     return Vector3(*(before if new is None else real(new) for before, new in zip(old, (x, y, z))))
 
 
 def _reader(index: int, letter: str) -> Callable[[object], float]:
     def read(obj: Any) -> float:
         if obj.__class__ is Vector3:
-            return DoubleFloat(obj.components[index])
-        if hasattr(obj, "components"):  # a quaternion, or a vector of another kind
+            return DoubleFloat(obj._components[index])
+        if hasattr(obj, "_components"):  # a quaternion, or a vector of another kind
             return obj.component(index)
         found = element(obj, index)
         if found is not None:
@@ -155,7 +157,7 @@ def _numbers(v: Place, parameter: str) -> list[float]:
 def dot_product(v_1: Place, v_2: Place) -> float:
     """The scalar product of two points; an integer for integer arrays, a double for vectors."""
     if isinstance(v_1, Vector3) and isinstance(v_2, Vector3):
-        (ax, ay, az), (bx, by, bz) = v_1.components, v_2.components
+        (ax, ay, az), (bx, by, bz) = v_1._components, v_2._components
         return DoubleFloat(ax * bx + ay * by + az * bz)
     return sum(a * b for a, b in zip(_numbers(v_1, "V-1"), _numbers(v_2, "V-2")))
 
@@ -192,7 +194,7 @@ def normalize_vector(v: Place) -> Vector3:
 
 def interpolate_vector(v_0: Vector3, v_1: Vector3, ratio: float) -> Vector3:
     """``v_0`` + ``ratio`` (``v_1`` - ``v_0``) of two 3d-vectors; the ratio, a real, is not limited to [0, 1]."""
-    ax, ay, az = check_type(v_0, Vector3, "V-0").components
-    bx, by, bz = check_type(v_1, Vector3, "V-1").components
+    ax, ay, az = check_type(v_0, Vector3, "V-0")._components
+    bx, by, bz = check_type(v_1, Vector3, "V-1")._components
     share = real(ratio, "RATIO")
     return vector((ax + share * (bx - ax), ay + share * (by - ay), az + share * (bz - az)))

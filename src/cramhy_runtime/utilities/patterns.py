@@ -44,6 +44,53 @@ _COMPARED_BY_LISP = (TRUE_CLASSES | {DoubleFloat} | equality.EQUAL_TO_THEMSELVES
 """Classes whose objects only ``equal`` compares, though Python finds more of them equal: ``True`` and 1, ``0.0`` and ``-0.0``."""
 
 
+class Nothing:
+    """The class of `NOTHING`."""
+
+    __slots__ = ()
+
+    def __bool__(self):
+        return False
+
+    def __repr__(self):
+        return "None"
+
+    def __reduce__(self):
+        return "NOTHING"
+
+    def __copy__(self):
+        return self
+
+    def __deepcopy__(self, memo):
+        return self
+
+
+NOTHING = Nothing()
+"""Python's None in a term. There ``nil`` is the empty list, and False is itself. All three are one term, and Lisp gets ``nil`` for each."""
+
+
+class Inserted:
+    """Whether Python has put a `NOTHING` into terms yet. Until then nobody has to look for it in lists."""
+
+    nothing = False
+
+
+def for_lisp(term):
+    """``term`` as Lisp sees it: ``nil`` for Python's None and False, and for each None in a list."""
+    if term is NOTHING or term is False:
+        return None
+    if term.__class__ is not Cons or not Inserted.nothing:
+        return term
+    cells, parts, seen, cell = [], [], set(), term
+    while cell.__class__ is Cons and id(cell) not in seen:  # a list of Lisp may be circular
+        seen.add(id(cell))
+        cells.append(cell)
+        parts.append(for_lisp(cell.car))
+        cell = cell.cdr
+    changed = any(part is not cell.car and cell.car is not False for part, cell in zip(parts, cells))
+    return list_from(parts, cell) if changed else term
+
+
 def same_atom(a, b):
     """CL ``equal`` for atoms, as a Python bool; the engine's innermost test, so the common kinds come first.
 
@@ -59,6 +106,8 @@ def same_atom(a, b):
         return a == b
     if equality.equal(a, b) is not None:
         return True
+    if a is None or a is False or a is NOTHING:
+        return b is None or b is False or b is NOTHING
     return kind is b.__class__ and compared_by_python(kind) and bool(a == b)
 
 

@@ -68,6 +68,7 @@ __all__ = [
     "lispify",
     "publish_message",
     "set_param",
+    "subscribe_to",
     "lisp_list",
     "lisp_list_ending",
     "make_tag_task",
@@ -211,6 +212,13 @@ def call_service(service, *rest):
     from cramhy_runtime.ros.roslisp.services import checked_call_service
 
     return checked_call_service(service, *rest)
+
+
+def subscribe_to(topic, topic_type, callback, *, max_queue_length=None):
+    """`ros.python.subscribe`."""
+    from cramhy_runtime.ros.python import subscribe
+
+    return subscribe(topic, topic_type, callback, max_queue_length=max_queue_length)
 
 
 def get_param(key, *default):

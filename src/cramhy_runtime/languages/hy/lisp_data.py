@@ -308,6 +308,7 @@ FOR_PYTHON = {
     ("CRAM-LANGUAGE-IMPLEMENTATION", "WAIT-FOR"): "wait-for",
     ("ROSLISP", "CALL-SERVICE"): "call-service",
     ("ROSLISP", "PUBLISH"): "publish-message",
+    ("ROSLISP", "SUBSCRIBE"): "subscribe-to",
     ("ROSLISP", "GET-PARAM"): "get-param",
     ("ROSLISP", "SET-PARAM"): "set-param",
     ("ROSLISP", "HAS-PARAM"): "has-param",

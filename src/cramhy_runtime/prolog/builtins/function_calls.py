@@ -20,6 +20,7 @@ from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.source_places import exception_position
 
 from cramhy_runtime.utilities.lazy_lists import force_ll
+from cramhy_runtime.utilities.patterns import NOTHING, for_lisp
 from ..engine.failing_calls import note_place
 from ..symbols import CUT, PROLOG, sym
 from ..terms.terms import TermTail, Var, import_term, raw, resolve, undo, unify
@@ -92,7 +93,7 @@ def _apply(function, arguments):
         return type_error(function, "SYMBOL")
     if function.package is not CUT:
         for item in arguments:
-            if item.__class__ is Cons:
+            if item.__class__ is Cons or item is NOTHING or item is False:
                 arguments = [_whole(item) for item in arguments]
                 break
     code = function.function
@@ -108,14 +109,14 @@ def _apply(function, arguments):
 
 
 def _whole(item):
-    """``item``; if it is a lazy list of ``findall``, compute it completely, as plan code expects of a list."""
+    """``item`` as Lisp sees it. A lazy list of ``findall`` is computed, as plan code expects of a list."""
     if item.__class__ is Cons:
         cell = item
         while cell.__class__ is Cons:
             cell = cell.cdr
         if cell.__class__ is TermTail:
             force_ll(item)
-    return item
+    return for_lisp(item)
 
 
 def lisp_value(m, function, arguments):

@@ -17,6 +17,8 @@ from cramhy_runtime.ground.equality import equal_key
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.utilities.generated_functions import generated_function
 
+from cramhy_runtime.utilities.patterns import NOTHING
+
 from ..terms.terms import Var, value_of
 
 if TYPE_CHECKING:
@@ -39,6 +41,8 @@ def index_key(atom: Any) -> Any:
     kind = atom.__class__
     if kind is Symbol or kind is Keyword or atom is None:
         return atom
+    if atom is False or atom is NOTHING:
+        return None
     return equal_key(atom) if kind in _BY_VALUE or atom is True else NotImplemented  # `t` is Python's True, which is 1 in a dict
 
 

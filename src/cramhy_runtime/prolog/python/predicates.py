@@ -31,6 +31,8 @@ from cramhy_runtime.ground.data import Cons, Symbol, list_from
 from ..builtins import native_predicates as natives
 from .spelling import exact_lisp_name, lisp_name
 from .terms import P, Name, claim, python_arguments, python_predicates, show, to_lisp, what_nil_means
+from cramhy_runtime.utilities.patterns import NOTHING
+
 from ..symbols import sym
 from ..terms.terms import Var, deref, import_term, resolve
 
@@ -136,13 +138,14 @@ class Predicate(Name, Generic[F]):
     def unify(self, m: Machine, outputs: tuple[object, ...], value: object) -> bool:
         """Unify the output terms with the result ``value`` of the function. Returns whether that is possible."""
         if len(outputs) == 1:
-            return bool(m.unify(outputs[0], import_term(to_lisp(value, True), {})))
+            return bool(m.unify(outputs[0], import_term(to_lisp(value, True, NOTHING), {})))
         if not outputs:
             return True
         if not isinstance(value, (tuple, list)) or len(value) != len(outputs):
             raise TypeError(f"A solution is {value!r}, but the goal has {len(outputs)} arguments for it. Give a tuple of {len(outputs)}.")
         names: dict[Any, Any] = {}
-        pairs = [side for output, part in zip(outputs, value, strict=True) for side in (output, import_term(to_lisp(part, True), names))]
+        parts = [import_term(to_lisp(part, True, NOTHING), names) for part in value]
+        pairs = [side for both in zip(outputs, parts, strict=True) for side in both]
         return bool(m.unify(*pairs))
 
     def solutions(self, m: Machine, *terms: object) -> Iterator[None]:

@@ -7,8 +7,8 @@
   another package.
 * ``kw.driving`` is the keyword ``:driving``, the object itself. A Python string is a string, and equal to no name. Keywords are shared with
   Lisp, which does not see case: ``kw.Driving`` is an error.
-* A list or tuple is a list, ``[V.first, *V.rest]`` one whose rest is a variable. ``None``, ``False`` and ``[]`` are the empty list,
-  ``nil``: Lisp has one object for them. ``True`` is ``t``, and neither 1 nor 1.0.
+* A list or tuple is a list, ``[V.first, *V.rest]`` one whose rest is a variable. ``None``, ``False`` and ``[]`` are one term, as Lisp
+  has one object for them, ``nil``. They come back to Python as they went in. ``True`` is ``t``, and neither 1 nor 1.0.
 * In a goal or a fact, a set, a range, a view of a dict, a deque and an array are lists, too; equal sets are the same list. An iterator
   and a dict in the place of a list are refused. A predicate or function that is written in Python gets such objects as they are.
 * A function is a symbol with that function, so rules and ``perform`` can call it. Any other object, also a named tuple, stands for
@@ -35,7 +35,7 @@ from cramhy_runtime.ground.packages import KEYWORD, Package, ensure_package, nam
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import CURRENT
 from cramhy_runtime.utilities.lazy_lists import force_ll, lazy_list_p
-from cramhy_runtime.utilities.patterns import ANONYMOUS
+from cramhy_runtime.utilities.patterns import ANONYMOUS, NOTHING, Inserted
 from .ground import reasoning
 from .spelling import exact_lisp_name, lisp_name, other_case, python_name
 from ..symbols import sym
@@ -352,13 +352,13 @@ def make_goal(functor: Symbol, arguments: tuple[object, ...]) -> Goal:
     in a function of Lisp is a warning, and the goal fails.
     """
     if functor in _CALLS and arguments and callable(arguments[0]) and not isinstance(arguments[0], Name):
-        return Goal(Cons(_CALLS[functor], Cons(arguments[0], _lisp_list(arguments[1:]))))
+        return Goal(Cons(_CALLS[functor], Cons(arguments[0], _lisp_list(arguments[1:], False, NOTHING))))
     if gets_objects(functor):
-        return Goal(Cons(functor, _lisp_list(arguments)))
+        return Goal(Cons(functor, _lisp_list(arguments, False, NOTHING)))
     if functor in _OF_LISTS:
         for argument in arguments:
             _refuse_dict(functor, argument)
-    return Goal(Cons(functor, _lisp_list(arguments, True)))
+    return Goal(Cons(functor, _lisp_list(arguments, True, NOTHING)))
 
 
 def gets_objects(functor: Symbol) -> bool:
@@ -389,14 +389,14 @@ def collection(thing: Any) -> Any:
     """The Lisp list for a collection of Python's in a goal, or ``thing`` itself if it is none."""
     if isinstance(thing, (set, frozenset)):
         try:
-            return _lisp_list(sorted(thing), True)
+            return _lisp_list(sorted(thing), True, NOTHING)
         except TypeError:
-            return _lisp_list(sorted(thing, key=lambda each: (type(each).__name__, repr(each))), True)
+            return _lisp_list(sorted(thing, key=lambda each: (type(each).__name__, repr(each))), True, NOTHING)
     kind = thing.__class__
     if kind in _COLLECTIONS:
-        return _lisp_list(list(thing), True)
+        return _lisp_list(list(thing), True, NOTHING)
     if hasattr(kind, "tolist") and kind is not memoryview:  # an array of numpy, torch, or the module array; a column of pandas
-        return to_lisp(thing.tolist(), True)
+        return to_lisp(thing.tolist(), True, NOTHING)
     if kind.__module__ in ("builtins", "itertools") and hasattr(kind, "__next__"):
         raise TypeError(
             f"A goal has {'a generator' if kind is GeneratorType else 'an iterator'} for an argument: {thing!r}. It can be read once only, "
@@ -415,15 +415,20 @@ _COLLECTIONS: tuple[type, ...] = (range, type({}.keys()), type({}.values()), typ
 _OF_LISTS = {sym(f"CRAM-PROLOG::{name}") for name in ("MEMBER", "LENGTH", "APPEND", "NTH", "TAKE")}
 
 
-def to_lisp(thing: Any, collections: bool = False) -> Any:
-    """The Lisp data for a Python term; see the head of this module. collections: sets, ranges, arrays and the like become lists."""
+def to_lisp(thing: Any, collections: bool = False, nothing: Any = None) -> Any:
+    """The Lisp data for a Python term; see the head of this module. collections: sets, ranges, arrays and the like become lists.
+
+    nothing: what stands for None, ``nil`` or `NOTHING`, which comes back as None.
+    """
     kind = thing.__class__
-    if kind is str or kind is int or kind is float or thing is None or thing is True:
+    if kind is str or kind is int or kind is float or kind is bool:
         return thing
+    if thing is None:
+        if nothing is not None:
+            Inserted.nothing = True
+        return nothing
     if kind is list or kind is tuple or kind is EmptyList:
-        return _lisp_list(thing, collections)
-    if thing is False:
-        return None
+        return _lisp_list(thing, collections, nothing)
     if isinstance(thing, (Variable, Name)):
         return thing.symbol
     if kind is Goal:
@@ -433,17 +438,17 @@ def to_lisp(thing: Any, collections: bool = False) -> Any:
     if isinstance(thing, _FUNCTIONS):
         return function_symbol(thing)
     if kind.__module__ == "numpy" and getattr(thing, "shape", None) == () and hasattr(thing, "item"):
-        return to_lisp(thing.item())  # a number of numpy's is the number
+        return to_lisp(thing.item(), nothing=nothing)  # a number of numpy's is the number
     if kind in STANDS_FOR:
         return STANDS_FOR[kind](thing)
     return collection(thing) if collections else thing
 
 
-def _lisp_list(items: Any, collections: bool = False) -> Any:
+def _lisp_list(items: Any, collections: bool = False, nothing: Any = None) -> Any:
     end = None
     if items and items[-1].__class__ is Tail:
         items, end = items[:-1], to_lisp(items[-1].rest)
-    return list_from([to_lisp(item, collections) for item in items], end)
+    return list_from([to_lisp(item, collections, nothing) for item in items], end)
 
 
 def to_python(thing: Any, empty: Any = None) -> Any:
@@ -451,6 +456,8 @@ def to_python(thing: Any, empty: Any = None) -> Any:
     kind = thing.__class__
     if thing is None:
         return [] if empty is list else empty
+    if thing is NOTHING:
+        return None
     if kind is Cons:
         return _python_list(thing, empty)
     if isinstance(thing, Symbol):
@@ -562,7 +569,7 @@ def show(form: Any) -> str:
         elif cell is not None:
             parts += [".", show(cell)]
         return f"({' '.join(parts)})"
-    if form is None:
+    if form is None or form is NOTHING or form is False:
         return "nil"
     if form is True:
         return "t"

@@ -114,7 +114,7 @@ def import_term(term, table):
             variable = table[term] = named_variable(term)
         return variable
     if kind is not Cons:
-        return None if term is False or kind is EmptyList else term
+        return None if kind is EmptyList else term
     cell = term
     for _ in _CELLS:  # as far as nothing changes
         car = cell.car

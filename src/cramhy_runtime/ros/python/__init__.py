@@ -20,9 +20,11 @@ from ..roslisp.node import node_status, shutdown_ros_node, start_ros_node
 from ..roslisp.parameters import delete_param
 from ..roslisp.services import wait_for_service
 from ..roslisp.time import wait_duration
-from ..roslisp.topics import advertise, subscribe, unadvertise, unsubscribe
+from ..roslisp.topics import advertise, unadvertise, unsubscribe
 from .parameters import get_param, has_param, set_param
-from .running import call_service, log_level, publish, register_service, ros_debug, ros_error, ros_fatal, ros_info, ros_node, ros_warn
+from .running import (
+    call_service, log_level, publish, register_service, ros_debug, ros_error, ros_fatal, ros_info, ros_node, ros_warn, subscribe,
+)  # fmt: skip
 
 __all__ = [
     "advertise", "call_service", "delete_param", "get_param", "has_param", "log_level", "message_class", "node_status", "publish",

@@ -6,15 +6,18 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from cramhy_runtime import kernel
-from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 from ..messages import RosMessage, service_type
+from ..received import for_python, python_receiver
 from ..roslisp import logging, node, services, topics
 from ..strict import check, check_type
 from ..topics import Publication
 
 if TYPE_CHECKING:
-    from ..signatures import Answers, ServiceName
+    from collections.abc import Callable
+
+    from ..signatures import Answers, ServiceName, TypeName
 
 Topic = str | tuple[str, ...]
 """What a line of the log is about: ``"arm"``, or a path such as ``("robot", "arm")``."""
@@ -46,6 +49,18 @@ def publish(topic: str | Publication, message: RosMessage) -> int:
     return topics.publish(topic, message)
 
 
+def subscribe(
+    topic: str, topic_type: TypeName, callback: Callable[[Any], object], *, max_queue_length: int | None = None
+) -> topics.Subscriber | None:
+    """Call ``callback`` with every message on ``topic``; returns what `unsubscribe` wants.
+
+    topic_type: a text, ``"sensor_msgs/LaserScan"``, or the class of its messages. max_queue_length: how many messages may wait; older ones
+    are dropped. Of an unknown type it warns, and returns None. A ``uint8[]`` arrives as a `bytearray` that is equal to lists, too:
+    ``numpy.asarray(image.data)`` sees it without a copy. Other arrays are lists.
+    """
+    return topics.subscribed(topic, topic_type, callback, max_queue_length, python_receiver)
+
+
 def call_service(service: str | services.ServiceClient, kind: ServiceName | None = None, /, **fields: object) -> RosMessage | None:
     """Call a service with the fields of its request, ``call_service("/spawn", "turtlesim/Spawn", x=2, y=3)``; its response.
 
@@ -53,11 +68,15 @@ def call_service(service: str | services.ServiceClient, kind: ServiceName | None
     for a field that the request does not have.
     """
     if isinstance(service, services.ServiceClient):
-        return services.call_service(service, _checked(service.type.request(**fields)))
+        return _received(services.response_of(service, _checked(service.type.request(**fields))))
     if kind is None:
         raise TypeError(f'call_service needs the type of the service, too: call_service("{service}", "std_srvs/Empty").')
     found = service_type(kind)
-    return services.call_service(service, found.name, _checked(found.request(**fields)))
+    return _received(services.response_of(service, found.name, _checked(found.request(**fields))))
+
+
+def _received(response: RosMessage | None) -> RosMessage | None:
+    return None if response is None else for_python(response)
 
 
 def register_service(name: str, kind: ServiceName, callback: Answers) -> None:
@@ -71,7 +90,7 @@ def register_service(name: str, kind: ServiceName, callback: Answers) -> None:
         response = callback(request)
         return _checked(found.response(**response) if isinstance(response, dict) else response)
 
-    services.register_service_fn(name, answer, kind)
+    services.offered(name, answer, kind, python_receiver)
 
 
 def _checked(message: RosMessage) -> RosMessage:

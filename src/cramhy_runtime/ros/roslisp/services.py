@@ -22,6 +22,7 @@ from cramhy_runtime.utilities.wait_queue import need, time_limit
 from .. import messages, wire
 from ..message_building import get_field, instance
 from ..messages import RosMessage
+from ..received import for_lisp, for_python, lisp_receiver
 from ..services import Service, exchange
 from ..strict import check
 from . import logging, node
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
     from ..graph import Node
     from ..services import Call
-    from ..signatures import Handler, ServiceName, Text
+    from ..signatures import Handler, MessageType, ServiceName, Text
 
 
 NAMED_BY_STRINGS = 'A service is named by a string, such as "/clear". Has the variable been set that holds it?'
@@ -197,12 +198,19 @@ def call_service(service: ServiceClient | Text, *rest_args: object) -> RosMessag
     The request is keywords and values, or exactly one request object. If no node offers the service, it is a ``ros-rpc-error``;
     if the call fails, an error. Source: roslisp.md 7.1.
     """
+    response = _call_service(service, rest_args)
+    return None if response is None else for_lisp(response)
+
+
+def response_of(service: ServiceClient | Text, *rest_args: object) -> RosMessage | None:
+    """`call_service` for any language: the response in the form that the graph has."""
     return _call_service(service, rest_args)
 
 
 def checked_call_service(service: ServiceClient | Text, *rest_args: object) -> RosMessage | None:
-    """`call_service`, whose request is refused where one of Python would be: an integer that is out of range is a ValueError."""
-    return _call_service(service, rest_args, check)
+    """`call_service` for Python and Hy. A request that Python would refuse is refused: an integer that is out of range is a ValueError."""
+    response = _call_service(service, rest_args, check)
+    return None if response is None else for_python(response)
 
 
 def _call_service(service: Any, rest_args: tuple[Any, ...], check_request: Callable[[RosMessage], None] | None = None) -> RosMessage | None:
@@ -262,6 +270,16 @@ def register_service_fn(service_name: Text, function: Handler | Symbol, service_
 
     If the node offers that service already, it is an error. Source: roslisp.md 7.2.
     """
+    return offered(service_name, function, service_type, lisp_receiver)
+
+
+def offered(
+    service_name: Text,
+    function: Handler | Symbol,
+    service_type: ServiceName,
+    receiver: Callable[[MessageType, Callable[[Any], Any]], Callable[[Any], Any]],
+) -> int:
+    """`register_service_fn` for any language: ``receiver(class, function)`` is the function that is called with the graph's requests."""
     here = node.require_node()
     kind = messages.service_type(service_type)
     if not isinstance(service_name, (str, LispString)):
@@ -275,7 +293,7 @@ def register_service_fn(service_name: Text, function: Handler | Symbol, service_
     if not callable(function):
         return conditions.type_error(function, "FUNCTION", "\nwhen binding FUNCTION")
     plain_function(function, f"what answers the service {name}")
-    here.add_service(LispService(here, name, kind, function))
+    here.add_service(LispService(here, name, kind, receiver(kind.request, function)))
     event_loop(here)
     return 1
 
@@ -320,7 +338,7 @@ def call_persistent_service(service: PersistentService, *request: object) -> Ros
         if connection is not None and here.graph.services.get(connection.name) is connection:
             answer = exchange(connection, message)
             if not answer.lost and answer.failure is None:
-                return answer.response
+                return None if answer.response is None else for_lisp(answer.response)
             problem = answer.failure or "The server closed the connection."
         else:
             problem = f"The connection is closed: {here.graph.cut_off}." if here.graph.cut_off else "The connection is closed."

@@ -17,6 +17,7 @@ from cramhy_runtime.ground.data import NO_VALUES, LispString, Symbol
 from cramhy_runtime.ground.printing import format_to_string
 from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method, no_primary_method
 from ..messages import RosMessage, topic_class
+from ..received import lisp_receiver
 from ..topics import Publication
 from ..type_texts import same_on_the_wire
 from . import logging, node
@@ -252,6 +253,17 @@ def subscribe(
     ``max_queue_length``: how many messages may wait; older ones are dropped. Nil or ``infty``: unlimited.
     Source: roslisp.md 6.4.
     """
+    return subscribed(topic, topic_type, callback, max_queue_length, lisp_receiver)
+
+
+def subscribed(
+    topic: Text,
+    topic_type: TypeName,
+    callback: Callable[[Any], object],
+    max_queue_length: object,
+    receiver: Callable[[MessageType, Callable[[Any], object]], Callable[[Any], object]],
+) -> Subscriber | None:
+    """`subscribe` for any language: ``receiver(class, callback)`` is the function that is called with the graph's messages."""
     topic = _topic_name(topic)
     here = node.require_node()
     if not callable(callback) or isinstance(callback, Symbol):
@@ -280,7 +292,7 @@ def subscribe(
     first = subscription is None
     if first:
         subscription = Subscription(here, name, cls, limit)
-    subscriber = Subscriber(name, subscription, callback)
+    subscriber = Subscriber(name, subscription, receiver(cls, callback))
     subscription.callbacks.insert(0, subscriber)
     if first:
         waiting = here.add_subscription(subscription)

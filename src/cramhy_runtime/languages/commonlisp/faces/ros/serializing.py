@@ -12,6 +12,7 @@ from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
 from cramhy_runtime.ros import messages, serialization
 from cramhy_runtime.ros.messages import RosMessage
+from cramhy_runtime.ros.received import for_lisp
 
 from ...files.file_stream_functions import read_byte, write_byte
 
@@ -35,7 +36,7 @@ def deserialize(msg, istream):
 
 
 def _read(message_type, istream):
-    return serialization.deserialize(message_type, lambda count: bytes([read_byte(istream) for _ in range(count)]))
+    return for_lisp(serialization.deserialize(message_type, lambda count: bytes([read_byte(istream) for _ in range(count)])))
 
 
 def serialization_length(msg):
