@@ -100,7 +100,10 @@ def _reference(designator=UNSUPPLIED, role=UNSUPPLIED, *more):
         await_resolver(designator, me)
     designator.resolver = me
     try:
-        result = resolve_designator(designator, DEFAULT_ROLE.value if role is UNSUPPLIED else role)
+        if isinstance(designator, LocationDesignator):
+            result = _place(designator, DEFAULT_ROLE.value if role is UNSUPPLIED else role)
+        else:
+            result = resolve_designator(designator, DEFAULT_ROLE.value if role is UNSUPPLIED else role)
         designator.effective = True
         if designator.timestamp is None:
             designator.timestamp = current_timestamp()
@@ -108,6 +111,18 @@ def _reference(designator=UNSUPPLIED, role=UNSUPPLIED, *more):
     finally:
         designator.resolver = None
         serve(designator)
+
+
+def _place(designator: LocationDesignator, role: object) -> object:
+    """The place of a location designator: the first of the list that ``resolve-designator`` gives, which may be the one of a user."""
+    if designator.current_solution is None:
+        if designator.data is None:  # a designator that follows another one has the places that are left
+            places = resolve_designator(designator, role)
+            if places is None:
+                return unresolved(designator, "Unable to resolve designator `~a'")
+            designator.data = places if isinstance(places, Cons) else Cons(places, None)
+        designator.current_solution = lazy_car(designator.data)
+    return designator.current_solution
 
 
 @reference.enclose
@@ -166,9 +181,7 @@ def _resolve_location(designator, role=None):
         designator.data = location_solutions(designator)
         if designator.data is None:
             return unresolved(designator, "Unable to resolve designator `~a'", told=why_no_place(designator))
-    if designator.current_solution is None:
-        designator.current_solution = lazy_car(designator.data)
-    return designator.current_solution
+    return designator.data
 
 
 @resolve_designator.method(ObjectDesignator, None)

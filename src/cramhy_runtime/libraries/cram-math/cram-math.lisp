@@ -44,9 +44,11 @@
   "The number between FROM (SHARE is 0) and TO (SHARE is 1)."
   (+ from (* share (- to from))))
 
-(defun average (numbers)
-  "The mean of a sequence of numbers."
-  (/ (reduce #'+ numbers) (length numbers)))
+(defun average (numbers &optional (other nil two-numbers-p))
+  "The mean of a sequence of numbers; of two arguments, numbers, the one in the middle between them."
+  (if two-numbers-p
+      (+ numbers (/ (- other numbers) 2))
+      (/ (reduce #'+ numbers) (length numbers))))
 
 ;;; --------------------------------------------------------------------------------------------------------------- matrices
 
