@@ -117,10 +117,12 @@
 (defoperator define-hook [name lambda-list #* options]
   "A generic function that calls all applicable methods, the most specific first, and gives the list of their results.
 
-  The option `(:method-combination :hook-combination operator)` has `operator` called with the results instead."
+  The option `(:method-combination :hook-combination operator)` has `operator` called with the results instead, and
+  `(:method-combination cut:ordered-hooks)` has those called first whose qualifiers are a name and a number."
   (setv combination (sym ":METHOD-COMBINATION"))
   (setv wanted (sum (lfor option options :if (and (listp option) (is option.car combination)) (elements option.cdr)) []))
+  (setv own (and wanted (not (.startswith (str (get wanted 0)) ":")) (is-not (get wanted 0) (sym "CUT::HOOKS")) (get wanted 0)))
   (setv wanted (cut wanted (if (in (sym ":HOOK-COMBINATION") wanted) (.index wanted (sym ":HOOK-COMBINATION")) (len wanted)) None))
   `(defgeneric ~name ~lambda-list
-     (:method-combination cut:hooks ~@wanted)
+     (:method-combination ~(or own (sym "CUT::HOOKS")) ~@wanted)
      ~@(lfor option options :if (not (and (listp option) (is option.car combination))) option)))

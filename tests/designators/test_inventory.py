@@ -20,20 +20,21 @@ CLASSES = """designator designator-id-mixin equate-notification-mixin object-des
     location-designator human-designator object-designator-data designator-error"""
 MACROS = """a an all when register-designator-class with-desig-props with-equate-callback register-location-generator
     register-location-validation-function with-designator-solution-filter"""
-GENERIC = """make-designator equate desig-equal first-desig current-desig reference next-solution resolve-designator
+GENERIC = """reset make-designator equate desig-equal first-desig current-desig reference next-solution resolve-designator
     designator-solutions-equal designator-pose designator-distance register-equate-callback unregister-equate-callback"""
 READERS = """timestamp description properties parent successor effective quantifier object-id object-pose object-color object-identifier
     designator"""
-FUNCTIONS = """copy-designator merge-desig-descriptions extend-designator-properties make-effective-designator
+FUNCTIONS = """copy-designator merge-desig-descriptions extend-designator-properties rename-designator-property-key make-effective-designator
     newest-effective-designator designator-solutions desig-prop-value desig-prop-values get-equal-designators update-designator-properties
     list-location-generators list-location-validation-functions loc-desig-location delete-location-generator-function
     delete-location-validation-function enable-location-generator-function disable-location-generator-function
     enable-location-validation-function disable-location-validation-function validate-location-designator-solution
-    next-filtered-designator-solution get-all-designators"""
+    next-filtered-designator-solution get-all-designators
+    resolve-location-designator-through-generators-and-validators"""
 PREDICATES = """action-grounding motion-grounding location-grounding desig-reference designator-groundings current-designator loc-desig?
     obj-desig? action-desig? motion-desig? desig-prop desig-class desig-timestamp desig-description effective-designator desig-value
     desig-location-prop equated-desigs desig-equal newest-effective-designator designator"""
-VARIABLES = "*default-role* *designator-pprint-description* *location-generator-max-retries*"
+VARIABLES = "*default-role* *designator-pprint-description* *location-generator-max-retries* *print-location-validation-function-results*"
 ONLY_SYMBOLS = """data desig action object location human accept-solution reject-solution register-object-desig-resolver
     resolve-object-desig assert-desig-binding retract-desig-binding"""
 NOT_IN_THIS_VERSION = "the some next-different-solution *retries* desig-prop-function"
@@ -74,6 +75,9 @@ LAMBDA_LISTS = {
     "next-filtered-designator-solution": "(DESIGNATOR FILTER)",
     "loc-desig-location": "(LOC-DESIG)",
     "get-all-designators": "NIL",
+    "reset": "(DESIG)",
+    "rename-designator-property-key": "(DESIGNATOR OLD-PROPERTY NEW-PROPERTY)",
+    "resolve-location-designator-through-generators-and-validators": "(DESIG)",
 }
 
 

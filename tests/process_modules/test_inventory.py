@@ -28,7 +28,7 @@ CPM = {
 EXE = {
     "class": "designator-reference-failure designator-goal-parsing-failure",
     "generic": "generic-perform",
-    "function": "perform try-reference-designator",
+    "function": "perform try-reference-designator call-plan-with-designator-properties",
 }
 EVERY = [
     (package, kind, name) for package, table in (("CPM", CPM), ("EXE", EXE)) for kind, names in table.items() for name in names.split()

@@ -495,6 +495,17 @@ def extend_designator_properties(designator, property_extension):
     return new(designator.__class__, list_from(list(pairs_of(designator)), property_extension))
 
 
+def rename_designator_property_key(designator: Designator, old_property: object, new_property: object) -> Designator:
+    """A new designator of the same class, in which the first property ``old_property`` is called ``new_property`` and stands at the end.
+
+    It is not equated to the old one. Without such a property the new one is there all the same, with nothing behind its key, as in CRAM.
+    """
+    old = next((pair for pair in pairs_of(designator) if pair.car is old_property), None)
+    rest = [pair for pair in pairs_of(designator) if pair is not old]
+    made: Designator = new(designator.__class__, list_from([*rest, Cons(new_property, old.cdr if old is not None else None)]))
+    return made
+
+
 def update_designator_properties(new_properties, old_properties):
     """``old_properties`` with each new property in front, and without the old ones of its key."""
     result = list(pairs(old_properties))

@@ -12,11 +12,11 @@ from contextlib import contextmanager
 from cramhy_runtime.ground.conditions import error, handler_case, type_error
 from cramhy_runtime.ground.data import list_from
 from cramhy_runtime.ground.hooks import Hook
-from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.ground.dispatch.generic_functions import generic, protocol_function
 from cramhy_runtime.ground.packages import is_symbol
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from ..utilities.lazy_lists import from_iterator
-from .classes import Designator, DesignatorError
+from .classes import Designator, DesignatorError, copy_designator
 from .protocol import equate, next_solution, reference
 
 if TYPE_CHECKING:
@@ -141,6 +141,15 @@ def designator_solutions(desig, from_root=None):
 
 _END = object()
 
+
+def _reset(designator: Designator) -> Designator:
+    copy: Designator = copy_designator(designator)
+    equate(designator, copy)
+    return copy
+
+
+reset = protocol_function("DESIG::RESET", "(desig)", _reset)
+"""``desig:reset``: a new designator with the same description and without solutions, which is equated to the old one."""
 
 register_equate_callback = generic(
     "DESIG::REGISTER-EQUATE-CALLBACK",

@@ -19,7 +19,8 @@ from cramhy_runtime.ground.data import Cons, UndefinedFunction, list_from, one, 
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.source_places import circumstance
 from cramhy_runtime.ground.packages import is_symbol, keyword
-from cramhy_runtime.ground.printing import attempt_to_print, prin1_to_string
+from cramhy_runtime.ground.printing import attempt_to_print, prin1_to_string, princ_to_string
+from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.prolog.engine.database import extended
 from ..prolog.query import ask
 from cramhy_runtime.prolog.terms.terms import Var
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 ACCEPT, UNKNOWN, MAYBE_REJECT = keyword("ACCEPT"), keyword("UNKNOWN"), keyword("MAYBE-REJECT")
+PRINT_VERDICTS = special(sym("DESIG::*PRINT-LOCATION-VALIDATION-FUNCTION-RESULTS*"), None)
 MAX_RETRIES = special(sym("DESIG::*LOCATION-GENERATOR-MAX-RETRIES*"), 30)
 LOCATION_GROUNDING = sym("DESIG::LOCATION-GROUNDING")
 FILTERS = inherit(sym("DESIG::*LOCATION-SOLUTION-FILTERS*"), None)
@@ -156,6 +158,14 @@ def location_solutions(designator):
     if solutions is None:
         attached(designator)["search"] = search
     return solutions
+
+
+def resolve_location_designator_through_generators_and_validators(desig: object) -> Cons | None:
+    """The lazy list of the places that the generators give for a location designator and the validators let pass; nil without any."""
+    if not isinstance(desig, LocationDesignator):
+        type_error(desig, "LOCATION-DESIGNATOR")
+    places: Cons | None = location_solutions(desig)
+    return places
 
 
 def why_no_place(designator):
@@ -302,6 +312,8 @@ def _judge(designator, solution):
         verdict = UNKNOWN
         for name in names:
             answer = _verdict(name, designator, solution)
+            if truth(PRINT_VERDICTS.value):
+                PORTS.output.stream("standard-output").write(f"validator {princ_to_string(name)} says: {princ_to_string(answer)}\n")
             if answer is ACCEPT:
                 verdict = ACCEPT
             elif answer is MAYBE_REJECT:

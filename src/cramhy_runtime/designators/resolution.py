@@ -105,7 +105,10 @@ def _reference(designator=UNSUPPLIED, role=UNSUPPLIED, *more):
         await_resolver(designator, me)
     set_resolver(designator, me)
     try:
-        result = resolve_designator(designator, DEFAULT_ROLE.value if role is UNSUPPLIED else role)
+        if isinstance(designator, LocationDesignator):
+            result = _place(designator, DEFAULT_ROLE.value if role is UNSUPPLIED else role)
+        else:
+            result = resolve_designator(designator, DEFAULT_ROLE.value if role is UNSUPPLIED else role)
         set_effective(designator, True)
         if designator.timestamp is None:
             set_timestamp(designator, current_timestamp())
@@ -113,6 +116,18 @@ def _reference(designator=UNSUPPLIED, role=UNSUPPLIED, *more):
     finally:
         set_resolver(designator, None)
         serve(designator)
+
+
+def _place(designator: LocationDesignator, role: object) -> object:
+    """The place of a location designator: the first of the list that ``resolve-designator`` gives, which may be the one of a user."""
+    if designator.current_solution is None:
+        if designator.data is None:  # a designator that follows another one has the places that are left
+            places = resolve_designator(designator, role)
+            if places is None:
+                return unresolved(designator, "Unable to resolve designator `~a'")
+            set_data(designator, places if isinstance(places, Cons) else Cons(places, None))
+        set_current_solution(designator, lazy_car(designator.data))
+    return designator.current_solution
 
 
 @reference.enclose
@@ -172,9 +187,7 @@ def _resolve_location(designator, role=None):
         set_data(designator, location_solutions(designator))
         if designator.data is None:
             return unresolved(designator, "Unable to resolve designator `~a'", told=why_no_place(designator))
-    if designator.current_solution is None:
-        set_current_solution(designator, lazy_car(designator.data))
-    return designator.current_solution
+    return designator.data
 
 
 @resolve_designator.method(ObjectDesignator, None)

@@ -8,16 +8,17 @@ from __future__ import annotations
 
 from cramhy_runtime.cpl.failures.failure_types import SimplePlanFailure
 from cramhy_runtime.cpl.failures.handling import fail, fail_with_advice
-from cramhy_runtime.cpl.forms.plans import GOAL, bodies_of, call_goal, define_goal
+from cramhy_runtime.cpl.forms.plans import GOAL, bodies_of, call_goal, define_goal, plan_property
 from cramhy_runtime.cpl.tree.task_tree import with_task_tree_node
-from ..designators.classes import ActionDesignator, DesignatorError, MotionDesignator, desig_prop_value
+from ..designators.classes import ActionDesignator, DesignatorError, MotionDesignator, desig_prop_value, pairs_of
 from ..designators.resolution import reference
 from cramhy_runtime.ground.condition_types import SimpleWarning
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.catching import CATCHABLE, Case, caught
 from cramhy_runtime.ground.conditions import Error, handler_case, warn
-from cramhy_runtime.ground.data import UNBOUND, Cons, Symbol, UndefinedFunction, lisp_list, one, truth
-from cramhy_runtime.ground.functions import check_shape
+from cramhy_runtime.ground.data import UNBOUND, Cons, MultipleValues, Symbol, UndefinedFunction, lisp_list, one, python_list, truth
+from cramhy_runtime.ground.functions import check_shape, function_of
+from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.ground.source_places import circumstance
 from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.ground.packages import keyword
@@ -150,17 +151,46 @@ def _perform_action(designator):
         return fail(
             "Action designator `~a' resolved to cram function `~a', but it isn't defined. Cannot perform action.", designator, command
         )
+    by_keywords = _takes_properties(solution)
+    call = _call_plan_with_properties if by_keywords else _call_plan
     goal = desig_prop_value(designator, GOAL_KEY)
     if goal is None:
-        return _call_plan(designator, solution)
+        return call(designator, solution)
     _check_goal(goal)
+    result = None
     if _goal_holds(goal):
         warn(SimpleWarning("Action goal `~a' already achieved.", goal))
     else:
-        _call_plan(designator, solution)
+        result = call(designator, solution)
     if not _goal_holds(goal):
+        if by_keywords:
+            warn("Goal `~a' of action `~a' was not achieved.", goal, designator)
+            return one(result)
         return fail("Goal `~a' of action `~a' was not achieved.", designator, goal)
-    return None
+    return one(result) if by_keywords else None
+
+
+def _takes_properties(solution: Cons) -> bool:
+    """Whether a grounding is of the form ``(plan designator)`` for a plan that takes keywords only, as since CRAM's branch devel.
+
+    Before, the designator itself was the argument; a plan that takes an argument still gets it.
+    """
+    rest = solution.cdr
+    if not isinstance(rest, Cons) or rest.cdr is not None or not isinstance(rest.car, ActionDesignator):
+        return False
+    parameters = python_list(PORTS.definitions.lambda_list(solution.car.function) or None)
+    if parameters and getattr(parameters[0], "name", "") == "&REST" and plan_property(solution.car, "PLAN-TYPE") is not None:
+        parameters = python_list(plan_property(solution.car, "PLAN-LAMBDA-LIST"))  # its function hands all on to the plan's task
+    return bool(parameters) and getattr(parameters[0], "name", "") == "&KEY"
+
+
+def call_plan_with_designator_properties(plan: Any, designator: Designator) -> MultipleValues:
+    """Call ``plan``, a function or its name, with the properties of ``designator`` as keyword arguments.
+
+    Returns two values: the plan's, and the designator. The first of two properties with one key counts.
+    """
+    arguments = [item for pair in pairs_of(designator) for item in (pair.car, pair.cdr.car if pair.cdr is not None else None)]
+    return MultipleValues((one(function_of(plan)(*arguments)), designator))
 
 
 _told_with_the_grounding = circumstance(
@@ -177,6 +207,11 @@ def _command(designator, solution):
 @_told_with_the_grounding
 def _call_plan(designator, solution):
     return solution.car.function(*(solution.cdr or ()))
+
+
+_call_plan_with_properties = _told_with_the_grounding(
+    lambda designator, solution: call_plan_with_designator_properties(solution.car, solution.cdr.car)
+)
 
 
 def _check_goal(goal):

@@ -233,20 +233,22 @@ class HookCombination(Combination):
     """CRAM's ``hooks``: all methods, most specific first, whatever their one qualifier; the list of their results."""
 
     accepts_none = True
+    requirement = (
+        "has no qualifier.~%The method combination type HOOKS requires that each method has exactly one qualifier, which may be any symbol."
+    )
 
     def knows(self, qualifiers):
         return len(qualifiers) == 1
 
+    def ordered(self, methods):
+        """The methods in the order in which they are called; ``methods``: the most specific first."""
+        return methods
+
     def effective(self, generic_function, methods, classes):
         for method in methods:
             if not self.knows(method.qualifiers):
-                return invalid(
-                    generic_function,
-                    method,
-                    "has no qualifier.~%The method combination type HOOKS requires that each "
-                    "method has exactly one qualifier, which may be any symbol.",
-                )
-        functions = [link(generic_function, [method], classes) for method in methods]
+                return invalid(generic_function, method, self.requirement)
+        functions = [link(generic_function, [method], classes) for method in self.ordered(methods)]
         fold = self._fold(generic_function.combination_options)
 
         def run(*arguments, **keywords):
@@ -261,10 +263,54 @@ class HookCombination(Combination):
         return lambda thunks: lisp_list(*[one(thunk()) for thunk in thunks])
 
 
+def _number(method):
+    """The number of a method whose qualifiers are a name and a number, ``:heuristics 20``; ``None`` for others."""
+    qualifiers = method.qualifiers
+    return qualifiers[1] if len(qualifiers) == 2 and qualifiers[1].__class__ is int and qualifiers[1] >= 0 else None
+
+
+class OrderedHookCombination(HookCombination):
+    """CRAM's ``ordered-hooks``: as ``hooks``, but those with a number behind their name are called first, the lowest number first."""
+
+    requirement = "has no qualifier.~%The method combination type ORDERED-HOOKS requires a name, and perhaps a number behind it."
+
+    def knows(self, qualifiers):
+        return 1 <= len(qualifiers) <= 2
+
+    def ordered(self, methods):
+        numbered = [method for method in methods if _number(method) is not None]
+        return sorted(numbered, key=_number) + [method for method in methods if _number(method) is None]
+
+
+class FirstInOrderCombination(Combination):
+    """CRAM's ``first-in-order-and-around``: of the methods with a name and a number, the one with the lowest number is called.
+
+    Of equal numbers the most specific method counts. Methods that are qualified with ``:around`` are called around it.
+    """
+
+    def knows(self, qualifiers):
+        return qualifiers == (AROUND,) or len(qualifiers) == 2
+
+    def effective(self, generic_function, methods, classes):
+        for method in methods:
+            if method.qualifiers != (AROUND,) and _number(method) is None:
+                return invalid(
+                    generic_function,
+                    method,
+                    "has an invalid qualifier.~%The method combination type FIRST-IN-ORDER-AND-AROUND requires :AROUND, or a name and a "
+                    "number, such as :HEURISTICS 20.",
+                )
+        numbered = [method for method in methods if method.qualifiers != (AROUND,)]
+        if not numbered:
+            return lambda *arguments, **keywords: retrying(generic_function, arguments, no_primary_method_error)
+        main = link(generic_function, [min(numbered, key=_number)], classes)
+        return link(generic_function, [method for method in methods if method.qualifiers == (AROUND,)], classes, main)
+
+
 # ---------------------------------------------------------------------------------------------------------------- definitions
 
 _combinations: dict = {}
-_by_name = {"HOOKS": HookCombination}
+_by_name = {"HOOKS": HookCombination, "ORDERED-HOOKS": OrderedHookCombination, "FIRST-IN-ORDER-AND-AROUND": FirstInOrderCombination}
 
 
 def register_combination(combination):
@@ -283,7 +329,7 @@ _define_standard_ones()
 
 
 def known_combination(name):
-    """The method combination that the symbol ``name`` names, or ``None``. HOOKS is known under this name in every package."""
+    """The method combination that the symbol ``name`` names, or ``None``. Those of CRAM are known by their names in every package."""
     found = _combinations.get(name)
     if found is None and isinstance(name, Symbol) and name.name in _by_name:
         found = _combinations[name] = _by_name[name.name](name)

@@ -54,6 +54,12 @@
                         (/ (* (- (x other) (x one)) (- (y point) (y one))) (- (y other) (y one)))))
             (setf inside (not inside))))))))
 
+(defun average (numbers &optional (other nil two-numbers-p))
+  "The mean of a sequence of numbers; of two arguments, numbers, the one in the middle between them."
+  (if two-numbers-p
+      (+ numbers (/ (- other numbers) 2))
+      (/ (reduce #'+ numbers) (length numbers))))
+
 ;;; --------------------------------------------------------------------------------------------------------------- matrices
 
 (deftype double-matrix () '(simple-array double-float (* *)))

@@ -14,7 +14,7 @@ from cramhy_runtime.ground.data import Cons, Symbol, UndefinedFunction, list_fro
 from cramhy_runtime.utilities.lazy_lists import lazy_take
 from ..terms.deep_terms import LIST_SUSPECTED, refuse_endless
 from .function_calls import BREAK_ON_LISP_ERRORS, call_lisp, compare, lisp_fun, lisp_fun_goal, lisp_pred_goal
-from ..engine.machine import fail
+from ..engine.machine import Machine, fail
 from .native_predicates import step_predicate, test
 from ..symbols import sym
 from ..terms.terms import Var, deref, elements, ground, import_term, list_end, raw, resolve, undo, unify, value_of
@@ -132,6 +132,25 @@ def _member_of_extension(m, step):
 
 
 step_predicate("MEMBER", _LISTS, 2)(_member)
+
+
+def _subset(m: Machine, subset: object, lst: object) -> bool:
+    """Whether each element of a list is among those of another one, as far as both unify. No variable gets a value."""
+    trail = m.trail
+    height = len(trail)
+    for wanted in elements(subset):
+        for item in elements(lst):
+            found = m.unify(wanted, item)
+            if len(trail) > height:
+                undo(trail, height)
+            if found:
+                break
+        else:
+            return False
+    return True
+
+
+test("CRAM-PROLOG::SUBSET", _LISTS)(_subset)
 
 
 @test("LENGTH", _LISTS, calls_lisp=True)

@@ -14,15 +14,15 @@ from cramhy_runtime.designators.symbols import sym
 
 FUNCTIONS = {
     classes: "copy-designator merge-desig-descriptions extend-designator-properties update-designator-properties "
-    "make-effective-designator desig-prop-value desig-prop-values get-all-designators make-designator",
-    equating: "equate desig-equal first-desig current-desig newest-effective-designator get-equal-designators designator-solutions "
+    "rename-designator-property-key make-effective-designator desig-prop-value desig-prop-values get-all-designators make-designator",
+    equating: "reset equate desig-equal first-desig current-desig newest-effective-designator get-equal-designators designator-solutions "
     "register-equate-callback unregister-equate-callback",
     resolution: "reference resolve-designator next-solution designator-solutions-equal designator-pose designator-distance "
     "loc-desig-location",
     locations: "list-location-generators list-location-validation-functions delete-location-generator-function "
     "delete-location-validation-function enable-location-generator-function disable-location-generator-function "
     "enable-location-validation-function disable-location-validation-function validate-location-designator-solution "
-    "next-filtered-designator-solution",
+    "next-filtered-designator-solution resolve-location-designator-through-generators-and-validators",
     readers: "description properties parent successor effective quantifier object-pose object-color object-identifier designator",
 }
 
@@ -40,7 +40,8 @@ EXPORTED = """designator-id-mixin equate-notification-mixin object-designator ac
     human-designator object-designator-data designator-error action-grounding motion-grounding location-grounding desig-reference
     designator-groundings current-designator loc-desig? obj-desig? action-desig? motion-desig? desig-prop desig-class desig-timestamp
     desig-description effective-designator desig-value desig-location-prop equated-desigs *default-role*
-    *designator-pprint-description* *location-generator-max-retries* data desig action object location human accept-solution
+    *designator-pprint-description* *location-generator-max-retries*
+    *print-location-validation-function-results* data desig action object location human accept-solution
     reject-solution register-object-desig-resolver resolve-object-desig assert-desig-binding retract-desig-binding"""
 
 

@@ -38,7 +38,7 @@ def define_faces():
         "CRAM-EXECUTIVE",
         ["EXE"],
         use=["CRAM-LANGUAGE", "CRAM-DESIGNATORS"],
-        functions={executive: "perform generic-perform try-reference-designator"},
+        functions={executive: "perform generic-perform try-reference-designator call-plan-with-designator-properties"},
         export="designator-reference-failure designator-goal-parsing-failure",
     )
     export(PROCESS_MODULES)

@@ -41,7 +41,7 @@ def define():
         internal="restore-fact-group",
         export="""?_ prolog object-id and or not -> *-> cut lisp-fun lisp-pred assert-type bound ground true fail once call findall bagof
         setof
-            every forall member take generate-values == equal length append sort reduce max string-concat format warn error
+            every forall member subset take generate-values == equal length append sort reduce max string-concat format warn error
             slot-value get-slot-value instance-of lisp-type symbol-value set-symbol-value < > <= >=""",
     )
     export(PROLOG)

@@ -14,7 +14,7 @@ from cramhy_runtime.ground.packages import sym
 from ...types.types import define_type
 
 from cramhy_runtime.utilities import barriers, lazy_lists, locks, patterns, quad_trees, queues, semaphores, small_functions, threads
-from . import features, file_cache
+from . import features, file_cache, newer_functions
 
 
 def lazy_list_of(initial, body, restarts):
@@ -66,6 +66,7 @@ def define():
                 lazy-take lazy-skip lazy-flatten lazy-rests copy-lazy-list delay-p force""",
             patterns: """is-var is-unnamed-var is-segvar is-segform var-name gen-var is-genvar add-bdg var-value substitute-vars
                 match-segvar pat-match pat-match-p vars-in is-bound is-ground rename-vars patterns-eq bindings-equal map-tree""",
+            newer_functions: "random-with-minimum recursive-alist-hash-table replace-all",
             small_functions: """deprecate style-warn copy-object current-timestamp set-timestamp-function set-default-timestamp-function
                 microsecond-timestamp-function current-string-timestamp flip compare minimum maximum ensure-unused-string
                 sanitize-filename equalize-two-list-lengths equalize-lists-of-lists-lengths make-data-pool new-pool-value pool-value
@@ -73,7 +74,7 @@ def define():
             features: "function-bound-feature",
         },
         export="?_ !?_ cont finish next hooks timestamp *timestamp-function* deprecation-warning pool-value-unbound semaphore queue "
-        "mailbox barrier cyclic-barrier",
+        "mailbox barrier cyclic-barrier ordered-hooks first-in-order-and-around",
         internal="lazy-cons-elem on-prepare-prolog-prove on-finish-prolog-prove",
     )
     export(UTILITIES)
