@@ -6,17 +6,18 @@ reached at once, the error itself is signalled, and so is one of a form of Commo
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
 from cramhy_runtime.ground.condition_types import Error, ProgramError, SimpleWarning
 from cramhy_runtime.ground.conditions import error, handler_case
 from cramhy_runtime.ground.data import Symbol, lisp_list
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.storage.dependency_tracing import current
 
 from ..syntax.lambda_lists import support
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 class CompiledProgramError(ProgramError):
