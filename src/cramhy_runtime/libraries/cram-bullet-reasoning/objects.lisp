@@ -219,6 +219,25 @@
     (loop for link in (solid-links robot)
           collect (make-instance 'rigid-body :name (make-rigid-body-name (name robot) link) :object robot :link link))))
 
+(defgeneric world (object)
+  (:documentation "The world that OBJECT is in.")
+  (:method ((object object)) (robot-world:thing-world object)))
+
+(defun make-object (world name &optional rigid-bodies (add t))
+  "The original makes an object of bodies of Bullet's, which are not here."
+  (declare (ignore world rigid-bodies add))
+  (error "~a cannot be made of bodies of Bullet's, which cramhy does not have. Use (btr:add-object world type ~s pose ...)." name name))
+
+(defun merge-bounding-boxes (box other)
+  "The bounding box around two bounding boxes."
+  (flet ((corner (box operation)
+           (funcall operation (bounding-box-center box) (v* (bounding-box-dimensions box) 0.5)))
+         (extreme (function one two)
+           (make-3d-vector (funcall function (x one) (x two)) (funcall function (y one) (y two)) (funcall function (z one) (z two)))))
+    (let ((low (extreme #'min (corner box #'v-) (corner other #'v-)))
+          (high (extreme #'max (corner box #'v+) (corner other #'v+))))
+      (cl-bullet:make-bounding-box :center (v* (v+ low high) 0.5) :dimensions (v- high low)))))
+
 (defun rigid-body-names (object)
   "The names of the bodies of OBJECT."
   (mapcar #'name (rigid-bodies object)))

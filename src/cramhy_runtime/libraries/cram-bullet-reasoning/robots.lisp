@@ -2,17 +2,17 @@
 
 (in-package #:cram-bullet-reasoning)
 
-(defun urdf (robot)
-  "The description of ROBOT, an object of CL-URDF."
-  (cl-urdf::robot-of (robot-world:machine-description robot)))
+(defgeneric urdf (robot)
+  (:documentation "The description of ROBOT, an object of CL-URDF.")
+  (:method ((robot robot-object)) (cl-urdf::robot-of (robot-world:machine-description robot))))
 
 (defun joints-in-file (robot)
   "What `robot-world:description-joints' tells of ROBOT."
   (robot-world:description-joints (robot-world:machine-description robot)))
 
-(defun joint-names (robot)
-  "The names of the joints of ROBOT that move."
-  (robot-world:machine-joints robot))
+(defgeneric joint-names (robot)
+  (:documentation "The names of the joints of ROBOT that move.")
+  (:method ((robot robot-object)) (robot-world:machine-joints robot)))
 
 (defgeneric joint-state (robot name)
   (:documentation "The position of a joint, nil when ROBOT has none of that name.")
@@ -25,9 +25,18 @@
       (error "Joint ~a unknown" name))
     new-value))
 
-(defun joint-states (robot)
-  "A list (name . position) for each joint of ROBOT."
-  (loop for joint in (joint-names robot) collect (cons joint (joint-state robot joint))))
+(defgeneric joint-states (robot)
+  (:documentation "A list (name . position) for each joint of ROBOT.")
+  (:method ((robot robot-object))
+    (loop for joint in (joint-names robot) collect (cons joint (joint-state robot joint)))))
+
+(defun make-joint-state-message (joint-states &key (time-stamp 0))
+  "A sensor_msgs/JointState of a list of (name position)."
+  (flet ((zeros () (make-array (length joint-states) :initial-element 0.0)))
+    (roslisp:make-msg "sensor_msgs/JointState"
+                      (:stamp :header) time-stamp
+                      :name (map 'vector #'first joint-states) :position (map 'vector #'second joint-states)
+                      :velocity (zeros) :effort (zeros))))
 
 (defgeneric set-robot-state-from-joints (joint-states robot)
   (:documentation "Set joints of ROBOT from a list of (name position) or (name . position). Joints that it does not have are passed over.")
@@ -35,15 +44,16 @@
     (loop for (joint . value) in joint-states
           do (robot-world:set-machine-joint robot joint (if (consp value) (first value) value)))))
 
-(defun link-names (robot)
-  "The names of the links of ROBOT."
-  (robot-world:machine-links robot))
+(defgeneric link-names (robot)
+  (:documentation "The names of the links of ROBOT.")
+  (:method ((robot robot-object)) (robot-world:machine-links robot)))
 
-(defun links (robot)
-  "A hash table of the bodies of ROBOT by the names of their links; only links that have shapes are there."
-  (let ((table (make-hash-table :test 'equal)))
-    (dolist (body (rigid-bodies robot) table)
-      (setf (gethash (body-link body) table) body))))
+(defgeneric links (robot)
+  (:documentation "A hash table of the bodies of ROBOT by the names of their links; only links that have shapes are there.")
+  (:method ((robot robot-object))
+    (let ((table (make-hash-table :test 'equal)))
+      (dolist (body (rigid-bodies robot) table)
+        (setf (gethash (body-link body) table) body)))))
 
 (defgeneric link-pose (robot name)
   (:documentation "Where a link is in the world, nil when ROBOT has none of that name.")

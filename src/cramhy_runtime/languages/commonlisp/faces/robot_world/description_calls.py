@@ -6,10 +6,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import Cons, DoubleFloat, FreshString, list_from, lisp_list, python_list
 from cramhy_runtime.ground.packages import symbol_name
 from cramhy_runtime.robot_world import urdf, urdf_parts
+from cramhy_runtime.robot_world.mesh_files import Mesh
 from cramhy_runtime.robot_world.descriptions import Description, DescriptionError, Frame, Shape
 from cramhy_runtime.robot_world.placements import of_pose
 
@@ -18,7 +21,7 @@ from .shape_calls import told_shape
 if TYPE_CHECKING:
     from cramhy_runtime.robot_world.descriptions import Joint, Link
 
-LISP_NAMES = "description-parts changed-description description-file-text"
+LISP_NAMES = "description-parts changed-description description-file-text make-mesh mesh-points mesh-corners"
 
 
 def description_parts(text: str, file: str = "") -> Cons:
@@ -78,3 +81,30 @@ def _shape(told: Cons) -> Shape:
 def description_file_text(description: Description) -> FreshString:
     """The URDF text of a description."""
     return FreshString(urdf.text_of(description))
+
+
+# ------------------------------------------------------------------------------------------------------------------ meshes
+
+
+def make_mesh(points: Cons | None, triangles: Cons | None) -> Mesh:
+    """A mesh of lists of three numbers: points, and triangles of numbers of points. Points that are there twice become one."""
+    places: dict[tuple[float, ...], int] = {}
+    numbers = [places.setdefault(tuple(map(float, python_list(point))), len(places)) for point in python_list(points)]
+    if not places:
+        return error("A mesh needs points.")
+    corners = [[numbers[int(corner)] for corner in python_list(triangle)] for triangle in python_list(triangles)]
+    return Mesh(np.array(list(places), float), np.array(corners, int).reshape(-1, 3))
+
+
+def _point(point: Any) -> Cons:
+    return list_from(map(DoubleFloat, point))
+
+
+def mesh_points(mesh: Mesh) -> Cons | None:
+    """The points of a mesh, lists of three numbers."""
+    return list_from(map(_point, mesh.points))
+
+
+def mesh_corners(mesh: Mesh) -> Cons | None:
+    """The triangles of a mesh, lists of three points."""
+    return list_from(list_from(map(_point, mesh.points[list(triangle)])) for triangle in mesh.triangles)
