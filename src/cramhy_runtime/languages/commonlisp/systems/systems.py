@@ -60,7 +60,6 @@ NOT_TO_BE_HAD = {
 """Systems that cannot be had here, and why."""
 LEFT_OUT = {
     "cl-glx": "It opens windows for worlds on X11. The page of cramhy shows worlds.",
-    "cram-json-prolog": "It asks KnowRob's Prolog by ROS. Here is no KnowRob.",
     "cram-semantic-map": "It reads the furniture from KnowRob. Here a URDF describes it.",
     "cram-semantic-map-utils": "It reads the furniture from KnowRob. Here a URDF describes it.",
     "synchronization-tools": "It waits for messages and transforms that belong together.",
@@ -169,6 +168,10 @@ LIBRARY_PACKAGES = {
     "BTR-BELIEF": "cram-bullet-reasoning-belief-state",
     "CRAM-PR2-PROJECTION": "cram-pr2-projection",
     "PR2-PROJ": "cram-pr2-projection",
+    "URDF-PROJ": "cram-pr2-projection",
+    "JSON-PROLOG": "cram-json-prolog",
+    "CRAM-CLOUD-LOGGER": "cram-cloud-logger",
+    "CCL": "cram-cloud-logger",
     "CRAM-PR2-PROJECTION-REASONING": "cram-pr2-projection-reasoning",
     "PR2-PROJ-REASONING": "cram-pr2-projection-reasoning",
     "CRAM-PR2-FETCH-DELIVER-PLANS": "cram-pr2-fetch-deliver-plans",
