@@ -50,7 +50,9 @@ def meet(corners: np.ndarray, view: View, part: tuple[slice, slice], width: int,
     return depths.reshape(shape), chosen.reshape(shape)
 
 
-def _pairs(corners: np.ndarray, scale: np.ndarray, middle: np.ndarray, part: tuple[slice, slice]) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+def _pairs(
+    corners: np.ndarray, scale: np.ndarray, middle: np.ndarray, part: tuple[slice, slice]
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Yield numbers of triangles with the pixels, counted within ``part``, in whose rectangles these are."""
     rows, columns = part
     wide, high = columns.stop - columns.start, rows.stop - rows.start
