@@ -24,8 +24,8 @@ _MOST_AT_ONCE = 1 << 19  # pairs of a ray and a triangle
 
 
 def meet(corners: np.ndarray, view: View, part: tuple[slice, slice], width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
-    """What the rays through a part of a picture meet first. corners: those of the triangles in the frame of the camera, n x 3 x 3. part: rows
-    and columns of the picture, which is ``width`` x ``height`` pixels.
+    """What the rays through a part of a picture meet first. corners: those of the triangles in the frame of the camera, n x 3 x 3.
+    part: rows and columns of the picture, which is ``width`` x ``height`` pixels.
 
     Returns two arrays as large as the part: how far ahead, metres, ``inf`` where nothing is met; and the number of the triangle.
     """
