@@ -26,10 +26,10 @@ def read_file(path: str | Path) -> Description:
 
 def read_text(text: str | bytes, file: str = "") -> Description:
     """The description in the text of a URDF file; ``file`` is its name in errors. Errors: `DescriptionError`."""
-    return _Reading(file).description(parsed(text, file))
+    return Reading(file).description(parsed(text, file))
 
 
-class _Reading:
+class Reading:
     """Reads the elements of one file."""
 
     def __init__(self, file: str) -> None:

@@ -82,7 +82,7 @@
     (robot-world:add-shape world name :cylinder (list radius height) (ensure-pose pose) :mass mass :color color :types '(:generic-cup)))
   (:method (world (type (eql :urdf)) name pose &key urdf color (collision-group :character-filter) collision-mask compound)
     (declare (ignore collision-mask compound))
-    (robot-world:add-description world name (if (stringp urdf) (robot-world:read-description urdf) urdf) (ensure-pose pose)
+    (robot-world:add-description world name (description-in-world urdf) (ensure-pose pose)
                                  :color color :fixed (eq collision-group :static-filter)))
   (:method (world type name pose &key (mass 0.2) size radius color)
     (cond (size
@@ -94,6 +94,10 @@
           (t
            (error "There is no object of type ~s. There are ~{~s~^, ~}, and :box, :sphere, :cylinder, :cone, :static-plane, :mesh and :urdf."
                   type (robot-world:object-types))))))
+
+(defun description-in-world (urdf)
+  "What a world takes of URDF: a text, a robot of CL-URDF with what a program has changed of it, or a description of ROBOT-WORLD."
+  (cl-urdf::description-of (if (stringp urdf) (cl-urdf:parse-urdf urdf) urdf)))
 
 (defun add-half-lengths (world name type size pose mass color)
   "Add an item of a kind whose size is given as half its lengths: a cylinder where things of the kind are round, else a box."
@@ -214,6 +218,25 @@
   (:method ((robot robot-object))
     (loop for link in (solid-links robot)
           collect (make-instance 'rigid-body :name (make-rigid-body-name (name robot) link) :object robot :link link))))
+
+(defgeneric world (object)
+  (:documentation "The world that OBJECT is in.")
+  (:method ((object object)) (robot-world:thing-world object)))
+
+(defun make-object (world name &optional rigid-bodies (add t))
+  "The original makes an object of bodies of Bullet's, which are not here."
+  (declare (ignore world rigid-bodies add))
+  (error "~a cannot be made of bodies of Bullet's, which cramhy does not have. Use (btr:add-object world type ~s pose ...)." name name))
+
+(defun merge-bounding-boxes (box other)
+  "The bounding box around two bounding boxes."
+  (flet ((corner (box operation)
+           (funcall operation (bounding-box-center box) (v* (bounding-box-dimensions box) 0.5)))
+         (extreme (function one two)
+           (make-3d-vector (funcall function (x one) (x two)) (funcall function (y one) (y two)) (funcall function (z one) (z two)))))
+    (let ((low (extreme #'min (corner box #'v-) (corner other #'v-)))
+          (high (extreme #'max (corner box #'v+) (corner other #'v+))))
+      (cl-bullet:make-bounding-box :center (v* (v+ low high) 0.5) :dimensions (v- high low)))))
 
 (defun rigid-body-names (object)
   "The names of the bodies of OBJECT."

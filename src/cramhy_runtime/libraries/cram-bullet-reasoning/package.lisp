@@ -34,7 +34,22 @@
    #:contact #:object-not-in-collision #:stable #:stable-items #:above #:below #:supported-by #:supporting #:visible #:visible-from
    #:occluding-object #:link #:attached #:step #:simulate-realtime #:head-pointing-at #:execute #:open #:close #:debug-window
    #:debug-costmap #:poses-on #:n-poses-on #:random-poses-on #:desig-poses #:available-arms #:semantic-map #:container
-   #:reachable #:point-reachable #:pose-reachable #:blocking #:valid-grasp #:object-grasp))
+   #:reachable #:point-reachable #:pose-reachable #:blocking #:valid-grasp #:object-grasp
+   #:object-pose-different #:ik-solution-not-in-collision #:copied-world #:?w #:grasp #:side
+   ;; more of worlds, events and robots
+   #:world #:bt-reasoning-world-state #:merge-bounding-boxes #:invalidate-object #:make-object #:event #:holds-in-world
+   #:make-joint-state-message #:open-object #:close-object #:set-articulated-object-joint-position #:obj-pose-on #:obj-poses-on
+   ;; what a camera sees
+   #:camera #:width #:height #:fov-y #:z-near #:z-far #:look-at-object-rotation
+   #:object-visibility #:object-visibility-percentage #:object-visibility-occluding-objects
+   ;; names of types of objects
+   #:generic-cup #:mesh #:box #:static-plane #:sphere #:cylinder #:cone #:point-cloud #:cutlery #:fork #:knife #:mug #:plate #:mondamin #:pot
+   #:bowl #:sugar-box #:apple #:orange #:cereal #:spatula #:pancake #:pancake-maker #:ros-household-object
+   ;; what is not here: OpenGL, semantic maps, the database of household objects
+   #:gl-execute-with-camera #:with-rendering-to-framebuffer #:render-to-framebuffer #:get-rendering-context #:read-pixelbuffer
+   #:read-depthbuffer #:to-png-image #:flat-color-object-proxy #:drawable-list #:drawable-list-drawables #:make-drawable-list
+   #:camera-transform #:semantic-map-object #:semantic-map-part #:semantic-map-part-type #:semantic-map-part-pose
+   #:init-ros-object-database))
 
 (in-package #:cram-bullet-reasoning)
 

@@ -40,7 +40,7 @@
 
 (defun joint-above (robot link)
   "The name of the nearest joint that moves LINK, nil when there is none."
-  (loop with joints = (robot-world:description-joints (urdf robot))
+  (loop with joints = (joints-in-file robot)
         for joint = (find link joints :key #'fourth :test #'equal) then (find (third joint) joints :key #'fourth :test #'equal)
         while joint
         unless (eq (second joint) :fixed) return (first joint)))
@@ -53,6 +53,40 @@
     (when value
       (setf (joint-state robot joint) value)
       t)))
+
+(defun set-articulated-object-joint-position (object link opening-distance)
+  "Bring the joint that moves LINK of furniture to OPENING-DISTANCE, which is a position between its limits, :MINIMAL or :MAXIMAL."
+  (let* ((joint (or (joint-above object link) (error "No joint moves ~a." link)))
+         (limits (robot-world:joint-limits object joint))
+         (position (case opening-distance
+                     (:minimal (first limits))
+                     (:maximal (second limits))
+                     (t opening-distance))))
+    (unless (and (realp position) (<= (or (first limits) position) position (or (second limits) position)))
+      (error "~a cannot stand at ~a: it goes from ~a to ~a." joint opening-distance (first limits) (second limits)))
+    (setf (joint-state object joint) position)))
+
+(defun open-object (object link)
+  "Open what LINK of furniture is part of."
+  (set-articulated-object-joint-position object link :maximal))
+
+(defun close-object (object link)
+  "Close what LINK of furniture is part of."
+  (set-articulated-object-joint-position object link :minimal))
+
+(defun obj-pose-on (pose object)
+  "Where OBJECT has to be, turned as POSE is, for the middle of its bottom to be at POSE."
+  (let* ((pose (ensure-pose pose))
+         (box (aabb object))
+         (half-height (make-3d-vector 0 0 (/ (z (bounding-box-dimensions box)) 2))))
+    (copy-pose pose :origin (v+ (origin pose) (v- (origin (pose object)) (bounding-box-center box)) half-height))))
+
+(defun obj-poses-on (name poses &optional (world *current-bullet-world*))
+  "A lazy list of where the object of that NAME has to be for its bottom to be at each of POSES: poses, points, or lists."
+  (let ((object (object world name)))
+    (lazy-mapcar (lambda (pose)
+                   (obj-pose-on (if (typep pose '3d-vector) (make-pose pose (make-identity-rotation)) pose) object))
+                 poses)))
 
 (def-fact-group places (poses-on n-poses-on random-poses-on execute)
   (<- (poses-on ?world ?top ?bottom ?poses)

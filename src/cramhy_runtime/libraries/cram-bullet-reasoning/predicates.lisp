@@ -191,6 +191,12 @@
 (defun move-to (object pose)
   (setf (pose object) (ensure-pose pose)))
 
+(defun same-place-p (object other)
+  "Whether two objects are at the same place, up to 5 mm and 0.15 radians."
+  (let ((pose (pose object)) (other-pose (pose other)))
+    (and (< (v-dist (origin pose) (origin other-pose)) 0.005)
+         (< (angle-between-quaternions (orientation pose) (orientation other-pose)) 0.15))))
+
 (def-fact-group bullet-contacts (contact object-not-in-collision stable stable-items above below supported-by supporting)
   (<- (contact ?world ?name ?other-name)
     (%object ?world ?name ?object)
@@ -218,6 +224,30 @@
     (lisp-fun disabled-collision-objects ?world ?pairs)
     (or (member (?name . ?other) ?pairs)
         (member (?other . ?name) ?pairs)))
+
+  (<- (copied-world ?world ?copy)
+    (lisp-fun copy-world ?world ?copy))
+
+  (<- (object-pose-different ?world ?other-world ?name)
+    (bound ?world)
+    (bound ?other-world)
+    (%object ?world ?name ?object)
+    (%object ?other-world ?name ?other)
+    (not (lisp-pred same-place-p ?object ?other)))
+
+  (<- (ik-solution-not-in-collision ?world ?robot-name ?joint-states)
+    (lisp-fun copy-world ?world ?copy)
+    (%object ?copy ?robot-name ?robot)
+    (lisp-fun set-robot-state-from-joints ?joint-states ?robot ?_)
+    (object-not-in-collision ?copy ?robot-name))
+
+  (<- (ik-solution-not-in-collision ?world ?robot-name ?joint-states :grasping)
+    (lisp-fun copy-world ?world ?copy)
+    (%object ?copy ?robot-name ?robot)
+    (lisp-fun set-robot-state-from-joints ?joint-states ?robot ?_)
+    (forall (contact ?copy ?robot-name ?name ?link)
+            (or (attached ?copy ?robot-name ?_ ?name)
+                (cram-robot-interfaces:gripper-link ?robot-name ?_ ?link))))
 
   (<- (stable ?world ?name)
     (%object ?world ?name ?object)

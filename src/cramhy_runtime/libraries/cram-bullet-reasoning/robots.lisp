@@ -2,13 +2,17 @@
 
 (in-package #:cram-bullet-reasoning)
 
-(defun urdf (robot)
-  "The description of ROBOT."
-  (robot-world:machine-description robot))
+(defgeneric urdf (robot)
+  (:documentation "The description of ROBOT, an object of CL-URDF.")
+  (:method ((robot robot-object)) (cl-urdf::robot-of (robot-world:machine-description robot))))
 
-(defun joint-names (robot)
-  "The names of the joints of ROBOT that move."
-  (robot-world:machine-joints robot))
+(defun joints-in-file (robot)
+  "What `robot-world:description-joints' tells of ROBOT."
+  (robot-world:description-joints (robot-world:machine-description robot)))
+
+(defgeneric joint-names (robot)
+  (:documentation "The names of the joints of ROBOT that move.")
+  (:method ((robot robot-object)) (robot-world:machine-joints robot)))
 
 (defgeneric joint-state (robot name)
   (:documentation "The position of a joint, nil when ROBOT has none of that name.")
@@ -21,9 +25,18 @@
       (error "Joint ~a unknown" name))
     new-value))
 
-(defun joint-states (robot)
-  "A list (name . position) for each joint of ROBOT."
-  (loop for joint in (joint-names robot) collect (cons joint (joint-state robot joint))))
+(defgeneric joint-states (robot)
+  (:documentation "A list (name . position) for each joint of ROBOT.")
+  (:method ((robot robot-object))
+    (loop for joint in (joint-names robot) collect (cons joint (joint-state robot joint)))))
+
+(defun make-joint-state-message (joint-states &key (time-stamp 0))
+  "A sensor_msgs/JointState of a list of (name position)."
+  (flet ((zeros () (make-array (length joint-states) :initial-element 0.0)))
+    (roslisp:make-msg "sensor_msgs/JointState"
+                      (:stamp :header) time-stamp
+                      :name (map 'vector #'first joint-states) :position (map 'vector #'second joint-states)
+                      :velocity (zeros) :effort (zeros))))
 
 (defgeneric set-robot-state-from-joints (joint-states robot)
   (:documentation "Set joints of ROBOT from a list of (name position) or (name . position). Joints that it does not have are passed over.")
@@ -31,15 +44,16 @@
     (loop for (joint . value) in joint-states
           do (robot-world:set-machine-joint robot joint (if (consp value) (first value) value)))))
 
-(defun link-names (robot)
-  "The names of the links of ROBOT."
-  (robot-world:machine-links robot))
+(defgeneric link-names (robot)
+  (:documentation "The names of the links of ROBOT.")
+  (:method ((robot robot-object)) (robot-world:machine-links robot)))
 
-(defun links (robot)
-  "A hash table of the bodies of ROBOT by the names of their links; only links that have shapes are there."
-  (let ((table (make-hash-table :test 'equal)))
-    (dolist (body (rigid-bodies robot) table)
-      (setf (gethash (body-link body) table) body))))
+(defgeneric links (robot)
+  (:documentation "A hash table of the bodies of ROBOT by the names of their links; only links that have shapes are there.")
+  (:method ((robot robot-object))
+    (let ((table (make-hash-table :test 'equal)))
+      (dolist (body (rigid-bodies robot) table)
+        (setf (gethash (body-link body) table) body)))))
 
 (defgeneric link-pose (robot name)
   (:documentation "Where a link is in the world, nil when ROBOT has none of that name.")
@@ -69,13 +83,13 @@
 
 (defun root-link (robot)
   "The link of ROBOT that no joint leads to."
-  (loop with children = (mapcar #'fourth (robot-world:description-joints (urdf robot)))
+  (loop with children = (mapcar #'fourth (joints-in-file robot))
         for link in (link-names robot)
         unless (member link children :test #'equal) return link))
 
 (defun moved-links (robot)
   "The links of ROBOT that a joint moves, from the root on."
-  (loop for (nil type nil child) in (robot-world:description-joints (urdf robot))
+  (loop for (nil type nil child) in (joints-in-file robot)
         unless (eq type :fixed) collect child))
 
 (defun calculate-pan-tilt (robot pan-link tilt-link pose)

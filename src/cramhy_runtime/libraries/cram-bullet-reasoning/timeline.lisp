@@ -3,7 +3,7 @@
 (in-package #:cram-bullet-reasoning)
 
 (defclass event ()
-  ((pattern :initarg :pattern :reader event-pattern)
+  ((event :initarg :event :initarg :pattern :reader event :reader event-pattern)
    (timestamp :initarg :timestamp :reader event-timestamp)
    (world-state :initarg :world-state :reader event-world-state))
   (:documentation "What happened, when, and a copy of the world as it was then."))

@@ -3,7 +3,13 @@
 (defpackage #:cram-physics-utils
   (:nicknames #:physics-utils)
   (:use #:common-lisp #:cffi #:cffi-ros-utils)
-  (:export #:parse-uri #:3d-model #:load-3d-model #:3d-model-dimensions))
+  (:export #:parse-uri #:load-3d-model #:3d-model #:make-3d-model #:3d-model-vertices #:3d-model-faces #:3d-model-dimensions
+           #:face #:make-face #:face-points #:face-normals #:fix-normals
+           #:calculate-aabb #:scale-3d-model #:resize-3d-model #:transform-3d-model #:calculate-mass
+           #:shape-msg->points #:shape-msg->mesh #:points->point-cloud #:get-shape-message
+           #:object-shape-data-mixin #:object-mesh-data-mixin #:object-point-data-mixin
+           #:shape-type #:dimensions #:vertices #:faces #:points
+           #:event-queue #:post-event #:get-next-event #:wait-for-queue-empty))
 
 (in-package #:cram-physics-utils)
 
