@@ -67,6 +67,10 @@ LEFT_OUT = {
 """Systems of CRAM that are empty here, with their descriptions: others list them, and nothing that runs here needs what they define."""
 
 
+LAST = frozenset({"cram-pr2-pick-place-demo"})
+"""Systems of `LIBRARIES` that stand for applications of CRAM: a checkout comes before them."""
+
+
 def provide_system(names):
     """Note systems that cramhy contains, so that nothing is looked for or loaded: ``names`` is one text."""
     built_in.update(names.split())
@@ -252,7 +256,7 @@ def find_asd(name):
         return chosen[home]
     if home in preferred and (found := _find_below(wanted, True)) is not None:
         return found
-    if wanted in libraries():
+    if wanted in libraries() and home not in LAST:
         return LIBRARIES / libraries()[wanted]
     for folder in central_registry():
         if os.path.isfile(folder / wanted):
@@ -260,6 +264,8 @@ def find_asd(name):
     found = _find_below(wanted)
     if found is None and look_again():
         found = _find_below(wanted)
+    if found is None and wanted in libraries():
+        found = LIBRARIES / libraries()[wanted]
     if found is None:  # a package's system and its tests have a file each
         found = next((path.parent / wanted for path in (*_reading, *_read) if (path.parent / wanted).is_file()), None)
     return found
