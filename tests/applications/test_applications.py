@@ -77,8 +77,10 @@ def test_a_package_with_the_habits_of_crams_demos_runs(begin, capsys):
 
 @foreign
 @pytest.mark.parametrize("application", ["cram_bullet_world_tutorial", "cram_pick_place_tutorial", "cram_pr2_pick_place_demo"])
-def test_crams_own_applications_run(begin, application):
+def test_crams_own_applications_run(begin, application, capsys):
     assert run(begin(Path(CHECKOUTS) / "cram-master"), application) == []
+    printed = capsys.readouterr()
+    assert (printed.out + printed.err).count("undefined functor") == 0
 
 
 LESSONS = {

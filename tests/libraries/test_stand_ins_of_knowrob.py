@@ -39,7 +39,7 @@ def ask(session, capsys):
 
     def asked(form):
         value = prin1_to_string(session.evaluate_text(form)[0])
-        printed = capsys.readouterr().out
+        printed = capsys.readouterr().out.lstrip()
         head, mark, rest = printed.partition("WARN] ")
         return value, f"{head}{mark}{{}}{rest[rest.index(':') :]}" if mark else printed
 

@@ -35,7 +35,7 @@
 ;=> #<"map" \(\(1\.00000 2\.00000 3\.00000\) \(0\.00000 0\.00000 0\.00000 1\.00000\)\)>
 
 (apply-transformation (inverse-transformation (get-robot-transformation)) (get-current-pose-of-object 'cup-1))
-;=> #<"base_footprint" \(\(-0\.\d+ 1\.\d+ 0\.\d+\).*
+;=> #<CL-TRANSFORMS:POSE .*
 
 (< -0.9 (get-x-of-pose (get-current-pose-of-object 'cup-1)) -0.7 1.4 (get-y-of-pose (get-current-pose-of-object 'cup-1)))
 ;=> T
