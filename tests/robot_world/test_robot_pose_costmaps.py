@@ -119,16 +119,3 @@ def test_without_a_setting_the_rules_give_no_costmap(lisp):
          " (<- (costmap-size 6 6)) (<- (costmap-origin -3 -3)) (<- (costmap-resolution 0.1)))")  # fmt: skip
     assert lisp("(cost-functions (costmap::designator-costmap (to-reach)))") == "NIL"
     assert lisp("(gaussian-costmap::reachable-location-validator (to-reach) (at 0.5 1 0))") == ":UNKNOWN"
-
-
-@pytest.mark.parametrize(
-    ("form", "verdict"),
-    [
-        ("(to-reach) (at 0.5 1 0)", ":ACCEPT"),
-        ("(to-reach) (at 0.5 1 0.3)", "NIL"),  # in the air
-        ("(to-reach) (at 0.9 1 0)", "NIL"),  # too near
-        ("(to-see) (at -0.9 1 0 3.0)", "NIL"),  # turned away
-    ],
-)
-def test_the_validators_judge_solutions(lisp, form, verdict):
-    assert lisp(f"(let ((verdict (validate-location-designator-solution {form}))) (if verdict :accept nil))") == verdict
