@@ -36,6 +36,7 @@ class Package:
         self.local_nicknames = {}  # names that mean a package only while this one is current
         self.documentation = documentation
         self.defined = False  # by ``defpackage``, whose second call looks for differences
+        self.file = None  # the path of the file in which that stood
 
     @property
     def used_by(self):

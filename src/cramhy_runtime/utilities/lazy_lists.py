@@ -287,10 +287,26 @@ def elements(ll):
         ll = lazy_cdr(ll)
 
 
+def _with_restarts(step):
+    """``step``, a function that gives a list, with the restarts ``:rest``, which takes the list instead, and ``:finish``, its last element.
+
+    The original's functions have them because they are written with `lazy_list`.
+    """
+
+    def offering(*arguments):
+        return restart_case(
+            [(FINISH, lambda *value: Cons(value[0], None) if value else None, None), (REST, lambda rest=None: rest, None)],
+            lambda: step(*arguments),
+        )
+
+    return offering
+
+
 def lazy_mapcar(fun, list_1, *more_lists):
     """Lazy ``mapcar``; ends with the shortest list. One call of ``fun`` per element, the first one now."""
     function = function_of(fun)
 
+    @_with_restarts
     def step(lists):
         if any(ll is None for ll in lists):
             return None
@@ -303,6 +319,7 @@ def lazy_mapcan(fun, list_1, *more_lists):
     """The lazy concatenation of the lists that ``fun`` returns; empty ones are skipped."""
     function = function_of(fun)
 
+    @_with_restarts
     def step(lists):
         while not any(ll is None for ll in lists):
             kernel.checkpoint()
@@ -333,6 +350,7 @@ def lazy_filter(pred, ll):
     """The elements for which ``pred`` is true; a true second value with it makes that element the last one."""
     function = function_of(pred)
 
+    @_with_restarts
     def step(cell):
         while cell is not None:
             kernel.checkpoint()

@@ -46,6 +46,7 @@ HELPERS = {
     "evaluation.forms": "define-compiler-macro",
     "evaluation.declarations": "declaim",
     "compiler.compilation_unit": "with-compilation-unit",
+    "compiler.failing_macros": "reached-failing-macro",
     "evaluation.definitions": "define-function define-macro define-variable define-constant define-symbol-macro",
     "loop.loop_support": "car-of-cons cdr-of-cons end-of-list collect collect-append collect-nconc loop-vector table-entries loop-symbols",
     "ground.source_places": "source-position",

@@ -10,6 +10,7 @@ from __future__ import annotations
 from cramhy_runtime.ground.conditions import CompileError, SimpleProgramError, error
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction, lisp_list, one
 from .compilation_unit import expanding
+from .failing_macros import expanded_or_failing, is_of_user
 from ..syntax.lambda_lists import parse, variables_of
 from ..syntax.macros import ensure_loaded, macroexpand_1
 from cramhy_runtime.ground.python_names import python_name
@@ -150,7 +151,10 @@ class Analyzer(Scrutiny):
     def expand(self, form, env):
         """(expansion, whether expanded); the expansion inherits the place of ``form``."""
         with expanding(self.unit, form, self.place()):
-            expansion, expanded = macroexpand_1(form, env)
+            if self.unit is not None and env.scope.parent is not None and is_of_user(form.car, env):
+                expansion, expanded = expanded_or_failing(self.unit, lambda: macroexpand_1(form, env), form)
+            else:
+                expansion, expanded = macroexpand_1(form, env)
         if expanded:
             self.positions.inherit(expansion, form)
         return expansion, expanded

@@ -83,11 +83,23 @@ def store_form(place, value, environment):
     if is_symbol(place):
         expansion, expanded = macroexpand_1(place, environment)
         return store_form(expansion, value, environment) if expanded else lisp_list(SETQ, place, value)
+    updater = _updater(place, environment)
+    if updater is not None:  # which may be a macro, for which the forms are to stand as they are
+        return Cons(updater, list_from([*place.cdr, value] if place.cdr is not None else [value]))
     temporaries, forms, stores, storing, _ = setf_expansion(place, environment)
     if len(stores) == 1:
         return _let([*zip(temporaries, forms), (stores[0], value)], storing)
     bound = lisp_list(sym("MULTIPLE-VALUE-BIND"), list_from(stores), value, storing)
     return _let(zip(temporaries, forms), bound)
+
+
+def _updater(place, environment):
+    """The updater of a short ``defsetf`` for ``place``, or ``None``."""
+    if not isinstance(place, Cons) or not isinstance(place.car, Symbol):
+        return None
+    if environment is not None and environment.function(place.car) is not None:
+        return None
+    return getattr((place.car.compiler_data or {}).get("setf-expander"), "updater", None)
 
 
 # ------------------------------------------------------------------------------------------------------------------- macros

@@ -7,7 +7,7 @@ defined again gets what is new in the definition; what it has beyond that stays,
 from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import CompileError, SimpleTypeError, error, program_error, restart_case, warn
-from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, list_from, truth
+from cramhy_runtime.ground.data import UNBOUND, Cons, MultipleValues, Symbol, list_from, truth
 from cramhy_runtime.ground.packages import (
     all_packages,
     defined_by_program,
@@ -22,6 +22,8 @@ from cramhy_runtime.ground.packages import (
     sym,
     symbol_name,
 )
+from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.storage.dependency_tracing import is_library
 from .package_errors import PACKAGE, SimplePackageError, unlocked
 from .package_functions import add_nicknames, add_package_local_nickname, export, import_, shadow, shadowing_import, use_package
 
@@ -89,6 +91,9 @@ def _disjoint(*sets):
                 )
 
 
+_LOADED = sym("*LOAD-TRUENAME*")
+
+
 def define_package(name, options):
     """``defpackage``: make or update the package; returns it."""
     definition = Definition(name, options)
@@ -100,13 +105,27 @@ def define_package(name, options):
     if package is None:
         package = make_package(definition.name)
     elif package.defined:
+        _warn_of_other_place(package)
         _warn_of_differences(package, definition, uses)
     with unlocked([package]):
         _fill(package, definition, uses)
-    package.defined = True
+    package.defined, package.file = True, _file_of_load()
     if "LOCK" in definition.clauses:
         package.locked = truth(definition.clauses["LOCK"][0][0])
     return package
+
+
+def _file_of_load():
+    """The file that is being loaded, or ``None`` at a prompt."""
+    path = _LOADED.value
+    return None if path is None or path is UNBOUND else prin1_to_string(path).removeprefix("#P").strip('"')
+
+
+def _warn_of_other_place(package):
+    """Warn if a file of the user's defines a package of cramhy's libraries anew."""
+    old, new = package.file, _file_of_load()
+    if old is not None and new is not None and is_library(old) and not is_library(new):
+        warn("The package ~A of ~A is defined anew by ~A, whose definitions count from now on.", package.name, old, new)
 
 
 def _fill(package, definition, uses):

@@ -151,7 +151,8 @@ def define_debug() -> None:
 
 
 def define_internals() -> None:
-    """The one macro of SB-INT that programs use."""
+    """The part of SB-INT that programs use."""
+    define_face("SB-INT", export="compiled-program-error")
     _macros("SB-INT")
 
 

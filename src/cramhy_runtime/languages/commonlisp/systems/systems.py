@@ -13,7 +13,7 @@ import os
 from pathlib import Path
 
 from cramhy_runtime.kernel.images import per_image
-from cramhy_runtime.ground.conditions import CompileError, SimpleError, error, handler_bind
+from cramhy_runtime.ground.conditions import CompileError, SimpleError, error, handler_bind, warn
 from cramhy_runtime.ground.dispatch.generic_functions import FunctionInTheWay
 from cramhy_runtime.ground.restarts import find_restart, invoke_restart
 from cramhy_runtime.ground.data import Cons, Symbol, list_from
@@ -26,6 +26,7 @@ from ..streams.streams import ERROR_OUTPUT, output_stream
 from cramhy_runtime.ground.packages import Package, find_package, near_names, register, string_designator, sym
 from . import loader, missing_messages
 from cramhy_runtime.storage.dependencies import file_state, unchanged
+from cramhy_runtime.storage.dependency_tracing import is_library
 from cramhy_runtime.ros import search_folders
 from cramhy_runtime.ros.definition_files import package_name
 from cramhy_runtime.ros.search_folders import crawls, look_again, crawling_once
@@ -410,9 +411,25 @@ def _load_system(name, force=False, required_by=None, version=None):
 
 
 def _load_components(system, chain, force):
+    if _is_replaced(system):
+        return chain
     for component in files_of(system):
         chain = _load_component(component.pathname, chain, force)
     return chain
+
+
+def _is_replaced(system):
+    """Whether the user has loaded a package of the library ``system`` from a file; then that counts, and a warning says so."""
+    if not is_library(str(system.file)):
+        return False
+    names = [system.name.upper(), *(package for package, library in LIBRARY_PACKAGES.items() if library == system.name)]
+    for package in filter(None, map(find_package, names)):
+        if package.file is not None and not is_library(package.file):
+            if system.name not in loaded:
+                text = "The library ~A of ~A is not loaded, because ~A has defined its package ~A: that counts."
+                warn(text, system.name, str(Path(system.file).parent), package.file, package.name)
+            return True
+    return False
 
 
 def _instead_of_ours(name, load):

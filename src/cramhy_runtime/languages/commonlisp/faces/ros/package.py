@@ -18,6 +18,7 @@ from ...syntax.operator_macros import export
 from ....operators import ROSLISP as OPERATORS
 from cramhy_runtime.ground.classes import register_class
 from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method_error
+from cramhy_runtime.ground.dispatch.open_functions import Opening
 from cramhy_runtime.ground.packages import keyword
 from cramhy_runtime.ground.printing import define_printer
 from cramhy_runtime.ros import message_building
@@ -32,12 +33,23 @@ INTERNAL_VARIABLES = {"*node-status*": keyword("SHUTDOWN"), "*namespace*": "/", 
 
 
 class FieldReader:
-    """The reader of one field for all messages of a package: ``turtlesim-msg:x``. A generic function for all that users see."""
+    """The reader of one field for all messages of a package: ``turtlesim-msg:x``. A generic function for all that users see.
 
-    __slots__ = ("symbol", "getters", "warning")
+    It becomes one, whose first method it is, when somebody adds a method or has an accessor of that name.
+    """
+
+    __slots__ = ("symbol", "getters", "warning", "_opening")
+    acts_as_generic = True
 
     def __init__(self, symbol, warning=None):
-        self.symbol, self.getters, self.warning = symbol, {}, warning
+        self.symbol, self.getters, self.warning, self._opening = symbol, {}, warning, None
+
+    @property
+    def opening(self):
+        """How it becomes a generic function."""
+        if self._opening is None:
+            self._opening = Opening(self.symbol, "(message)", (messages.RosMessage,), self, None)
+        return self._opening
 
     def __call__(self, *arguments):
         getter = self.getters.get(arguments[0].__class__) if len(arguments) == 1 else None
@@ -52,6 +64,10 @@ class FieldReader:
 
     def __repr__(self):
         return f"#<STANDARD-GENERIC-FUNCTION {self.symbol.package.name}:{self.symbol.name} ({len(self.getters)})>"
+
+
+_readers: dict = {}
+"""Symbol → its reader, also where it is the method of a generic function."""
 
 
 def define_message_symbols(package, classes, service_types):
@@ -73,9 +89,10 @@ def define_message_symbols(package, classes, service_types):
             ):
                 symbol = home.intern(reader_name)
                 home.export(symbol)
-                if not isinstance(symbol.function, FieldReader):
-                    symbol.function = FieldReader(symbol, warning)
-                symbol.function.getters[cls] = attrgetter(field.attribute)
+                reader = _readers.get(symbol)
+                if reader is None:
+                    reader = symbol.function = _readers[symbol] = FieldReader(symbol, warning)
+                reader.getters[cls] = attrgetter(field.attribute)
     for service in service_types:
         messages.lisp_package(package, "SRV").export(service.lisp_symbol)
 
