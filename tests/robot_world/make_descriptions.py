@@ -47,6 +47,13 @@ def read(name: str) -> dict:
     return json.loads((FIGURES / f"{name}.json").read_text())
 
 
+def with_kinect(figures: dict) -> dict:
+    """The figures of a PR2 that has a Kinect on its head, as the one in Bremen does."""
+    joints = figures["optional_kinect_joints"]["joints"]
+    links = [{"name": joint["child"]} for joint in joints]
+    return {**figures, "links": figures["links"] + links, "joints": figures["joints"] + joints}
+
+
 ROUND = frozenset("bottle buttermilk cup bowl plate red-metal-plate blue-metal-plate pot mug".split())
 """The types of objects that are cylinders; all others are boxes."""
 
@@ -77,7 +84,7 @@ def made() -> dict[str, str]:
     table = {"table_area_main_joint": {"xyz": (-1.4, -1.18, 0.0), "rpy": (0.0, 0.0, pi)}}  # under the tutorials' bottle
     return {
         "objects.json": written(objects(read("objects"))),
-        "pr2.urdf": urdf.text_of(described("pr2", read("pr2"))),
+        "pr2.urdf": urdf.text_of(described("pr2", with_kinect(read("pr2")))),
         "kitchen.urdf": urdf.text_of(described("iai_kitchen", kitchen, table)),
     }
 

@@ -92,7 +92,7 @@ def test_the_neck_goes_as_far_as_it_can(robot):
 def test_the_robot_sees_what_is_before_it(robot):
     robot.drive(COUNTER)
     robot.look_at(robot.world.item("bottle").placement.position)
-    assert robot.camera() == "narrow_stereo_optical_frame"
+    assert robot.camera() == "head_mount_kinect_rgb_optical_frame"
     assert robot.sees("bottle")
     robot.look_at(np.array([-1.0, -3.0, 1.0]))
     assert not robot.sees("bottle")

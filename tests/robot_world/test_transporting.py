@@ -225,11 +225,55 @@ def test_a_base_that_stands_nowhere_free_is_in_collision(ask):
     assert ask(form) == "NAVIGATION-GOAL-IN-COLLISION: No other samples in designator"
 
 
+def test_a_hand_that_holds_something_takes_nothing_more(ask):
+    """The second object comes into the other hand, and a third one into none."""
+    for name, y in (("one", 0.5), ("two", 0.75), ("three", 1.0)):
+        spawn(ask, name, "bottle", 1.42, y)
+    fetch = """(with-simulated-robot
+      (let ((?bottle (see '{} '((0.75 {} 0) (0 0 0 1)))))
+        (perform (an action (type fetching) (object ?bottle)))
+        (sort (mapcar #'symbol-name (held)) #'string<)))"""
+    assert ask(fetch.format("one", 0.5)) == '("ONE")'
+    assert ask(fetch.format("two", 0.7)) == '("ONE" "TWO")'
+    assert ask("(length (remove-duplicates (mapcar #'second (btr:attached-objects (btr:get-robot-object))) :test #'equal))") == "2"
+    third = """(with-simulated-robot
+      (let ((?bottle (see 'three '((0.75 1.0 0) (0 0 0 1)))))
+        (reference (an action (type picking-up) (object ?bottle)))))"""
+    assert ask(third).startswith("DESIGNATOR-ERROR: ") and ask("(length (held))") == "2"
+
+
 def test_what_cannot_be_brought_to_its_place_is_dropped_at_the_sink(ask):
     spawn(ask, "bottle", "bottle", 1.42, 0.7)
     assert ask("(transport '(1.42 0.7 0.95) '(-1.4 -1 2.6))").startswith("OBJECT-UNDELIVERABLE: ")
     assert ask("(held)") == "NIL"
     assert ask("(place-of 'bottle)").startswith("(1.4 -0.2 0.9")
+
+
+def test_what_is_dropped_at_the_sink_is_dropped_from_lower_where_the_arm_is_too_short(ask):
+    """A spoon is taken from above: over the sink, at 1.2 metres, the hand would be out of reach."""
+    ask(f'(put-spoon-into "{UPPER}")')
+    transport = f"""(with-simulated-robot
+      (let ((?drawer (drawer '{UPPER.replace("_", "-").upper()})) (?to (at -1.4 -1 2.6)))
+        (perform (an action (type transporting) (object (an object (type spoon))) (location ?drawer) (target (a location (pose ?to)))))))"""
+    assert ask(transport).startswith("OBJECT-UNDELIVERABLE: ")
+    assert ask("(held)") == "NIL"
+    assert re.match(r"\(1\.\d+ -0\.\d+ 0\.8", ask("(place-of 'spoon)"))
+
+
+def test_a_spoon_behind_the_front_of_its_drawer_is_seen_from_above(ask):
+    """From where costmaps let the robot stand, the front hides more than a tenth of it."""
+    ask(f'(put-spoon-into "{UPPER}")')
+    ask("(btr:detach-object (kitchen) (btr:object btr:*current-bullet-world* 'spoon))")
+    ask("(btr-utils:move-object 'spoon '((1.405 1.0 0.739) (0 0 1 0)))")
+    ask(f'(btr:attach-object (kitchen) (btr:object btr:*current-bullet-world* \'spoon) "{UPPER}")')
+    assert ask(manipulate("accessing", UPPER, "(distance 0.3)")) == "NIL"
+    found = f"""(with-simulated-robot
+      (let* ((?drawer (drawer '{UPPER.replace("_", "-").upper()}))
+             (?spoon (perform (an action (type searching) (object (an object (type spoon) (location ?drawer))) (location ?drawer)))))
+        (perform (an action (type fetching) (object ?spoon)))
+        (desig:desig-prop-value ?spoon :name)))"""
+    assert (ask(found), ask("(held)")) == ("SPOON", "(SPOON)")
+    assert ask("(< 1.0 (+ 0.3 (cl-transforms:x (cl-transforms:origin (btr:pose (btr:get-robot-object))))) 1.2)") == "T"
 
 
 def let_fall(ask):

@@ -15,7 +15,8 @@ pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
 from cramhy_runtime.robot_world import shown  # noqa: E402
 from cramhy_runtime.robot_world.descriptions import Frame, Shape  # noqa: E402
 from cramhy_runtime.robot_world.meshes import cone_shape, points_shape  # noqa: E402
-from cramhy_runtime.robot_world.pictures import drawing, movies, stills, views  # noqa: E402
+from cramhy_runtime.robot_world.pictures import drawing, movies, stills, triangles, views  # noqa: E402
+from cramhy_runtime.robot_world.pictures.views import View  # noqa: E402
 from cramhy_runtime.robot_world.placements import placement  # noqa: E402
 from cramhy_runtime.robot_world.vision import seen  # noqa: E402
 from cramhy_runtime.robot_world.world import World  # noqa: E402
@@ -248,3 +249,48 @@ def test_pictures_that_cannot_be_are_errors_that_say_why(session, form, text, tm
         session.evaluate_text(form)
     assert caught.value.report().startswith(text)
     assert list(tmp_path.iterdir()) == []
+
+
+def nearest_of_all(corners, view, part, width, height):
+    """As `triangles.meet`, but each ray is compared with each triangle."""
+    rows, columns = part
+    flat = View(np.zeros(3), np.eye(3), view.opening).rays(width, height)[rows, columns, :2].reshape(-1, 2)
+    found = np.stack([triangles._meet_each(np.repeat(corner[None], len(flat), axis=0), flat) for corner in corners])  # noqa: SLF001
+    shape = rows.stop - rows.start, columns.stop - columns.start
+    return found.min(axis=0).reshape(shape), found.argmin(axis=0).reshape(shape)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_rays_meet_the_triangles_at_their_pixels_as_they_would_meet_all(seed):
+    """Small and large triangles, ahead of the camera, behind it and across it; some of them lines."""
+    random = np.random.default_rng(seed)
+    middles = random.uniform((-2, -2, -0.5), (2, 2, 3), (60, 1, 3))
+    corners = middles + random.uniform(-1, 1, (60, 3, 3)) * random.choice([0.01, 0.2, 1.0], (60, 1, 1), p=[0.5, 0.4, 0.1])
+    corners[::10, 2] = corners[::10, 1]
+    part = slice(3, 41), slice(7, 50)
+    depths, numbers = triangles.meet(corners, AHEAD, part, 64, 48)
+    wanted, those = nearest_of_all(corners, AHEAD, part, 64, 48)
+    assert depths == pytest.approx(wanted) and (numbers[np.isfinite(depths)] == those[np.isfinite(wanted)]).all()
+    assert np.isfinite(depths).sum() > 20
+
+
+def test_a_fine_mesh_costs_what_its_pixels_cost(monkeypatch):
+    compared = []
+    each = triangles._meet_each  # noqa: SLF001
+    monkeypatch.setattr(triangles, "_meet_each", lambda corners, flat: compared.append(len(flat)) or each(corners, flat))
+    line = np.linspace(-0.5, 0.5, 101)
+    x, y = (part.ravel() for part in np.meshgrid(line[:-1], line[:-1]))
+    square = np.array([[0, 0], [0.01, 0], [0, 0.01]])
+    corners = np.concatenate([np.stack([x, y], axis=1)[:, None] + square, np.full((10_000, 3, 1), 2.0)], axis=2)
+    depths, _ = triangles.meet(corners, AHEAD, (slice(0, 200), slice(0, 200)), 200, 200)
+    assert 5_000 < np.isfinite(depths).sum() <= sum(compared) < 40_000  # of 400 million pairs
+
+
+def test_a_box_that_ends_behind_the_camera_is_looked_for_where_it_may_be_seen(empty):
+    """A wall at the right of the camera fills the right of the picture."""
+    empty.add_item("wall", (Shape("box", (8.0, 0.2, 4.0)),), placement((-3, -1.5, 1)), colour=RED)
+    drawn = drawing.draw(empty, AHEAD, 200, 100)
+    columns = np.nonzero(drawn.shown == 0)[1]
+    assert columns.max() == 199 and 120 < columns.min() < 180
+    nearest, (rows, asked) = drawing._near(drawn.solids[0], AHEAD, 200, 100)  # noqa: SLF001
+    assert nearest < 0.03 and 120 < asked.start <= columns.min() and asked.stop == 200

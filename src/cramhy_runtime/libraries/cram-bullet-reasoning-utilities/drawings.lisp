@@ -66,3 +66,7 @@ drawing: nothing touches it, and it hides nothing from a camera."
     (when (rest costmaps)
       (tell-costmap (location-costmap:merge-costmaps costmaps) "all of them"))
     nil))
+
+(defun reset-debug-window ()
+  "Nothing: there is no window that could hang, the page shows the world."
+  nil)

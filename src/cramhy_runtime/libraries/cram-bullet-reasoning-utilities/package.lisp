@@ -6,7 +6,7 @@
   (:shadowing-import-from #:cram-bullet-reasoning #:object #:object-pose #:pose #:name #:item)
   (:export #:spawn-object #:kill-object #:kill-all-objects #:move-object #:object-instance #:object-pose #:object-exists #:item-exists
            #:respawn-object #:robot-name #:move-robot #:move-robot-away #:park-robot
-           #:visualize-gripper #:visualize-designator-costmaps #:assert-object-pose #:assert-object-pose-on
+           #:visualize-gripper #:reset-debug-window #:visualize-designator-costmaps #:assert-object-pose #:assert-object-pose-on
            #:scenario-objects-init-pose #:scenario-objects-default-color #:scenario-object-color #:scenario-object-shape
            #:scenario-object-extra-attributes))
 

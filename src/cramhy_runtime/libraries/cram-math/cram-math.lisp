@@ -204,10 +204,6 @@
 
 ;;; ------------------------------------------------------------------------------------------------------------ distributions
 
-(defun average (numbers)
-  "The mean of a sequence of numbers."
-  (/ (reduce #'+ numbers) (length numbers)))
-
 (defun gauss (covariance mean)
   "A function of a vector: the density there of the normal distribution with this matrix of covariances and this mean, a vector."
   (multiple-value-bind (inverse determinant) (invert-matrix covariance)

@@ -32,6 +32,27 @@
   (<- (looked-at ?key ?value ?value)
     (not (== ?key :object))))
 
+(def-fact-group body-actions (desig:action-grounding)
+
+  (<- (desig:action-grounding ?designator (move-torso ?position))
+    (spec:property ?designator (:type :moving-torso))
+    (desig:desig-prop ?designator (:joint-angle ?position)))
+
+  (<- (desig:action-grounding ?designator (park-arms . ?arguments))
+    (spec:property ?designator (:type :parking-arms))
+    (-> (desig:desig-prop ?designator (:arms ?arms))
+        (equal ?arguments (:arm ?arms))
+        (equal ?arguments ())))
+
+  (<- (desig:action-grounding ?designator (position-arms ?left ?right))
+    (spec:property ?designator (:type :positioning-arm))
+    (configuration-or-nil ?designator :left-configuration ?left)
+    (configuration-or-nil ?designator :right-configuration ?right))
+
+  (<- (configuration-or-nil ?designator ?key ?configuration)
+    (once (or (desig:desig-prop ?designator (?key ?configuration))
+              (equal ?configuration nil)))))
+
 (def-fact-group arm-actions (desig:action-grounding)
 
   (<- (desig:action-grounding ?designator (move-arms-in-sequence ?left-poses ?right-poses))
@@ -63,6 +84,11 @@
 
   (<- (desig:action-grounding ?designator (open-or-close-gripper ?gripper ?type))
     (member ?type (:opening :closing))
+    (spec:property ?designator (:type ?type))
+    (spec:property ?designator (:gripper ?gripper)))
+
+  (<- (desig:action-grounding ?designator (open-or-close-gripper ?gripper ?motion))
+    (member (?type ?motion) ((:opening-gripper :opening) (:closing-gripper :closing)))
     (spec:property ?designator (:type ?type))
     (spec:property ?designator (:gripper ?gripper)))
 

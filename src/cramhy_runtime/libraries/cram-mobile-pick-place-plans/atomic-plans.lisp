@@ -102,6 +102,43 @@ but when something is lifted, whose ?COLLISION-MODE is :ALLOW-HAND, not that it 
           (t (when left (move-joints left nil))
              (when right (move-joints nil right))))))
 
+(defun configuration-values (arm configuration)
+  "The joint values of ARM in a CONFIGURATION: nil for none, a list of values, or a name."
+  (if (listp configuration)
+      configuration
+      (case configuration
+        ((:park :carry) (parking-values arm t))
+        (:tucked (parking-values arm nil))
+        (t (error "There is no configuration ~(~a~) of an arm; there are park, carry and tucked, and lists of joint values." configuration)))))
+
+(cpl:def-cram-function position-arms (?left-configuration ?right-configuration)
+  "Move the joints of the arms to configurations: :PARK, :CARRY, :TUCKED or a list of joint values; nil for an arm that stays."
+  (let ((arms (all-arms)))
+    (flet ((values-of (arm configuration)
+             (when (member arm arms) (configuration-values arm configuration))))
+      (move-joints (values-of :left ?left-configuration) (values-of :right ?right-configuration)))))
+
+(defun torso-height (position)
+  "The position of the joint of the torso, metres, that POSITION means: a number, or :UPPER-LIMIT, :LOWER-LIMIT or :MIDDLE."
+  (if (numberp position)
+      position
+      (let* ((joint (cut:var-value '?joint (cut:lazy-car (prolog '(and (cram-robot-interfaces:robot ?robot)
+                                                                   (cram-robot-interfaces:robot-torso-link-joint ?robot ?link ?joint))))))
+             (lower (cram-robot-interfaces:get-joint-lower-limit joint))
+             (upper (cram-robot-interfaces:get-joint-upper-limit joint)))
+        (case position
+          (:upper-limit upper)
+          (:lower-limit lower)
+          (:middle (/ (+ lower upper) 2))
+          (t (error "There is no height ~(~a~) of the torso; there are numbers of metres, upper-limit, lower-limit and middle." position))))))
+
+(cpl:def-cram-function move-torso (?position)
+  "Raise or lower the torso: ?POSITION is in metres, or :UPPER-LIMIT, :LOWER-LIMIT or :MIDDLE."
+  (let ((?height (torso-height ?position)))
+    (unwind-protect
+         (exe:perform (desig:a motion (type moving-torso) (joint-angle ?height)))
+      (tell cpoe:robot-state-changed))))
+
 (defmacro moving-gripper ((topic) motion)
   "Perform a motion of a gripper. Failures are passed over."
   `(cpl:with-failure-handling

@@ -92,7 +92,8 @@
     (-> (spec:property ?designator (:arm ?given))
         (equal ?arm ?given)
         (and (cram-robot-interfaces:robot ?robot)
-             (cram-robot-interfaces:arm ?robot ?arm))))
+             (cram-robot-interfaces:arm ?robot ?arm)
+             (not (cpoe:object-in-hand ?held ?arm)))))
 
   (<- (grasp-to-use ?designator ?object-name ?object-type ?transform ?arm ?grasp)
     (-> (spec:property ?designator (:grasp ?given))

@@ -24,6 +24,11 @@
           ((eq (cl-urdf:joint-type joint) :prismatic) joint)
           (t (error "Manipulation of revolute joints not implemented.")))))
 
+(defun opening-way (container)
+  "The unit vector along which CONTAINER opens, in the frame of the room."
+  (let ((joint (joint-of (link-of container))))
+    (cl-transforms:rotate (cl-transforms:orientation (btr:link-pose (furniture) (cl-urdf:name (cl-urdf:child joint)))) (cl-urdf:axis joint))))
+
 (defun handle-below (link)
   "The name of the first link below LINK whose name has \"handle\" in it, the nearest first."
   (loop with waiting = (list link)
@@ -84,9 +89,8 @@
   "The poses of ARM, as a list of three lists: on the way to the handle, at it, and after it has moved by DISTANCE; negative is inwards."
   (let* ((handle (handle-of container))
          (base (cram-tf:ensure-pose-in-frame (handle-pose container) cram-tf:*robot-base-frame* :use-zero-time t))
-         (axis (cl-urdf:axis (joint-of (link-of container))))
-         (in-room (cl-transforms:rotate (cl-transforms:orientation (btr:link-pose (furniture) (cl-urdf:name (cl-urdf:child (joint-of (link-of container)))))) axis))
-         (way (cl-transforms:rotate (cl-transforms:q-inv (cl-transforms:orientation (btr:pose (btr:get-robot-object)))) in-room))
+         (way (cl-transforms:rotate (cl-transforms:q-inv (cl-transforms:orientation (btr:pose (btr:get-robot-object))))
+                                    (opening-way container)))
          (poses (obj-int:get-object-grasping-poses
                  (intern (substitute #\- #\_ (string-upcase handle)) :keyword) :container-prismatic arm grasp
                  (cram-tf:pose-stamped->transform-stamped base handle)))

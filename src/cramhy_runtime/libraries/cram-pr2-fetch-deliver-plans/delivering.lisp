@@ -74,18 +74,41 @@
     (and poses
          (< (cl-transforms:v-dist (cl-transforms:origin (first poses)) (cl-transforms:origin (second poses))) *most-pushed*))))
 
+(defun resolvable-p (designator)
+  "Whether DESIGNATOR has a solution."
+  (handler-case (and (desig:reference (desig:current-desig designator)) t)
+    (desig:designator-error () nil)))
+
+(defun target-within-reach (target)
+  "TARGET, moved on to its next solution that the robot reaches from anywhere, with a location of the places for that; nil where it has none
+among the next twenty. Two values."
+  (loop repeat 20
+        for place = (desig:current-desig target) then (next-solution place)
+        while place
+        do (let ((from (and (resolvable-p place) (place-to-reach-from place nil))))
+             (when (and from (resolvable-p from))
+               (return (values place from))))))
+
 (cpl:def-cram-function deliver (?object-designator ?target-location ?target-robot-location place-action)
   "Go to where an object that is held shall be, and put it there. Where that is out of reach the robot goes to another place, five times,
-and takes another solution of the target, twice from the same place, and twice with places of its own. In the end the plan asks the world,
+and takes another solution of the target, twice from the same place, and twice with places of its own; solutions of the target that are
+within reach from nowhere do not count. In the end the plan asks the world,
 when it has come to rest, whether the object lies there."
   (flet ((give-up (description)
            (cpl:fail 'common-fail:object-undeliverable :object ?object-designator :description description))
          (next-target ()
            (let ((next (next-solution ?target-location)))
              (when next (setf ?target-location next)))))
+    (unless (resolvable-p ?target-robot-location)
+      (multiple-value-bind (target from) (target-within-reach ?target-location)
+        (when target
+          (setf ?target-location target
+                ?target-robot-location from))))
     (with-other-solutions (2 (fd-plans deliver) desig:designator-error common-fail:object-undeliverable)
         ((when (next-target)
-           (setf ?target-robot-location (place-to-reach-from ?target-location nil)))
+           (multiple-value-bind (target from) (target-within-reach ?target-location)
+             (setf ?target-location (or target ?target-location)
+                   ?target-robot-location (or from (place-to-reach-from ?target-location nil)))))
          (give-up "The object cannot be put at any of the places that were tried."))
       (with-other-solutions (5 (fd-plans deliver)
                              common-fail:navigation-goal-in-collision

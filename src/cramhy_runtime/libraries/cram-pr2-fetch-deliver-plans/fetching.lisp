@@ -41,13 +41,28 @@
     (pr2-proj-reasoning:check-picking-up-collisions
      (picking-up pick-up-action (pr2-proj::seen-object object item) arm))))
 
-(defun settle-on-place-to-fetch-from (location object arm pick-up-action)
-  "The solution of LOCATION, from now on, from which OBJECT can be taken as far as is known."
+(defun in-container-p (object)
+  "Whether OBJECT was sought in something."
+  (let ((location (desig:desig-prop-value object :location)))
+    (and location (desig:desig-prop-value location :in) t)))
+
+(defun place-of-robot ()
+  "A location designator of where the robot is."
+  (let ((?pose (cl-transforms-stamped:pose->pose-stamped cram-tf:*fixed-frame* 0.0 (btr:pose (btr:get-robot-object)))))
+    (desig:a location (pose ?pose))))
+
+(defun place-to-fetch-from (location object arm pick-up-action)
+  "From where OBJECT can be taken as far as is known: the next such solution of LOCATION, or the place where the robot is. What lies in a
+container, and is seen only from few places, is taken from the place from which it was seen, if that goes."
   (let ((item (btr-belief:get-designator-object (desig:current-desig object))))
-    (or (null item)
-        (pr2-proj-reasoning:settle-on-place
-         location (lambda () (try-picking-up (btr:name item) object arm pick-up-action)))
-        (cpl:fail 'common-fail:object-unreachable :object object :description "The object cannot be taken from any of the places ahead."))))
+    (flet ((try ()
+             (try-picking-up (btr:name item) object arm pick-up-action)))
+      (cond ((null item) location)
+            ((and (in-container-p object) (pr2-proj-reasoning::possible-here-p #'try)) (place-of-robot))
+            ((pr2-proj-reasoning:settle-on-place location #'try))
+            ((pr2-proj-reasoning::possible-here-p #'try) (place-of-robot))
+            (t (cpl:fail 'common-fail:object-unreachable
+                         :object object :description "The object cannot be taken from any of the places ahead."))))))
 
 (defun in-hand-p (object)
   "Whether the robot holds OBJECT; true where no world knows it."
@@ -73,8 +88,8 @@ it, the robot looks again, once. Returns the object as it is known then."
           ((let ((elsewhere (next-solution ?pick-up-robot-location)))
              (when elsewhere (setf ?pick-up-robot-location elsewhere)))
            (give-up))
-        (settle-on-place-to-fetch-from ?pick-up-robot-location ?object-designator ?arm pick-up-action)
-        (exe:perform (desig:an action (type navigating) (location ?pick-up-robot-location)))
+        (let ((?place (place-to-fetch-from ?pick-up-robot-location ?object-designator ?arm pick-up-action)))
+          (exe:perform (desig:an action (type navigating) (location ?place))))
         (with-other-solutions (1 (fd-plans fetch) common-fail:gripper-low-level-failure)
             ((progn (pp-plans:park-arms) t)
              (cpl:fail 'common-fail:object-unreachable :object ?object-designator :description "The fingers closed beside the object."))

@@ -32,3 +32,8 @@
   "A location designator of places from which the robot reaches ?LOCATION; ?ARM may be nil."
   (let ((?robot (robot-name)))
     (desig:a location (reachable-for ?robot) (desig:when ?arm (arm ?arm)) (location ?location))))
+
+(defun container-type (location)
+  "The type of the container that LOCATION is in, such as :DRAWER, or nil."
+  (let ((container (desig:desig-prop-value location :in)))
+    (and container (desig:desig-prop-value (desig:current-desig container) :type))))

@@ -5,8 +5,8 @@
 (defparameter *pose-at-sink* '((0.7 -0.2 0) (0 0 0 1))
   "Where the robot stands in the room to drop an object at the sink.")
 
-(defparameter *pose-over-sink* '((0.7 0 1.2) (0 0 0 1))
-  "Where it drops it, in the frame of its base.")
+(defparameter *poses-over-sink* '(((0.7 0 1.2) (0 0 0 1)) ((0.65 0 1.0) (0 0 0 1)) ((0.6 0 0.95) (0 0 0 1)))
+  "Where it drops it, in the frame of its base: the first that the arm reaches.")
 
 (defun stamped (frame place)
   (let ((pose (btr:ensure-pose place)))
@@ -15,9 +15,16 @@
 (cpl:def-cram-function drop-at-sink ()
   "Put what is held over the sink, since it could not be brought to where it was to be."
   (let ((?stand (stamped cram-tf:*fixed-frame* *pose-at-sink*))
-        (?over-sink (stamped cram-tf:*robot-base-frame* *pose-over-sink*)))
+        (places *poses-over-sink*))
     (exe:perform (desig:an action (type navigating) (location (desig:a location (pose ?stand)))))
-    (exe:perform (desig:an action (type placing) (target (desig:a location (pose ?over-sink)))))
+    (cpl:with-failure-handling
+        ((common-fail:manipulation-low-level-failure (failure)
+           (when (rest places)
+             (roslisp:ros-warn (fd-plans transport) "~a~%Trying lower." failure)
+             (pop places)
+             (cpl:retry))))
+      (let ((?over-sink (stamped cram-tf:*robot-base-frame* (first places))))
+        (exe:perform (desig:an action (type placing) (target (desig:a location (pose ?over-sink)))))))
     (pp-plans:park-arms)))
 
 (defun try-to-drop-at-sink ()
@@ -79,10 +86,6 @@
                            (location ?location)
                            (desig:when ?arm (arm ?arm))
                            (desig:when ?distance (distance ?distance))))))
-
-(defun container-type (location)
-  (let ((container (desig:desig-prop-value location :in)))
-    (and container (desig:desig-prop-value (desig:current-desig container) :type))))
 
 (defun fetch-and-deliver-once (?object ?target ?arm)
   "Take an object from where it is now, and bring it to ?TARGET."

@@ -15,14 +15,38 @@
     (funcall function)
     t))
 
+(defun park-for-now ()
+  "Put the arms where they are while the robot drives."
+  (let ((arms (pp-plans::all-arms)))
+    (pr2-proj::move-joints (when (member :left arms) (pp-plans::parking-values :left t))
+                           (when (member :right arms) (pp-plans::parking-values :right t)))))
+
+(defun possible-here-p (try)
+  "Whether the function TRY does not fail from where the robot is, with the arms parked; the world is then as it was."
+  (in-simulation
+    (in-world-for-now
+      (park-for-now)
+      (possible-p try))))
+
+(defun first-free-pose (poses)
+  "The first of POSES in the room at which the robot touches nothing, with the arms parked and the torso up, or nil."
+  (in-simulation
+    (in-world-for-now
+      (park-for-now)
+      (pr2-proj::move-torso (highest-torso))
+      (find-if (lambda (pose) (possible-p (lambda () (pr2-proj::drive pose)))) poses))))
+
+(defun highest-torso ()
+  "The upper limit of the joint of the torso, metres."
+  (cram-robot-interfaces:get-joint-upper-limit
+   (pr2-proj::value '?joint `(cram-robot-interfaces:robot-torso-link-joint ,(btr:get-robot-name) ?link ?joint))))
+
 (defun settle-on-place (location try &key (samples 150) (tries 8))
   "Move LOCATION on to the first of its next solutions at which the robot touches nothing and the function TRY does not fail, with the arms
 parked. Returns that location, or nil when none of so many SAMPLES will do, or TRY has failed TRIES times; the world is then as it was."
   (in-simulation
     (in-world-for-now
-      (let ((arms (pp-plans::all-arms)))
-        (pr2-proj::move-joints (when (member :left arms) (pp-plans::parking-values :left t))
-                               (when (member :right arms) (pp-plans::parking-values :right t))))
+      (park-for-now)
       (loop repeat samples
             for place = (desig:current-desig location) then (next-place place)
             while (and place (plusp tries))

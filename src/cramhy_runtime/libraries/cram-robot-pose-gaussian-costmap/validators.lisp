@@ -36,11 +36,16 @@
         (+ angle 1d-6))))
 
 (defun judge (designator pose kind minimal-distance distance)
-  "The verdict about POSE by the targets of DESIGNATOR for KIND: each is between the distances, and their mean is in front."
-  (let ((samples (setting 'orientation-samples '?value))
-        (step (setting 'orientation-sample-step '?value))
-        (targets (and (pose-p pose) minimal-distance distance (setting 'target-places designator kind '?value))))
-    (if (not (and samples step targets))
+  "The verdict about POSE by the targets of DESIGNATOR for KIND: each is between the distances, and their mean is in front. The distances are
+names of settings, the minimal one nil for none. Settings are asked for only where there are targets."
+  (let* ((targets (and (pose-p pose) (setting 'target-places designator kind '?value)))
+         (distance (and targets (setting distance '?value)))
+         (minimal-distance (cond ((null distance) nil)
+                                 (minimal-distance (setting minimal-distance '?value))
+                                 (t 0)))
+         (samples (and minimal-distance (setting 'orientation-samples '?value)))
+         (step (and samples (setting 'orientation-sample-step '?value))))
+    (if (not step)
         :unknown
         (let* ((pose (in-fixed-frame pose))
                (place (cl-transforms:origin pose))
@@ -54,12 +59,11 @@
 
 (defun reachable-location-validator (designator pose)
   "Accept a pose that is as far from what is to be reached as the settings say, and turned towards it."
-  (judge designator pose :reach
-         (setting 'costmap-reach-minimal-distance '?value) (setting 'costmap-in-reach-distance '?value)))
+  (judge designator pose :reach 'costmap-reach-minimal-distance 'costmap-in-reach-distance))
 
 (defun visible-location-validator (designator pose)
   "Accept a pose that is as near to what is to be seen as the settings say, and turned towards it."
-  (judge designator pose :see 0 (setting 'visibility-costmap-size '?value)))
+  (judge designator pose :see nil 'visibility-costmap-size))
 
 (register-location-validation-function 1 robot-location-on-floor "Robots stand on the floor.")
 (register-location-validation-function 5 reachable-location-validator "The robot reaches its target from there.")

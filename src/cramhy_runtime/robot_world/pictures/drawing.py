@@ -46,18 +46,18 @@ def draw(world: World, view: View, width: int, height: int) -> Drawing:
     solids = solids_of(world)
     rays = view.rays(width, height)
     shown, depths, colours = _background(view, rays)
-    for number, solid in enumerate(solids):
-        part = _near(solid, view, width, height)
-        if part is None:
+    near = [(*part, number) for number, solid in enumerate(solids) if (part := _near(solid, view, width, height)) is not None]
+    for count, (nearest, part, number) in enumerate(sorted(near, key=lambda entry: (entry[0], entry[2]))):
+        seen = depths[part] >= nearest  # the others show what is before it
+        if not seen.any():
             continue
-        near = rays[part]
-        found = solid.meet(view.place, near.reshape(-1, 3)).reshape(near.shape[:2])
-        first = found < depths[part]
+        solid = solids[number]
+        found, normals = solid.meet(view, rays, part, seen)
+        first = (found < depths[part]) | (found == depths[part]) & (number < shown[part])
         if first.any():
-            distances, hit = found[first], near[first]
-            depths[part][first], shown[part][first] = distances, number
-            colours[part][first] = _lit(np.array(solid.colour[:3]), solid.normals(view.place + distances[:, None] * hit), hit)
-        if not number & 31:
+            depths[part][first], shown[part][first] = found[first], number
+            colours[part][first] = _lit(np.array(solid.colour[:3]), normals(first), rays[part][first])
+        if not count & 31:
             checkpoint()
     _outline(shown, depths, colours)
     return Drawing(solids, shown, depths, colours)
@@ -71,27 +71,50 @@ def _background(view: View, rays: np.ndarray) -> tuple[np.ndarray, np.ndarray, n
     shown = np.where(floor, FLOOR, SKY)
     colours = np.empty(rays.shape)
     colours[:] = _SKY
-    where = view.place[:2] + depths[floor][:, None] * rays[floor][:, :2]
-    tiles = _TILES[np.floor(where).astype(int).sum(axis=1) & 1]
-    share = np.clip((depths[floor] - _HAZE) / (2 * _HAZE), 0, 1)[:, None]
-    colours[floor] = tiles + (_SKY - tiles) * share
+    rows = np.flatnonzero(floor.any(axis=1))
+    if len(rows):
+        block = slice(rows[0], rows[-1] + 1)
+        floor, ahead, rays = floor[block], np.where(floor[block], depths[block], 0.0), rays[block]
+        across, along = (np.floor(view.place[axis] + ahead * rays[:, :, axis]).astype(int) for axis in (0, 1))
+        tiles = _TILES[(across + along) & 1]
+        hazy = ahead > _HAZE
+        tiles[hazy] += (_SKY - tiles[hazy]) * np.clip((ahead[hazy] - _HAZE) / (2 * _HAZE), 0, 1)[:, None]
+        np.copyto(colours[block], tiles, where=floor[:, :, None])
     return shown, depths, colours
 
 
-def _near(solid: Solid, view: View, width: int, height: int) -> tuple[slice, slice] | None:
-    """The part of the picture in which a solid may be seen; ``None`` when it is behind the camera or beside the picture."""
+def _near(solid: Solid, view: View, width: int, height: int) -> tuple[float, tuple[slice, slice]] | None:
+    """(how far ahead a solid begins, metres; the part of the picture in which it may be seen); ``None`` when it is behind the camera or
+    beside the picture."""
     ahead = (solid.place - view.place) @ view.turn[:, 2]
     if ahead + solid.reach <= NEAR:
         return None
     corners = (solid.corners() - view.place) @ view.turn
     if corners[:, 2].min() <= NEAR:  # the camera is beside it, or inside
-        return slice(0, height), slice(0, width)
+        corners = _ahead(corners)
+        if not len(corners):
+            return None
     focal = height / 2 / tan(view.opening / 2)
     flat = corners[:, :2] / corners[:, 2:]
     (left, top), (right, bottom) = flat.min(axis=0), flat.max(axis=0)
     columns = slice(max(0, int(width / 2 + left * focal) - 1), min(width, int(width / 2 + right * focal) + 2))
     rows = slice(max(0, int(height / 2 + top * focal) - 1), min(height, int(height / 2 + bottom * focal) + 2))
-    return (rows, columns) if rows.start < rows.stop and columns.start < columns.stop else None
+    if rows.start >= rows.stop or columns.start >= columns.stop:
+        return None
+    return float(corners[:, 2].min()) - 1e-6, (rows, columns)
+
+
+_EDGES = np.array([(one, one | bit) for one in range(8) for bit in (1, 2, 4) if not one & bit])
+"""The numbers of the corners of a box that an edge joins; the bits of a number say which of two each of its coordinates is."""
+
+
+def _ahead(corners: np.ndarray) -> np.ndarray:
+    """The corners of that part of a box which is ahead of the camera, in its frame. Some of them are just before it."""
+    one, other = corners[_EDGES[:, 0]], corners[_EDGES[:, 1]]
+    crossing = (one[:, 2] > NEAR) != (other[:, 2] > NEAR)
+    one, other = one[crossing], other[crossing]
+    share = (NEAR - one[:, 2]) / (other[:, 2] - one[:, 2])
+    return np.concatenate([corners[corners[:, 2] > NEAR], one + share[:, None] * (other - one)])
 
 
 def _lit(colour: np.ndarray, normals: np.ndarray, rays: np.ndarray) -> np.ndarray:

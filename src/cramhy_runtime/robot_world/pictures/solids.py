@@ -1,7 +1,7 @@
 """The shapes of a world as solids, and where rays meet them.
 
-All rays of a picture begin at the camera. A solid is asked for the rays near it only, at once, in its own frame; it answers with how far
-along each ray it is met first, ``inf`` where it is not; and then for the normals at places on it.
+All rays of a picture begin at the camera. A solid is asked for those rays near it that nothing before it has met, at once; it answers with
+how far along each of them it is met first, ``inf`` where it is not; and then with the normals at such places.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from zlib import crc32
 
 import numpy as np
 
-from cramhy_runtime.kernel.active import checkpoint
-
 from ..meshes import mesh_of, shape_box
 from ..mujoco_parts import mujoco
 from ..things import Item, Machine
+from . import triangles
+from .triangles import NEAR
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -24,11 +24,9 @@ if TYPE_CHECKING:
     from ..mesh_files import Mesh
     from ..things import Colour, Thing
     from ..world import World
+    from .views import View
 
 _CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
-_MOST_AT_ONCE = 1 << 19  # pairs of a ray and a triangle
-NEAR = 0.02
-"""What is nearer than so many metres is not seen."""
 
 
 _PLAIN = Machine.colour
@@ -52,13 +50,25 @@ class Solid:
         self._corners = lowest + _CORNERS * (highest - lowest)
         self.reach = float(np.linalg.norm(self._corners, axis=1).max())
 
-    def meet(self, eye: np.ndarray, rays: np.ndarray) -> np.ndarray:
-        """How far along each of the ``rays``, n x 3, from ``eye`` it is met."""
-        return _MEET[self.shape.kind](self.form, (eye - self.place) @ self.turn, rays @ self.turn)
+    def meet(
+        self, view: View, rays: np.ndarray, part: tuple[slice, slice], seen: np.ndarray
+    ) -> tuple[np.ndarray, Callable[[np.ndarray], np.ndarray]]:
+        """(how far along each ray of a part of the picture it is met, its normals there). rays: of the whole picture, height x width x 3.
+        seen: those of the part that matter, a mask. The normals, n x 3 in the world, are a function of which are wanted, a mask."""
+        if self.shape.kind == "mesh":
+            corners = (self.form @ self.turn.T + self.place - view.place) @ view.turn
+            found, numbers = triangles.meet(corners, view, part, rays.shape[1], rays.shape[0])
+            return found, lambda wanted: triangles.normals(self.form[numbers[wanted]]) @ self.turn.T
+        eye = (view.place - self.place) @ self.turn
+        local = (rays[part][seen] @ self.turn).T
+        found = np.full(seen.shape, np.inf)
+        found[seen] = _MEET[self.shape.kind](self.form, eye, local)
 
-    def normals(self, places: np.ndarray) -> np.ndarray:
-        """The normals, n x 3, at ``places`` of its surface, all in the world."""
-        return _NORMALS[self.shape.kind](self.form, (places - self.place) @ self.turn) @ self.turn.T
+        def normals(wanted: np.ndarray) -> np.ndarray:
+            places = eye + (found[wanted] * local[:, wanted[seen]]).T
+            return _NORMALS[self.shape.kind](self.form, places) @ self.turn.T
+
+        return found, normals
 
     def corners(self) -> np.ndarray:
         """The corners of the box around it, 8 x 3, in the world."""
@@ -83,7 +93,7 @@ def _solids(thing: Thing) -> Iterator[Solid]:
 
 def _placed(thing: Thing, link: str | None, shapes: tuple[Shape, ...], place: np.ndarray, turn: np.ndarray) -> Iterator[Solid]:
     for shape in shapes:
-        if shape.kind not in _MEET:
+        if shape.kind != "mesh" and shape.kind not in _MEET:
             continue
         position, rotation = np.zeros(3), np.zeros(4)
         mujoco.mju_mulPose(position, rotation, place, turn, np.array(shape.frame.position), np.array(shape.frame.rotation))
@@ -93,10 +103,10 @@ def _placed(thing: Thing, link: str | None, shapes: tuple[Shape, ...], place: np
 
 
 def _meet_box(size: tuple[float, ...], eye: np.ndarray, rays: np.ndarray) -> np.ndarray:
-    enter, leave = np.full(len(rays), -np.inf), np.full(len(rays), np.inf)
+    enter, leave = np.full(rays.shape[1], -np.inf), np.full(rays.shape[1], np.inf)
     with np.errstate(divide="ignore", invalid="ignore"):
         for axis in range(3):
-            inverse = 1.0 / rays[:, axis]
+            inverse = 1.0 / rays[axis]
             one, other = (-size[axis] / 2 - eye[axis]) * inverse, (size[axis] / 2 - eye[axis]) * inverse
             enter, leave = np.fmax(enter, np.fmin(one, other)), np.fmin(leave, np.fmax(one, other))
     found = np.where(enter > NEAR, enter, leave)  # the way out, when the camera is inside
@@ -120,18 +130,18 @@ def _roots(a: np.ndarray, b: np.ndarray, c: float) -> np.ndarray:
 
 
 def _meet_sphere(size: tuple[float, ...], eye: np.ndarray, rays: np.ndarray) -> np.ndarray:
-    return _roots((rays * rays).sum(axis=1), rays @ eye, eye @ eye - size[0] ** 2)
+    return _roots((rays * rays).sum(axis=0), eye @ rays, eye @ eye - size[0] ** 2)
 
 
 def _meet_cylinder(size: tuple[float, ...], eye: np.ndarray, rays: np.ndarray) -> np.ndarray:
     radius, half = size[0], size[1] / 2
-    flat, ground = rays[:, :2], eye[:2]
-    side = _roots((flat * flat).sum(axis=1), flat @ ground, ground @ ground - radius**2)
+    flat, ground = rays[:2], eye[:2]
+    side = _roots((flat * flat).sum(axis=0), ground @ flat, ground @ ground - radius**2)
     with np.errstate(divide="ignore", invalid="ignore"):
-        side = np.where(np.abs(eye[2] + side * rays[:, 2]) <= half, side, np.inf)
-        cap = (-np.sign(rays[:, 2]) * half - eye[2]) / rays[:, 2]  # of the two ends the nearer one
-        where = ground + cap[:, None] * flat
-        cap = np.where((cap > NEAR) & ((where * where).sum(axis=1) <= radius**2), cap, np.inf)
+        side = np.where(np.abs(eye[2] + side * rays[2]) <= half, side, np.inf)
+        cap = (-np.sign(rays[2]) * half - eye[2]) / rays[2]  # of the two ends the nearer one
+        where = ground[:, None] + cap * flat
+        cap = np.where((cap > NEAR) & ((where * where).sum(axis=0) <= radius**2), cap, np.inf)
     return np.fmin(side, cap)
 
 
@@ -153,54 +163,13 @@ def _triangles(mesh: Mesh) -> np.ndarray:
     return corners[[half for one, two, three, four in sides for half in ((one, two, three), (one, three, four))]]
 
 
-def _meet_mesh(triangles: np.ndarray, eye: np.ndarray, rays: np.ndarray) -> np.ndarray:
-    found = np.full(len(rays), np.inf)
-    many = max(1, _MOST_AT_ONCE // max(1, len(rays)))
-    for first in range(0, len(triangles), many):
-        found = np.fmin(found, _meet_triangles(triangles[first : first + many], eye, rays))
-        checkpoint()
-    return found
-
-
-def _meet_triangles(triangles: np.ndarray, eye: np.ndarray, rays: np.ndarray) -> np.ndarray:
-    """As Möller and Trumbore: all rays and all triangles at once."""
-    corner, one, other = triangles[:, 0], triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
-    away = eye - corner
-    across = np.cross(away, one)
-    normal = np.cross(one, other)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        inverse = -1.0 / (rays @ normal.T)
-        along = (away * normal).sum(axis=1) * inverse
-        u, v = (rays @ np.cross(away, other).T) * -inverse, (rays @ across.T) * inverse
-        hit = (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9) & (along > NEAR)
-    return np.where(hit, along, np.inf).min(axis=1)
-
-
-def _mesh_normals(triangles: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Those of the triangles whose planes and middles are nearest."""
-    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
-    middles = triangles.mean(axis=1)
-    radii = np.linalg.norm(triangles - middles[:, None], axis=2).max(axis=1)
-    chosen = np.zeros(len(places), int)
-    many = max(1, _MOST_AT_ONCE // (3 * len(triangles)))
-    for first in range(0, len(places), many):
-        away = places[first : first + many, None] - middles
-        beside = np.maximum(np.linalg.norm(away, axis=2) - radii, 0.0)
-        chosen[first : first + many] = np.argmin(np.abs((away * normals).sum(axis=2)) + beside, axis=1)
-        checkpoint()
-    return normals[chosen]
-
-
 _MEET: dict[str, Callable[[Any, np.ndarray, np.ndarray], np.ndarray]] = {
     "box": _meet_box,
     "sphere": _meet_sphere,
     "cylinder": _meet_cylinder,
-    "mesh": _meet_mesh,
 }
 _NORMALS: dict[str, Callable[[Any, np.ndarray], np.ndarray]] = {
     "box": _box_normals,
     "sphere": lambda size, places: places / size[0],
     "cylinder": _cylinder_normals,
-    "mesh": _mesh_normals,
 }

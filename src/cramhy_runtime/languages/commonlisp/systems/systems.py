@@ -61,12 +61,15 @@ NOT_TO_BE_HAD = {
 """Systems that cannot be had here, and why."""
 LEFT_OUT = {
     "cl-glx": "It opens windows for worlds on X11. The page of cramhy shows worlds.",
-    "cram-json-prolog": "It asks KnowRob's Prolog by ROS. Here is no KnowRob.",
     "cram-semantic-map": "It reads the furniture from KnowRob. Here a URDF describes it.",
     "cram-semantic-map-utils": "It reads the furniture from KnowRob. Here a URDF describes it.",
     "synchronization-tools": "It waits for messages and transforms that belong together.",
 }
 """Systems of CRAM that are empty here, with their descriptions: others list them, and nothing that runs here needs what they define."""
+
+
+LAST = frozenset({"cram-pr2-pick-place-demo"})
+"""Systems of `LIBRARIES` that stand for applications of CRAM: a checkout comes before them."""
 
 
 def provide_system(names):
@@ -170,6 +173,10 @@ LIBRARY_PACKAGES = {
     "BTR-BELIEF": "cram-bullet-reasoning-belief-state",
     "CRAM-PR2-PROJECTION": "cram-pr2-projection",
     "PR2-PROJ": "cram-pr2-projection",
+    "URDF-PROJ": "cram-pr2-projection",
+    "JSON-PROLOG": "cram-json-prolog",
+    "CRAM-CLOUD-LOGGER": "cram-cloud-logger",
+    "CCL": "cram-cloud-logger",
     "CRAM-PR2-PROJECTION-REASONING": "cram-pr2-projection-reasoning",
     "PR2-PROJ-REASONING": "cram-pr2-projection-reasoning",
     "CRAM-PR2-FETCH-DELIVER-PLANS": "cram-pr2-fetch-deliver-plans",
@@ -250,7 +257,7 @@ def find_asd(name):
         return chosen[home]
     if home in preferred and (found := _find_below(wanted, True)) is not None:
         return found
-    if wanted in libraries():
+    if wanted in libraries() and home not in LAST:
         return LIBRARIES / libraries()[wanted]
     for folder in central_registry():
         if os.path.isfile(folder / wanted):
@@ -258,6 +265,8 @@ def find_asd(name):
     found = _find_below(wanted)
     if found is None and look_again():
         found = _find_below(wanted)
+    if found is None and wanted in libraries():
+        found = LIBRARIES / libraries()[wanted]
     if found is None:  # a package's system and its tests have a file each
         found = next((path.parent / wanted for path in (*_reading, *_read) if (path.parent / wanted).is_file()), None)
     return found

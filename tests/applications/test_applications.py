@@ -1,0 +1,130 @@
+"""CRAM's applications run past loading: what their readers type, and what must come.
+
+A file in ``typed`` has the forms, with a blank line between two; ``;=> REGULAR EXPRESSION`` below a form is what its printed value matches
+as a whole, white space being one blank. ``(lies 'name)`` is where an object lies, in centimetres as metres.
+
+``cram_cup_demo`` is a package of our own with the habits of CRAM's, in ``workspace``. The others are CRAM's, which are not ours to ship:
+CRAMHY_APPLICATIONS names a folder with checkouts of cram2/cram (``cram-master``) and of the EASE Fall School (``cram_teaching``).
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from pathlib import Path
+
+import pytest
+
+from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.repl.session import Session
+from cramhy_runtime.session import Image
+
+pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
+
+HERE = Path(__file__).parent
+LIES = """
+(defun common-lisp-user::lies (name)
+  (let ((place (cl-transforms:origin (btr:pose (btr:object btr:*current-bullet-world* name)))))
+    (mapcar (lambda (number) (/ (round number 0.01) 100.0)) (list (cl-transforms:x place) (cl-transforms:y place) (cl-transforms:z place)))))
+"""
+CHECKOUTS = os.environ.get("CRAMHY_APPLICATIONS")
+foreign = pytest.mark.skipif(not CHECKOUTS, reason="CRAMHY_APPLICATIONS names no folder with checkouts of CRAM's applications")
+
+
+@pytest.fixture
+def begin(monkeypatch):
+    """A function: a session in an image of its own, in which the packages below a folder are found. Two applications exclude each other."""
+
+    def session(folder):
+        monkeypatch.setenv("ROS_PACKAGE_PATH", str(folder))
+        made = Session(time="virtual", seed=1, turtlesim=False)
+        made.evaluate_text(LIES)
+        return made
+
+    with Image():
+        yield session
+
+
+def typed(application):
+    """The forms that are typed, with what comes."""
+    for block in (HERE / "typed" / f"{application}.lisp").read_text(encoding="utf-8").strip().split("\n\n"):
+        form, _, answer = block.partition("\n;=> ")
+        yield form.replace("(lies ", "(cl-user::lies "), answer
+
+
+def run(session, application):
+    """Type all forms; those whose answers do not match, with what came."""
+    wrong = []
+    for form, answer in typed(application):
+        try:
+            value = " ".join(prin1_to_string(session.evaluate_text(form)[0]).split())
+        except Condition as problem:
+            value = f"{type(problem).__name__}: {problem}"
+        if not re.fullmatch(answer, value):
+            wrong.append(f"{form}\n;=> {value}\nwanted {answer}")
+    return wrong
+
+
+def test_a_package_with_the_habits_of_crams_demos_runs(begin, capsys):
+    assert run(begin(HERE / "workspace" / "src"), "cram_cup_demo") == []
+    printed = capsys.readouterr().out
+    assert printed.count("This is said once.") == 2  # json-prolog and ccl
+    assert printed.count("undefined functor") == 0 and "A keyword is no string" not in printed
+    assert "performing POSITIONING-ARM" in printed and "performing MOVING-TORSO" in printed
+
+
+@foreign
+@pytest.mark.parametrize("application", ["cram_bullet_world_tutorial", "cram_pick_place_tutorial", "cram_pr2_pick_place_demo"])
+def test_crams_own_applications_run(begin, application, capsys):
+    assert run(begin(Path(CHECKOUTS) / "cram-master"), application) == []
+    printed = capsys.readouterr()
+    assert (printed.out + printed.err).count("undefined functor") == 0
+
+
+LESSONS = {
+    "01-Lesson_01_Lisp_Introduction": {"UnboundVariable": 2, "UndefinedFunction": 1},
+    "02-Lesson_02_CRAM_Basics": {"DesignatorError": 1},
+    "03-Lesson_03_Pick_n_Place": {},
+}
+"""The lessons of the EASE Fall School, and the errors in them that their texts announce."""
+
+
+def cells(notebook):
+    """The code of the cells of a notebook."""
+    cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+    return [text for cell in cells if cell["cell_type"] == "code" and (text := "".join(cell["source"])).strip()]
+
+
+@foreign
+@pytest.mark.parametrize("lesson", LESSONS)
+def test_the_lessons_of_the_ease_fall_school_run(begin, lesson, tmp_path):
+    session, errors = begin(tmp_path), {}
+    for text in cells(Path(CHECKOUTS) / "cram_teaching" / "lectures" / "tutorials" / f"{lesson}.ipynb"):
+        try:
+            session.evaluate_text(text)
+        except Condition as problem:
+            errors[type(problem).__name__] = errors.get(type(problem).__name__, 0) + 1
+    assert errors == LESSONS[lesson]
+
+
+def test_the_lessons_world_is_set_and_made_anew(begin, tmp_path):
+    """The system that the lessons load comes with cramhy, for those who have no checkout."""
+    session = begin(tmp_path)
+    session.evaluate_text("(asdf:load-system :cram-pr2-pick-place-demo) (in-package :demo) (roslisp-utilities:startup-ros)")
+    session.evaluate_text("(urdf-proj:with-simulated-robot (setting-demo '(:bowl)))")
+    assert prin1_to_string(session.evaluate_text("(cl-user::lies :bowl-1)")[0]) == "(-0.8 1.2 0.89)"
+    session.evaluate_text("(initialize)")
+    names = session.evaluate_text("(mapcar #'btr:name (btr:objects btr:*current-bullet-world*))")
+    assert prin1_to_string(names[0]) == "(:FLOOR :KITCHEN CRAM-PR2-DESCRIPTION:PR2)"
+
+
+def test_a_checkout_of_the_demo_comes_before_ours(begin, tmp_path):
+    (tmp_path / "cram_pr2_pick_place_demo").mkdir()
+    (tmp_path / "cram_pr2_pick_place_demo" / "cram-pr2-pick-place-demo.asd").write_text(
+        '(defsystem cram-pr2-pick-place-demo :description "theirs")'
+    )
+    session = begin(tmp_path)
+    description = '(asdf:system-description (asdf:find-system "cram-pr2-pick-place-demo"))'
+    assert prin1_to_string(session.evaluate_text(description)[0]) == '"theirs"'
