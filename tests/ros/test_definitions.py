@@ -164,7 +164,8 @@ class TestOurs:
 
     def test_their_sums_are_those_of_ros_noetic(self):
         """The table was read from the Python modules that Debian generates from ROS 1's definitions, that of the tutorials' packages
-        (turtlesim, actionlib_tutorials, turtle_actionlib, rospy_tutorials, roscpp_tutorials) checked by hand."""
+        (turtlesim, actionlib_tutorials, turtle_actionlib, rospy_tutorials, roscpp_tutorials) checked by hand, and that of
+        lynxmotion_al5d_description computed from the course's files."""
         lines = (Path(__file__).parent / "md5sums.txt").read_text().split("\n")
         expected = sorted(tuple(line.split()) for line in lines if line)
         sums = sorted((found.ros_type if isinstance(found, type) else found.name, type_texts.md5_of(found)) for found in everything())
