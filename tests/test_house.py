@@ -205,6 +205,9 @@ LISTED = {
     "cramhy_runtime.ros_tools.running": lambda module: {
         f"cramhy_runtime.ros_tools.{each}" for homes in module._HOMES.values() for each in homes
     },
+    "cramhy_runtime.ros_tools.executables": lambda module: {
+        f"cramhy_runtime.{home}" for rows in module.EXECUTABLES.values() for home, _ in rows.values()
+    },
     "cramhy_runtime.languages.commonlisp.package": lambda module: {
         f"cramhy_runtime.{name}" if name.startswith("ground.") else f"cramhy_runtime.languages.commonlisp.{name}"
         for name in (*module.MODULES, *module.HELPERS)

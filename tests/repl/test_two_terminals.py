@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import termios
+from contextlib import ExitStack
 
 import pytest
 
@@ -147,6 +148,50 @@ def test_two_simulators_from_a_launch_file(private):
         assert terminal.status() == 0
 
 
+FOLLOW = """<launch>
+  <include file="$(find turtle_tf)/launch/turtle_tf_demo.launch"/>
+  <node pkg="joint_state_publisher" type="joint_state_publisher" name="joints"/>
+  <node pkg="tf" type="static_transform_publisher" name="short" args="0 0 map world"/>
+</launch>
+"""
+
+
+@pytest.mark.parametrize("elsewhere", [False, True])
+def test_a_launch_file_with_keys_and_a_turtle_that_follows_and_programs_that_do_not_start(private, tmp_path, elsewhere):
+    (tmp_path / "follow.launch").write_text(FOLLOW)
+    with ExitStack() as closings:
+        if elsewhere:
+            repl = closings.enter_context(Terminal("repl", "--serve", "--no-turtlesim"))
+            repl.expect("CL-USER> ")
+            repl.type('(roslisp:start-ros-node "a")')
+            repl.expect("startup complete")
+        with Terminal("ros", "roslaunch", str(tmp_path / "follow.launch")) as terminal:
+            before = termios.tcgetattr(terminal.master)
+            terminal.expect(
+                r"ERROR: cannot launch node of type \[joint_state_publisher/joint_state_publisher\]: cramhy has no executable "
+                r"joint_state_publisher/joint_state_publisher. Packages with executables: .*turtlesim.\n"
+            )
+            terminal.expect(
+                r"ERROR: cannot launch node of type \[tf/static_transform_publisher\]: static_transform_publisher takes 9 or 10 words"
+            )
+            terminal.expect("Use arrow keys to move the turtle. 'q' to quit.\n")
+            while termios.tcgetattr(terminal.master)[3] & (termios.ICANON | termios.ECHO):
+                pass
+            graph = remote_graph.current()
+            with graph.listen("/turtle2/pose", "turtlesim/Pose") as poses:
+                while poses.take()[1]["x"] < 4.5:
+                    pass
+                os.write(terminal.master, b"\x1b[A")
+                while poses.take()[1]["x"] < 5.8:  # the first turtle was at 5.54
+                    pass
+            graph.close()
+            terminal.control_c()
+            terminal.expect(r"\[sim-1\] killing on exit\n(.|\n)*done\n")
+            assert terminal.status() == 0
+            if terminal.master is not None:
+                assert termios.tcgetattr(terminal.master) == before
+
+
 @pytest.mark.parametrize(
     ("words", "output", "complaint", "status"),
     [
@@ -166,6 +211,9 @@ def test_two_simulators_from_a_launch_file(private):
         ("roscd nope", "", "roscd: No such package/stack 'nope'\n", 1),
         ("roscd a b", "", "usage: roscd package\n", 1),
         ("rosls turtlesim/launch", "multisim.launch\n", "", 0),
+        ("rosls turtle_tf/launch", "turtle_tf_demo.launch\n", "", 0),
+        ("rosls turtle_tf2/launch", "turtle_tf2_demo.launch\n", "", 0),
+        ("rosrun turtle_tff x", "", "[rospack] Error: package 'turtle_tff' not found\nDid you mean turtle_tf?\n", 2),
         ("roslaunch nope.launch", "", "RLException: [nope.launch] is not a launch file name\n", 1),
         ("turtlesim", "", None, 2),
     ],

@@ -1,12 +1,9 @@
-"""The server's side of an action: goals come in, one after the other is given to a function, and all clients are told.
+"""A server of an action that gives its goals to a function, one after the other.
 
 The *exec callback* gets the goal and ends by saying how it went: `succeed_current`, `abort_current` or `preempt_current`, which
 leave it at once. One that falls off its end, or has an error, aborts its goal, and the error is logged; the original's client
-would wait on. While a goal is worked on, a newer one waits for its turn, takes the place of one that waits already, and lets
-`cancel_request_received` be true, as in ROS's simple action server.
-
-The server tells the states of its goals four times a second and whenever one changes, and forgets a goal ten seconds after its
-end. It lives as long as its node. Source: roslisp.md 13.2, wiki.ros.org/actionlib/DetailedDescription.
+would wait on. While a goal is worked on, a newer one waits for its turn and lets `cancel_request_received` be true.
+What clients are told is in `goal_server`. Source: roslisp.md 13.2.
 """
 
 from __future__ import annotations
@@ -18,104 +15,44 @@ from cramhy_runtime.ground.catching import catch, throw
 from cramhy_runtime.ground.condition_types import Error, SimpleError
 from cramhy_runtime.ground.data import truth
 from cramhy_runtime.ground.printing import princ_to_string
-from ..ros.messages import message_class
 from ..ros.roslisp import logging, node, topics
-from ..ros.roslisp.clock import ros_time
-from ..ros.wire import ros_text
 from . import goals
-from .goals import ABORTED, ACTIVE, PENDING, PREEMPTED, PREEMPTING, RECALLED, SUCCEEDED, TERMINAL, Action
+from .goal_server import GoalServer
+from .goals import ABORTED, PREEMPTED, SUCCEEDED, TERMINAL
 
-PERIOD = 0.25
-"""Seconds between two reports of all states."""
-MEMORY = 10.0
-"""Seconds for which a finished goal is still reported."""
 LOG_TOPIC = ("ACTIONLIB",)
-CANCELLED_EARLY = "It was cancelled before it began."
 
 
-class ServerGoal:
-    """A goal that a client sent: its id message, what is asked, its state, and when it ended."""
-
-    def __init__(self, goal_id, message):
-        self.id, self.message = goal_id, message
-        self.state, self.ended, self.text = PENDING, None, ""
-        self.cancelled = False
-
-
-class ActionServer:
+class ActionServer(GoalServer):
     """Serves the action ``name``: ``callback(goal)`` works on one goal after the other, in the task that calls `run`."""
 
     def __init__(self, name, action_type, callback):
-        self.name, self.action, self.callback = goals.check_name(name), Action(action_type), callback
-        self.goals, self.next, self.current = [], None, None
-        self.cancelled_ids, self.cancelled_until = {}, 0.0
-        self.waiting = kernel.Waiting()
-        here = self.node = node.require_node()
+        self.callback, self.waiting = callback, kernel.Waiting()
+        name, here = goals.check_name(name), node.require_node()
         if here.resolve(f"{name}/status") in here.publications:
             conditions.error(
-                SimpleError("The action ~a has a server already, on this node.", self.name),
+                SimpleError("The action ~a has a server already, on this node.", name),
                 hint="Two servers would both do what a client wants once. A server ends with its node: (shutdown-ros-node).",
             )
-        self.statuses = topics.advertise(f"{name}/status", goals.STATUS_ARRAY)
-        self.feedbacks = topics.advertise(f"{name}/feedback", self.action.action_feedback)
-        self.results = topics.advertise(f"{name}/result", self.action.action_result)
-        topics.subscribe(f"{name}/goal", self.action.action_goal, self._goal)
-        topics.subscribe(f"{name}/cancel", goals.GOAL_ID, self._cancel)
-        self.timer = here.graph.kernel.call_every(PERIOD, self.report)
-        here.on_shutdown.append(self._stop)
-        self.report()
+        super().__init__(here, name, action_type)
 
     def __repr__(self):
         return f"#<ACTION-SERVER {self.name} {self.action.name}>"
 
-    def _stop(self):
-        self.timer.cancel()
+    def advertise(self, topic, message_type):
+        return topics.advertise(topic, message_type)
+
+    def subscribe(self, topic, message_type, callback):
+        topics.subscribe(topic, message_type, callback)
+
+    def begin_wanted(self):
         self.waiting.changed()
 
-    # ------------------------------------------------------------------------------------------------- what it hears of
-
-    def _goal(self, message):
-        goal_id = message.goal_id
-        if not goal_id.id:  # somebody typed it, without an id
-            goal_id = goals.new_goal_id(self.node.name, goal_id.stamp or ros_time())
-        if any(goal.id.id == goal_id.id for goal in self.goals):
-            return  # it was sent twice
-        goal = ServerGoal(goal_id, message.goal)
-        self.goals.append(goal)
-        if self._cancelled_before(goal_id):
-            self._end(goal, RECALLED, None, CANCELLED_EARLY)
-            return
-        if self.next is not None:
-            self._end(self.next, RECALLED, None, "A newer goal took its place.")
-        self.next = goal
-        if self.current is not None:
-            self._ask_to_end(self.current)
-        self.report()
+    def end_wanted(self, goal):
         self.waiting.changed()
 
-    def _cancelled_before(self, goal_id):
-        """Whether the request to cancel the goal overtook it, which is on another topic."""
-        early = self.cancelled_ids.pop(goal_id.id, None) is not None
-        return early or bool(goal_id.stamp) and goal_id.stamp <= self.cancelled_until
-
-    def _cancel(self, message):
-        everything = not message.id and not message.stamp
-        if message.id and not any(goal.id.id == message.id for goal in self.goals):
-            self.cancelled_ids[message.id] = kernel.now()
-        self.cancelled_until = max(self.cancelled_until, message.stamp)
-        for goal in list(self.goals):
-            if everything or goal.id.id == message.id or message.stamp and goal.id.stamp <= message.stamp:
-                if goal is self.next:
-                    self.next = None
-                    self._end(goal, RECALLED, None, CANCELLED_EARLY)
-                elif goal is self.current:
-                    self._ask_to_end(goal)
-
-    def _ask_to_end(self, goal):
-        goal.cancelled = True
-        if goal.state == ACTIVE:
-            goal.state = PREEMPTING
-            self.report()
+    def stopped(self):
+        super().stopped()
         self.waiting.changed()
 
     # ---------------------------------------------------------------------------------------------------------- its work
@@ -125,19 +62,16 @@ class ActionServer:
         while self.node.alive:
             self.waiting.wait(lambda: self.next is not None or not self.node.alive, f"a goal for action {self.name}")
             if self.next is not None and self.node.alive:
-                self.current, self.next = self.next, None
-                self._work(self.current)
+                self._work(self.accept())
 
     def _work(self, goal):
-        goal.state = ACTIVE
-        self.report()
         try:
             conditions.handler_case([(Error, lambda problem: self._failed(goal, problem))], lambda: self._call(goal))
         finally:
             self.current = None
             if goal.state not in TERMINAL:  # the task ends, or something else left the callback
                 with kernel.cleanup():
-                    self._end(goal, ABORTED, None, "The server gave up.")
+                    self.end(goal, ABORTED, None, "The server gave up.")
 
     def _call(self, goal):
         task = kernel.current()
@@ -159,47 +93,7 @@ class ActionServer:
     def _failed(self, goal, problem):
         text = problem.report()
         logging.log_text(logging.ERROR, LOG_TOPIC, f"Error in the exec callback of {self.name}: {text}")
-        self._end(goal, ABORTED, None, text)
-
-    # ------------------------------------------------------------------------------------------------- what it tells
-
-    def _end(self, goal, state, result, text=""):
-        """Tell the clients that ``goal`` is over."""
-        goal.state, goal.ended, goal.text = state, kernel.now(), text
-        if self.node.alive:
-            topics.publish(self.results, self.action.action_result(header=_header(), status=_status(goal),
-                                                                   result=self.action.result() if result is None else result))  # fmt: skip
-        self.report()
-
-    def finish(self, goal, state, result):
-        """End ``goal`` in ``state`` with the result message (``None``: all defaults)."""
-        if result is not None:
-            goals.check_message(result, self.action.result)
-        self._end(goal, state, result)
-
-    def tell(self, goal, feedback):
-        """Send the feedback message about ``goal`` (``None``: all defaults)."""
-        feedback = self.action.feedback() if feedback is None else goals.check_message(feedback, self.action.feedback)
-        return topics.publish(self.feedbacks, self.action.action_feedback(header=_header(), status=_status(goal), feedback=feedback))
-
-    def report(self):
-        """Tell the states of all goals, and forget those that ended long ago."""
-        if not self.node.alive:
-            return
-        now = kernel.now()
-        self.goals = [goal for goal in self.goals if goal.ended is None or now - goal.ended < MEMORY]
-        if self.cancelled_ids:
-            self.cancelled_ids = {name: when for name, when in self.cancelled_ids.items() if now - when < MEMORY}
-        statuses = [_status(goal) for goal in self.goals]
-        topics.publish(self.statuses, message_class(goals.STATUS_ARRAY)(header=_header(), status_list=statuses))
-
-
-def _header():
-    return message_class("std_msgs/Header")(stamp=ros_time())
-
-
-def _status(goal):
-    return message_class("actionlib_msgs/GoalStatus")(goal_id=goal.id, status=goal.state, text=ros_text(goal.text))
+        self.end(goal, ABORTED, None, text)
 
 
 # ------------------------------------------------------------------------------------------------------- Lisp functions

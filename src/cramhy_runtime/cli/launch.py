@@ -17,8 +17,7 @@ from xml.etree import ElementTree
 
 from cramhy_runtime.ground.packages import near_names
 from cramhy_runtime.ros.names import plain_value
-from cramhy_runtime.ros_tools import yaml_reading
-from cramhy_runtime.ros_tools.hosting import PROGRAMS
+from cramhy_runtime.ros_tools import executables, yaml_reading
 
 from .programs import Program, rosrun, run, summary
 from .workspace import folder_of, packages
@@ -311,7 +310,7 @@ def roslaunch(arguments):
     if not words:
         print(USAGE + "\n\nroslaunch: error: you must specify at least one input file", file=sys.stderr)
         return 2
-    if len(words) == 2 and words[0] == "turtlesim" and words[1] in PROGRAMS:
+    if len(words) == 2 and executables.complaint(*words) is None:
         return rosrun(words + [word for word in arguments if ":=" in word])
     try:
         launched = load(words, values)

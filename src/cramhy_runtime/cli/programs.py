@@ -11,12 +11,14 @@ from __future__ import annotations
 
 import os
 import sys
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from typing import NamedTuple
 
 from cramhy_runtime.kernel import signals
 
 LOOK_AGAIN = 1.0  # s between two looks for a session that has started elsewhere
+KEYBOARD = ("turtlesim", "turtle_teleop_key")
+"""What drives by the keys of its terminal."""
 RUN_USAGE = """Usage: rosrun PACKAGE EXECUTABLE [ARGS]
   rosrun starts EXECUTABLE of PACKAGE with ARGS, such as __name:=x, __ns:=/y, a:=b and _parameter:=value."""
 
@@ -76,7 +78,7 @@ def rosrun(arguments):
     status = _known(package, executable)
     if status:
         return status
-    if executable == "turtle_teleop_key":
+    if (package, executable) == KEYBOARD:
         from . import keyboard
 
         return keyboard.teleop(words)
@@ -85,21 +87,21 @@ def rosrun(arguments):
 
 def _known(package, executable):
     """0 when there is such an executable; else the exit status, after the complaint."""
-    from cramhy_runtime.ros_tools.hosting import PROGRAMS
+    from cramhy_runtime.ros_tools import executables
     from cramhy_runtime.ros_tools.arguments import meant
 
     from .workspace import folder_of
 
-    if package == "turtlesim" and executable in PROGRAMS:
+    if executables.complaint(package, executable) is None:
         return 0
     folder = folder_of(package)
     if folder is None:
         print(f"[rospack] Error: package '{package}' not found", file=sys.stderr)
-        sys.stderr.write(meant(package, ["turtlesim"]))
+        sys.stderr.write(meant(package, list(executables.EXECUTABLES)))
         return 2
     print(f"[rosrun] Couldn't find executable named {executable} below {folder}", file=sys.stderr)
-    if package == "turtlesim":
-        print(f"[rosrun] turtlesim has the executables {', '.join(sorted(PROGRAMS))}.", file=sys.stderr)
+    if executables.executables(package):
+        print(f"[rosrun] {package} has the executables {', '.join(executables.executables(package))}.", file=sys.stderr)
     return 3
 
 
@@ -162,7 +164,7 @@ def _tell(text):
 
 def show(line):
     """A line of a program's log: warnings and errors go to the other stream, as roscpp has it."""
-    print(line, file=sys.stdout if line.startswith(("[ INFO]", "[DEBUG]")) else sys.stderr, flush=True)
+    print(line, file=sys.stderr if line.startswith(("[ WARN]", "[ERROR]", "[FATAL]")) else sys.stdout, flush=True)
 
 
 def _started(program, number, pid):
@@ -170,6 +172,36 @@ def _started(program, number, pid):
     if program.label:
         print(f"process[{program.label}-{number}]: started with pid [{pid}]", flush=True)
     return [f"{program.label}-{number}"] if program.label else []
+
+
+def _reads_keys(program):
+    """Whether the program gets the keys of this terminal: in a launch file, where ``rosrun`` has not seen to that, and on a terminal."""
+    from cramhy_runtime.kernel.terminals import is_terminal
+
+    return (program.package, program.executable) == KEYBOARD and is_terminal(0)
+
+
+@contextmanager
+def _keys(wanted):
+    """``with _keys(wanted) as read:`` gives what was typed on this terminal within a moment, or ``None``, if it is ``wanted``."""
+    from cramhy_runtime.kernel.terminals import keys_one_by_one
+    from cramhy_runtime.turtlesim.teleop import BANNER
+
+    from .keyboard import PACE
+
+    if wanted is None:
+        yield lambda: None
+        return
+    print(BANNER, end="", flush=True)
+    with keys_one_by_one() as read:
+        yield lambda: read(PACE)
+
+
+def _without(program, problem):
+    """Go on without a program that does not start: one of several in a launch file. Otherwise ``problem`` is raised."""
+    if not program.label:
+        raise problem
+    print(f"ERROR: cannot launch node of type [{program.package}/{program.executable}]: {problem}", file=sys.stderr, flush=True)
 
 
 def _closing(labels):
@@ -190,16 +222,18 @@ def _run_there(graph, programs, parameters, view):
 
     for name, value in (parameters or {}).items():
         graph.set_parameter(name, value)
-    ours, shown, labels = [], set(), []
+    ours, shown, labels, keyboard = [], set(), [], None
     with graph.listen("/cramhy/program_log", "cramhy_msgs/ProgramLine") as log:
         try:
             for number, program in enumerate(programs, 1):
-                answer = graph.call(
-                    "/cramhy/start_program",
-                    "",
-                    {"package": program.package, "executable": program.executable, "arguments": list(program.arguments)},
-                )
+                wanted = {"package": program.package, "executable": program.executable, "arguments": list(program.arguments)}
+                try:
+                    answer = graph.call("/cramhy/start_program", "", wanted)
+                except Refused as problem:
+                    _without(program, problem)
+                    continue
                 shown.add(answer["node"])
+                keyboard = answer["node"] if _reads_keys(program) else keyboard
                 if answer["there"]:
                     _tell(f"{answer['node']} runs in the session of process {graph.pid} already. This is its log; Ctrl-C leaves it alone.")
                 else:
@@ -213,12 +247,19 @@ def _run_there(graph, programs, parameters, view):
                 except Refused as problem:  # of a session that offers no page
                     if view:
                         _tell(problem)
-            while shown:
-                _, message = log.take()
-                if message["node"] in shown and not message["ended"]:
-                    show(message["line"])
-                elif message["ended"]:
-                    shown.discard(message["node"])
+            with _keys(keyboard) as read:
+                while shown:
+                    typed = read() if keyboard in shown else None
+                    if typed:
+                        graph.call("/cramhy/feed_program", "", {"node": keyboard, "keys": list(typed)})
+                    heard = log.take(graph.now() if keyboard in shown else None)
+                    while heard is not None:
+                        message = heard[1]
+                        if message["node"] in shown and not message["ended"]:
+                            show(message["line"])
+                        elif message["ended"]:
+                            shown.discard(message["node"])
+                        heard = log.take(graph.now()) if shown else None
         except (KeyboardInterrupt, Terminated):
             _closing(labels)
             for node in reversed(ours):
@@ -258,21 +299,23 @@ def _run_here(programs, parameters, port, view, time=None, again=False):
                 return "moved"
             for name, value in (parameters or {}).items():
                 graph.active().parameters.set(name, value)
-            nodes = []
+            nodes, keyboard = [], None
             for number, program in enumerate(programs, 1):
                 try:
                     name, _, lines = host.start_program(program.package, program.executable, program.arguments)
                 except Refusal as problem:
-                    raise servers.NotPossible(str(problem)) from None
+                    _without(program, servers.NotPossible(str(problem)))
+                    continue
                 node = graph.active().nodes[name]
                 nodes.append(node)
+                keyboard = node if _reads_keys(program) else keyboard
                 labels = _started(program, number, os.getpid()) + labels
                 for line in lines:
                     show(line)
                 node.program.echo = _both(node.program.echo)
             if view is None and _has_window(programs):
                 _tell(f"The page: {window.page(show=page.opens_by_itself() and not again, asked=False).url}")
-            return _wait(nodes)
+            return _wait(nodes, keyboard)
         except (KeyboardInterrupt, kernel.Terminated, kernel.Abandoned):
             _closing(labels)
             return "interrupted"
@@ -286,18 +329,31 @@ def _both(tell):
     return echo
 
 
-def _wait(nodes):
-    """Wait until all nodes have ended (``"ended"``) or a session has started elsewhere (``"moved"``)."""
+def _wait(nodes, keyboard=None):
+    """Wait until all nodes have ended (``"ended"``) or a session has started elsewhere (``"moved"``).
+
+    keyboard: the node that gets the keys of this terminal meanwhile.
+    """
     from cramhy_runtime import kernel
 
     from . import live_page
 
-    while any(node.alive for node in nodes):
-        kernel.sleep(LOOK_AGAIN)
-        newest = kernel.run_blocking(_newest)
-        if newest is not None and newest.pid != os.getpid():
-            live_page.follow()
-            return "moved"
+    look = kernel.now() + LOOK_AGAIN
+    with _keys(keyboard) as read:
+        while any(node.alive for node in nodes):
+            if keyboard is not None and keyboard.alive:
+                typed = kernel.run_blocking(read)
+                if typed:
+                    keyboard.program.feed(typed)
+                if kernel.now() < look:
+                    continue
+            else:
+                kernel.sleep(LOOK_AGAIN)
+            look = kernel.now() + LOOK_AGAIN
+            newest = kernel.run_blocking(_newest)
+            if newest is not None and newest.pid != os.getpid():
+                live_page.follow()
+                return "moved"
     return "ended"
 
 

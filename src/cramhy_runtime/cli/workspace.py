@@ -60,7 +60,7 @@ def folder_of(package):
     from cramhy_runtime.languages.commonlisp.systems import systems
     from cramhy_runtime.ros import definition_files
 
-    return systems.find_package_folder(package) or definition_files.package_folder(package)
+    return systems.find_package_folder(package) or definition_files.package_folder(package) or definition_files.own_folder(package)
 
 
 def packages():
@@ -68,7 +68,7 @@ def packages():
     from cramhy_runtime.ros import definition_files, search_folders
 
     with search_folders.crawling_once():
-        found = {package: folder_of(package) for package in definition_files.known_packages()}
+        found = {package: folder_of(package) for package in {*definition_files.known_packages(), *definition_files.own_packages()}}
         for name, folder in definition_files.packages():
             found.setdefault(name, folder)
     return {name: folder for name, folder in sorted(found.items()) if folder is not None}

@@ -17,7 +17,7 @@ from .definition_text import ACTION_PARTS, DefinitionError, action_messages
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterator
     from .definition_text import Definition
     from .search_folders import Folder
 
@@ -51,6 +51,16 @@ def package_folder(package: str) -> Path | None:
         if _has_definitions(folder / package):
             return folder / package
     return next((folder for name, folder in _packages_on_path() if name == package), None)
+
+
+def own_folder(package: str) -> Path | None:
+    """The folder of a package that is part of cramhy, with definitions or only with launch files, else ``None``."""
+    return OURS / package if _LEGAL.match(package) and os.path.isdir(OURS / package) else None
+
+
+def own_packages() -> list[str]:
+    """The names of the packages that are part of cramhy."""
+    return sorted(entry.name for entry in entries(OURS) if os.path.isdir(entry.path) and _LEGAL.match(entry.name))
 
 
 def known_packages() -> list[str]:
@@ -193,7 +203,7 @@ def _text_of(path: Path) -> str:
 
 
 def _check_types(package: str, folder: Path, found: PackageDefinitions) -> None:
-    names = {package: found.messages}
+    names: dict[str, Collection[str]] = {package: found.messages}
     for definition in [*found.messages.values(), *(half for service in found.services.values() for half in service)]:
         for field in definition.fields:
             if not field.primitive:

@@ -181,6 +181,7 @@ class Node:
         self.inbox: deque[Callable[[], object]] = deque()
         self._accepted: list[list[Any]] = []
         self.on_shutdown: list[Callable[[], object]] = []
+        self.program: object = None  # the `roscpp.Program` whose node it is
 
     def __repr__(self) -> str:
         return f"<node {self.name}>"

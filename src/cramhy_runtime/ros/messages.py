@@ -19,6 +19,7 @@ from cramhy_runtime.ground.packages import Package, delete_package, intern, near
 from cramhy_runtime.utilities.generated_functions import generated_function
 from . import definition_files
 from .definition_text import DefinitionError
+from .former_types import successor
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, Self, TypeVar
 
 if TYPE_CHECKING:
@@ -500,6 +501,9 @@ def topic_class(designator: TypeName) -> MessageType:
 
 def _types_hint(tool: str, table: dict[str, Any], text: str) -> str:
     """The hint if ``table`` has types of the package, but not the type ``text``. ``tool``: the command that lists them."""
+    former = successor(text) if tool == "rosmsg" else None
+    if former is not None:
+        return former
     package, _, wanted = text.lower().partition("/")
     names = {name.lower().partition("/")[2]: name for name in table if name.startswith(package + "/")}
     near = near_names(wanted, names, 1)

@@ -77,15 +77,36 @@ class Program:
             return
         if len(text) > MOST_TEXT:
             text = text[:MOST_TEXT] + "..."
-        line = f"[{LABELS[level]}] [{self.graph.now():.6f}000]: {text}"  # nanoseconds, as far as a double tells them
+        rosout.report(self.node, level, text)
+        self._print(f"[{LABELS[level]}] [{self.graph.now():.6f}000]: {text}")  # nanoseconds, as far as a double tells them
+
+    def say(self, text: str) -> None:
+        """Print the lines of ``text`` on the program's terminal as they are. They are not part of ``/rosout``."""
+        for line in text.splitlines():
+            self._print(line[:MOST_TEXT])
+
+    def _print(self, line: str) -> None:
         if len(self.lines) >= MOST_LINES:
             del self.lines[: MOST_LINES // 2]
         self.lines.append(line)
-        rosout.report(self.node, level, text)
         if callable(self.echo):
             self.echo(line)
-        elif self.echo is not None:
+        elif self.echo is not None and self.echo is not False:
             print(line, file=sys.stderr if self.echo is True else self.echo)
+
+
+def plain_words(arguments: Words) -> list[str]:
+    """The words of a command line that are for the program: all but ``a:=b``."""
+    return [word for word in names.split_arguments(arguments) if ":=" not in word]
+
+
+def anonymous(name: str) -> str:
+    """A name for a node, of which several may run, that no node of the active graph has: ``tf_echo_1413285840000000000``."""
+    here = graph.active()
+    moment = int(here.now() * 1e9)
+    while any(other.rpartition("/")[2] == f"{name}_{moment}" for other in here.nodes):
+        moment += 1
+    return f"{name}_{moment}"
 
 
 def naming_of(name: str, namespace: str = "/", arguments: Words = ()) -> names.Naming:

@@ -10,5 +10,5 @@ Where the parts are:
 * `yaml_reading`, `yaml_writing`  values as they are typed and printed
 * `nodes`, `topics`, `topic_echo`, `publishing`, `calling`, `parameters`, `types`  the commands
 * `graph_access`        what they ask of a graph; `local_graph` the graph of this process, `remote_graph` the session of another terminal
-* `hosting`      programs that run in a session for a terminal elsewhere
+* `hosting`      programs that run in a session for a terminal elsewhere; `executables` which there are
 """

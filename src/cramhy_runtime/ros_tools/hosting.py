@@ -17,16 +17,16 @@ from ..ros.messages import message_class_exact, service_type_exact
 from ..ros.services import OfCaller, Refusal, Service
 from ..ros.wire import ros_text
 from ..turtlesim import window
-from ..turtlesim.executables import PROGRAMS
-from cramhy_runtime.turtlesim.executables import start as start_executable
 from ..turtlesim.node import Turtlesim, start_waiting
 from ..ros.roscpp import naming_of
+from .executables import complaint
+from .executables import start as start_executable
 
 LOG = "/cramhy/program_log"
 SERVICES = {"start_program": "StartProgram", "feed_program": "FeedProgram", "end_node": "EndNode", "open_page": "OpenPage"}
 MOST_ARGUMENTS = 10_000
 """Characters in the arguments of a program that a client starts."""
-SHARED = ("turtlesim_node",)
+SHARED = (("turtlesim", "turtlesim_node"),)
 """What runs once: whoever starts it a second time under its name looks on, as at a window."""
 
 
@@ -56,23 +56,25 @@ class Host:
 
     def start_program(self, package, executable, arguments, caller=None):
         """(name of the node, whether it was there before, its log so far). The program ends with the caller, see `services.start_call`."""
-        if package != "turtlesim" or executable not in PROGRAMS:
-            raise Refusal(f"cramhy has no executable {package}/{executable}; turtlesim has {', '.join(sorted(PROGRAMS))}.")
+        problem = complaint(package, executable)
+        if problem is not None:
+            raise Refusal(problem)
 
         def fail(condition):
-            raise Refusal(condition.report())
+            hint = getattr(condition, "hint", None)
+            raise Refusal(condition.report() + (f" {hint() if callable(hint) else hint}" if hint else ""))
 
         def in_ros(function, *words):
             return conditions.handler_case([(Error, fail)], lambda: function(*words))
 
-        there = in_ros(self._simulator_that_is_meant, arguments) if executable in SHARED else None
+        there = in_ros(self._simulator_that_is_meant, arguments) if (package, executable) in SHARED else None
         if there is not None:
             self.tell(there)
             return there.node.name, True, list(there.lines)
         if caller is not None:
             self._check(arguments, caller)
         before = len(self.graph.parameters.names())
-        program = in_ros(start_executable, executable, arguments)
+        program = in_ros(start_executable, package, executable, arguments)
         self.tell(program)
         if caller is not None:
             program.of_client = True

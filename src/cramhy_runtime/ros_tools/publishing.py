@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+from ..ros.former_types import successor
 from . import definitions, filling
 from .arguments import TOOLS, CommandError, command, global_name, option
 
@@ -44,9 +45,8 @@ def pub(terminal, options, given):
     definition = definitions.message_definition(ros_type)
     if definition is None:
         package = ros_type.partition("/")[0]
-        raise CommandError(
-            f"ERROR: invalid message type: {ros_type}.\nIf this is a valid message type, perhaps you need to type 'rosmake {package}'"
-        )
+        advice = successor(ros_type) or f"If this is a valid message type, perhaps you need to type 'rosmake {package}'"
+        raise CommandError(f"ERROR: invalid message type: {ros_type}.\n{advice}")
     if "file" in options:
         if arguments:
             raise this.complaint("the message is in the file, so no values may follow the type")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..ros.former_types import successor
 from . import definitions, arguments as words
 from .arguments import CommandError, command, one, option
 
@@ -17,6 +18,9 @@ def _register(tool, kind, what, find, text):
             reason = f"Cannot locate {what} [{short}]: unknown package [{package}] on ROS_PACKAGE_PATH"
         else:
             reason = f"Cannot locate {what} [{short}] in package [{package}]; it has {_joined(definitions.types(package, kind))}"
+        former = successor(name) if kind == "msg" else None
+        if former is not None:
+            reason += f". {former}"
         return CommandError(f"Unable to load {kind} [{name}]: {reason}")
 
     def meant(command_name, given):

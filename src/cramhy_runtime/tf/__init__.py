@@ -10,4 +10,5 @@ Where the parts are:
 * `buffer`           the transforms of the last ten seconds and the way through them: plain Python, knows nothing of ROS
 * `transformer`      the buffer for Lisp, with waiting; the listener that fills it from ``/tf`` and ``/tf_static``
 * `broadcasting`     sending transforms; `buffer_client` asking a tf2 buffer server
+* `programs`         what ``rosrun`` starts: tf_echo, static_transform_publisher, and the turtle that follows another one
 """

@@ -17,6 +17,7 @@ from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import named_package, find_package_or_error, near_names, package_names, sym
 from cramhy_runtime.ground.source_places import describe
 from cramhy_runtime.ros.definition_files import why_no_lisp_package
+from cramhy_runtime.ros.former_types import successor_of_symbol
 from ..packages.package_errors import PackageLockedError, locked, violated
 
 
@@ -180,8 +181,9 @@ def no_external(reader, offset, package, name, found):
     else:
         text = "Symbol ~S not found in the ~A package."
         near = near_names(name, package.external)
-        hint = f"{package.name} exports no symbol {name}."
-        if near:
+        former = successor_of_symbol(package.name, name)
+        hint = f"{package.name} exports no symbol {name}." + (f" {former}" if former else "")
+        if near and not former:
             hint += f" Did you mean {_either([f'{_prefix(package)}:{other.lower()}' for other in near])}?"
     return restart_case(
         [(sym("CONTINUE"), lambda: package.intern(name), "Use symbol anyway.")],
