@@ -203,7 +203,8 @@ def test_each_name_is_called_by_a_test():
         ("(progn (btr-utils:move-robot '((1 2 0) (0 0 0 1))) (list (btr-utils:robot-name) (near 2 (cl-transforms:y (cl-transforms:origin (btr:pose (robot)))))))", "(CRAM-PR2-DESCRIPTION:PR2 T)"),
         ("(progn (btr-utils:move-robot-away) (> (cl-transforms:v-norm (cl-transforms:origin (btr:pose (robot)))) 50))", "T"),
         ("(progn (btr-utils:park-robot) (near 0.16825 (btr:joint-state (robot) \"torso_lift_joint\")))", "T"),
-        ("(list (all '(btr-utils:scenario-objects-init-pose ?p) '?p) (all '(btr-utils:scenario-objects-default-color ?c) '?c) (all '(btr-utils:scenario-object-color :fork ?c) '?c))", "((((2 0 0) (0 0 0 1))) ((0.5 0.5 0.5)) ((0.2 0.1 0.3)))"),
+        ("(list (all '(btr-utils:scenario-objects-init-pose ?p) '?p) (all '(btr-utils:scenario-objects-default-color ?c) '?c) (all '(btr-utils:scenario-object-color ?_ :fork ?c) '?c))", "((((2 0 0) (0 0 0 1))) ((0.5 0.5 0.5)) ((0.2 0.1 0.3)))"),
+        ("(list (all '(btr-utils:scenario-object-color ?_ :brick ?c) '?c) (all '(btr-utils:scenario-object-extra-attributes ?_ :fork ?more) '?more))", "(((0.5 0.5 0.5)) ((:MESH :FORK)))"),
     ],
 )  # fmt: skip
 def test_what_is_called_answers(ask, form, answer):

@@ -104,7 +104,7 @@ def test_all_names_are_exported(ask):
         ("(proves '(btr-utils:assert-object-pose ghost ((0 3 0.7) (0 0 0 1))))", "NIL"),
         ("(let ((?there (cl-transforms-stamped:pose->pose-stamped \"map\" 0.0 (btr:ensure-pose '((0 3 0.7) (0 0 0 1)))))) (prolog:prolog `(btr-utils:assert-object-pose-on mug-1 ,(desig:a location (pose ?there)))) (near 0.7 (- (cl-transforms:z (btr:bounding-box-center (btr:aabb (mug)))) (/ (cl-transforms:z (btr:bounding-box-dimensions (btr:aabb (mug)))) 2))))", "T"),
         # kinds of objects that a program adds
-        ("(progn (prolog:def-fact-group of-mine (btr-utils:scenario-object-shape btr-utils:scenario-object-extra-attributes) (prolog:<- (btr-utils:scenario-object-shape :brick :box)) (prolog:<- (btr-utils:scenario-object-extra-attributes :brick (:size (0.1 0.2 0.3))))) (near 0.3 (cl-transforms:z (btr:calculate-bb-dims (btr-utils:spawn-object 'brick-1 :brick :pose '((0 3 1) (0 0 0 1)))))))", "T"),
+        ("(progn (prolog:def-fact-group of-mine (btr-utils:scenario-object-shape btr-utils:scenario-object-extra-attributes) (prolog:<- (btr-utils:scenario-object-shape :brick :box)) (prolog:<- (btr-utils:scenario-object-extra-attributes ?_ :brick (:size (0.1 0.2 0.3))))) (near 0.3 (cl-transforms:z (btr:calculate-bb-dims (btr-utils:spawn-object 'brick-1 :brick :pose '((0 3 1) (0 0 0 1)))))))", "T"),
         # cl-urdf
         ("(princ-to-string (btr:urdf (named :kitchen)))", '"#<ROBOT iai_kitchen>"'),
         ("(cl-urdf:name (btr:urdf (robot)))", '"pr2"'),

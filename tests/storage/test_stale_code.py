@@ -98,6 +98,21 @@ CASES = {
         "(set-macro-character #\\! (lambda (s c) (declare (ignore c)) (list '+ 2 (read s t nil t))))",
         "(defun use () !5)",
     ),
+    "variable in a designator": (
+        "(defvar start-pose 1)",
+        "",
+        "(defun use () (desig:desig-prop-value (desig:a motion (from start-pose)) :from))",
+    ),
+    "variable in a designator that a macro makes": (
+        "(defvar word 1) (defmacro made () '(desig:description (desig:a motion (x word))))",
+        "(defmacro made () '(desig:description (desig:a motion (x word))))",
+        "(defun use () (list (made) (desig:description (desig:a motion (y word)))))",
+    ),
+    "keyword in a designator that became a variable": (
+        "",
+        "(defconstant start-pose 1)",
+        "(defun use () (desig:desig-prop-value (desig:a motion (from start-pose)) :from))",
+    ),
     "number base": ("(setf *read-base* 10)", "(setf *read-base* 8)", "(defun use () 11)"),
 }
 
@@ -157,6 +172,20 @@ def test_what_has_changed_at_the_prompt_is_seen(files, case):
     assert found(use, before=old) == before and loader.why_not_kept(use) is None
     assert found(use, before=new) == wanted
     assert found(use, before=new) == wanted and loader.why_not_kept(use) is None
+
+
+def test_a_keyword_in_a_designator_of_kept_code_is_remembered_until_a_variable_of_its_name_is_defined(files, capsys):
+    _, use = files
+    use.write_text("(in-package :cl-user)\n(defun use () (desig:description (desig:a motion (x later))))\n(defparameter *found* (use))\n")
+    for reason in (f"{use.parent}/__pycache__/use.lisp.", "None", "None"):
+        with Image():
+            session = Session(time="virtual", turtlesim=False)
+            session.evaluate_text(f'(load "{use}")')
+            assert str(loader.why_not_kept(use)).startswith(reason)
+            session.evaluate_text("(defparameter later 1)")
+            said = capsys.readouterr().err
+            assert "LATER becomes a variable, but in a designator that was expanded before it is the keyword :LATER." in said
+            assert f"at {use}:2:34" in said
 
 
 def test_what_has_changed_in_a_file_that_the_file_itself_loads_is_seen(files):

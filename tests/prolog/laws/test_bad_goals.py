@@ -243,3 +243,43 @@ STYLE-WARNING: Fact group OWN has clauses of MOTION-GROUNDING, which no other gr
 
 def test_a_group_may_list_what_nobody_has_defined_yet(lisp):
     assert defining(lisp, "(def-fact-group own (reachable) (<- (reachable kitchen)) (<- (near kitchen)))") == ""
+
+
+ASKING = """(in-package {package})
+(def-fact-group places ()
+  (<- (place ?x) (member ?x (1 2)) (settng ?x))
+  (<- (way ?x) (member ?x (1 2)) (settng ?x) (other-settng ?x)))
+(defun setting-of (x) (prolog `(settng ,x)))
+(defun plan () (dotimes (i 20) (prolog '(place ?x)) (prolog `(way ,i)) (setting-of i)))
+(defun other-plan () (dotimes (i 20) (prolog '(place 1)) (prolog '(other-settng 2))))
+"""
+
+
+@pytest.fixture
+def asking(lisp, tmp_path):
+    """``asking(text)``: how often a text warns of the undefined functors that the rules and functions of a file ask for."""
+    package = lisp("(package-name *package*)").strip('"')
+    path = tmp_path / "asking.lisp"
+    path.write_text(ASKING.format(package=f":{package.lower()}"))
+    lisp(f'(load "{path}")')
+
+    def count(text):
+        lisp.warnings.clear()
+        lisp(text.replace("FILE", f'"{path}"'))
+        return [sum(f"functor {name}." in warning for warning in lisp.warnings) for name in ("SETTNG", "OTHER-SETTNG")]
+
+    return count
+
+
+def test_a_plan_that_asks_rules_and_functions_again_and_again_warns_once_of_each_functor(asking):
+    assert asking("(plan)") == [1, 0]
+    assert asking("(progn (other-plan) (other-plan))") == [1, 1]
+
+
+def test_the_next_form_of_the_user_warns_again(asking):
+    assert [asking("(plan)"), asking("(plan)")] == [[1, 0], [1, 0]]
+
+
+def test_a_functor_that_was_defined_meanwhile_is_warned_of_again(asking):
+    text = "(progn (plan) (def-fact-group later () (<- (settng 1))) (plan) (def-fact-group later ()) (plan))"
+    assert asking(text) == [2, 1]

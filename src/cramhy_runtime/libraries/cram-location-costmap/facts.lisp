@@ -1,20 +1,7 @@
-;;;; Costmaps in Prolog: settings that an application gives as facts, and the predicates that rules about designators use.
+;;;; Costmaps in Prolog: the predicates that rules about designators use. The settings, from COSTMAP-SIZE to ORIENTATION-SAMPLE-STEP, are
+;;;; facts that the application states. Nothing is said of them here, so that it needs no list of extendable predicates for them.
 
 (in-package #:cram-location-costmap)
-
-(def-fact-group costmap-settings (costmap-size costmap-origin costmap-resolution costmap-padding costmap-manipulation-padding
-                                  costmap-in-reach-distance costmap-reach-minimal-distance visibility-costmap-size
-                                  orientation-samples orientation-sample-step)
-  (<- (costmap-size ?width ?height) (fail))
-  (<- (costmap-origin ?x ?y) (fail))
-  (<- (costmap-resolution ?metres) (fail))
-  (<- (costmap-padding ?metres) (fail))
-  (<- (costmap-manipulation-padding ?metres) (fail))
-  (<- (costmap-in-reach-distance ?metres) (fail))
-  (<- (costmap-reach-minimal-distance ?metres) (fail))
-  (<- (visibility-costmap-size ?metres) (fail))
-  (<- (orientation-samples ?count) (fail))
-  (<- (orientation-sample-step ?radians) (fail)))
 
 (def-fact-group location-costmap-designators (desig-costmap)
   (<- (desig-costmap ?designator ?costmap) (fail)))

@@ -168,6 +168,11 @@ class Place:
             self.position = user_position() if clause is None else clause.position
 
     @property
+    def in_file(self) -> bool:
+        """Whether it stands in a file, so that it was neither typed at a prompt nor asked by Python."""
+        return self.position is not None and not self.position[0].startswith("<")
+
+    @property
     def where(self):
         """``at family.lisp:14:3``, or ``None`` for a goal that was typed at the prompt."""
         place = describe(self.position)

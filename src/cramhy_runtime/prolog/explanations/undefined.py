@@ -1,7 +1,8 @@
 """The warning about a goal whose functor is not defined: the original's text, the place of the goal, and similar names.
 
 A functor is a symbol with its package, so a symbol of the same name in another package is another functor. The warning comes once for
-each place of a goal in a proof, not again when the proof comes back there. Source: prolog.md 5.1, section 1.
+each place of a goal in a proof, not again when the proof comes back there. A plan asks the same rules in many proofs: of a goal in a rule,
+or in a query of a function in a file, the warning comes once for each form that the user evaluates. Source: prolog.md 5.1, section 1.
 """
 
 from __future__ import annotations
@@ -10,9 +11,11 @@ from cramhy_runtime.ground.conditions import SimpleStyleWarning, SimpleWarning, 
 from cramhy_runtime.ground.data import Symbol, UndefinedFunction
 from cramhy_runtime.ground.source_places import describe
 from cramhy_runtime.ground.packages import COMMON_LISP, CURRENT
+from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.utilities.patterns import variable
 
 from ..builtins import control
+from ..symbols import sym
 from ..engine import database
 from ..engine.source_positions import Place
 from .failure_reasons import spelled_like
@@ -45,14 +48,37 @@ def advice(functor):
     return None
 
 
+_told: dict[object, object] = per_image({})
+"""Functor → the form that the user evaluated when it was warned of."""
+_FORM = sym("-")  # the variable of Common Lisp whose value is the form that is being evaluated
+
+
+def _first_in_this_form(functor: object) -> bool:
+    """Whether ``functor`` was not yet warned of in the form that the user evaluates. From now on, it was."""
+    known, _told[functor] = _told.get(functor, _told), _FORM.value
+    return known is not _FORM.value
+
+
+def _forget(functor: object, entry: object) -> None:
+    _told.pop(functor, None)
+
+
+database.watchers.append(_forget)
+
+
 def warn_undefined(m, goal):
-    """Warn of the goal term ``goal``, whose functor is not defined, once for each place in a proof."""
+    """Warn of the goal term ``goal``, whose functor is not defined, once for each place in a proof.
+
+    Goals of rules and of functions in files are warned of once in a form that the user evaluates, until the functor is defined.
+    """
     functor = None if goal is None else goal.car
     place = Place(m, goal, everywhere=True)
     key = (functor if place.written is None else id(place.written), len(place.clauses))
     if key in m.warned_of():
         return
     m.warned_of().add(key)
+    if (place.clauses or place.in_file) and not _first_in_this_form(raw(functor, m.names)):
+        return
     warning = SimpleWarning("Trying to prove goal ~a with undefined functor ~s.", raw(goal, m.names), raw(functor, m.names))
     meant = advice(raw(functor, m.names))
     if meant is not None:

@@ -12,6 +12,8 @@ from cramhy_runtime.ground.conditions import types as condition_types
 from cramhy_runtime.ground.data import Cons, Symbol, UNBOUND, UNSUPPLIED, UndefinedFunction, lisp_list, one
 from cramhy_runtime.ground.equality import eql
 from cramhy_runtime.ground.python_names import python_name
+from cramhy_runtime.ground.source_places import describe
+from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.ground.packages import printed, sym, symbol_name
 from ..packages.package_errors import check_symbol, locked
 from .evaluator import macro_lambda
@@ -90,14 +92,43 @@ def define_macro(name, expander, documentation=None, lambda_list=None):
     return name
 
 
+_taken: dict = per_image({})
+"""Symbol → the places where it was taken as a keyword. They are no notes of the compiler's, which kept code depends on."""
+
+
+def take_as_keyword(symbol: Symbol, place: tuple | None) -> None:
+    """Note that a macro took the unbound ``symbol``, which stands at ``place``, as a keyword, where a variable would be its value.
+
+    place: (file, line, column), or ``None``. A definition that makes it a variable later warns of that.
+    """
+    _taken.setdefault(symbol, {})[place] = None
+
+
+def _becomes_variable(symbol):
+    """Warn if ``symbol``, which has a value from now on, was taken as a keyword before: those forms keep the keyword."""
+    places = _taken.pop(symbol, None)
+    if places is None:
+        return
+    warning = condition_types.SimpleStyleWarning(
+        "~S becomes a variable, but in a designator that was expanded before it is the keyword :~A.", symbol, symbol.name
+    )
+    told = [text for text in map(describe, places) if text]
+    warning.where = f"at {', '.join(told[:3])}{' and others' if len(told) > 3 else ''}" if told else None
+    warning.hint = "Define a variable before the forms that use it, and evaluate those forms again."
+    warn(warning)
+
+
 def define_variable(symbol, thunk=None, documentation=None, always=False):
     """``defvar`` and, with ``always``, ``defparameter``: proclaim ``symbol`` special and give it its value.
 
     thunk: computes the value; called for ``defvar`` only while the variable is unbound; ``None``: no value is given.
     """
     proclaim_special(symbol)
-    if thunk is not None and (always or symbol.value is UNBOUND):
+    is_new = symbol.value is UNBOUND
+    if thunk is not None and (always or is_new):
         symbol.value = one(thunk())
+        if is_new:
+            _becomes_variable(symbol)
     if documentation is not None:
         data(symbol)["variable-documentation"] = documentation
     return symbol
@@ -133,8 +164,11 @@ def define_constant(symbol, value, documentation=None):
         )
         if one(keep):
             return symbol
+    is_new = symbol.value is UNBOUND
     symbol.value = value
     symbol.special = symbol.constant = True
+    if is_new:
+        _becomes_variable(symbol)
     if documentation is not None:
         data(symbol)["variable-documentation"] = documentation
     return symbol

@@ -14,6 +14,7 @@ from cramhy_runtime.ground.hash_tables import HashTable
 from cramhy_runtime.ground.packages import Package, all_packages, find_package, sym
 from cramhy_runtime.storage.dependencies import KINDS, Kind, Unanswerable
 
+from ..evaluation.definitions import take_as_keyword
 from ..objects.classes import symbol_class
 from ..streams.streams import Stream
 from ..types.types import type_expander
@@ -114,6 +115,21 @@ def _variable(name: Name) -> str:
     return value_digest(symbol.value)
 
 
+def _is_bound(key: tuple[str, str, Any]) -> bool:
+    symbol = _symbol(key[:2])
+    return symbol is not None and symbol.value is not UNBOUND
+
+
+def _still_bound(key: tuple[str, str, Any], answer: bool) -> bool:
+    """Whether a symbol in a designator, of which the compiler asked, is bound as it was. One that is not is a keyword in the kept code."""
+    if _is_bound(key) is not answer:
+        return False
+    package = find_package(key[0])
+    if not answer and package is not None:  # whose symbol nobody may have read yet
+        take_as_keyword(package.intern(key[1]), key[2] or None)
+    return True
+
+
 def _properties(name: Name) -> str:
     symbol = _symbol(name)
     return "" if symbol is None or symbol.plist is None else value_digest(symbol.plist)
@@ -184,6 +200,7 @@ def _printed(name: Name) -> str:
 
 _KINDS = {
     "variable": Kind(_variable, lambda name: f"the value of {_printed(name)}"),
+    "bound": Kind(_is_bound, lambda key: f"whether {_printed(key[:2])} has a value", _still_bound),
     "properties": Kind(_properties, lambda name: f"the properties of {_printed(name)}"),
     "function": Kind(_function, lambda name: f"the function or macro {_printed(name)}"),
     "class": Kind(_class, lambda name: f"the class {_printed(name)}"),

@@ -30,6 +30,7 @@ INTERNAL = {
     "make-all-designator": classes.make_all_designator,
     "present": syntax.present,
     "global-value": syntax.global_value,
+    "value-of": syntax.value_of,
     "location-prolog-generator": locations.location_prolog_generator,
     "filter-solution": locations.filter_solution,
     "location-prolog-validator": locations.location_prolog_validator,

@@ -1,10 +1,11 @@
 """The notation of designators: ``(a motion (type driving) (speed ?speed))`` as a form that builds the description.
 
-A pure function from forms to a form, called by the macros ``a``, ``an`` and ``all``. What a symbol in the description means is
-decided by its text alone: ``?name`` is a variable of the surrounding code, ``*name*`` and ``+name+`` are global ones, everything else is
-a keyword. Calls are not evaluated; what is computed goes into a ``?variable`` first. Source: designators.md 3.2. The original takes the
-value that any global variable has when the macro is expanded; we don't, because the meaning of a plan then depends on what was loaded
-before it, and a variable that is bound or set later keeps its first value.
+A function from forms to a form, called by the macros ``a``, ``an`` and ``all``. ``?name`` is a variable of the surrounding code. A symbol
+that is bound when the macro is expanded, as a variable or a constant, stands for its value; so do ``*name*`` and ``+name+``, bound or
+not. Everything else is a keyword. Calls are not evaluated; what is computed goes into a ``?variable`` first. Source: designators.md 3.2.
+
+The original puts the value of that moment into the code. Here the code asks for the value when the designator is made, so that a variable
+that is bound or set later has its new value. The variables of the prompt, ``*``, ``+``, ``-``, ``/`` and so on, stay words.
 
 Several properties may have one key, and a value may be any list. Two things are worth a style-warning all the same, since nobody
 means them: a value that looks like a call, ``(speed (+ 1 2))``, and a property that is there twice, word for word.
@@ -13,11 +14,13 @@ means them: a value that looks like a call, ``(speed (+ 1 2))``, and a property 
 from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import SimpleStyleWarning
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction, lisp_list, list_from
+from cramhy_runtime.ground.conditions import error, unbound_variable
+from cramhy_runtime.ground.data import UNBOUND, Cons, Keyword, Symbol, UndefinedFunction, lisp_list, list_from
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.equality import equal
-from ...compiler.compilation_unit import warn_of
+from ...compiler.compilation_unit import expansion_place, warn_of
+from ...evaluation.definitions import take_as_keyword
+from cramhy_runtime.storage.dependency_tracing import current as current_trace
 from cramhy_runtime.ground.packages import keyword
 from ...printer.print_controls import PRINT_CASE
 from ...tools.describing import one_line
@@ -25,7 +28,8 @@ from cramhy_runtime.designators.symbols import sym
 
 LIST, QUOTE, WHEN, FUNCTION = sym("LIST"), sym("QUOTE"), sym("WHEN"), sym("FUNCTION")
 MAKE, MAKE_ALL, PRESENT = sym("DESIG::MAKE-DESIGNATOR"), sym("DESIG::MAKE-ALL-DESIGNATOR"), sym("DESIG::PRESENT")
-GLOBAL_VALUE = sym("DESIG::GLOBAL-VALUE")
+GLOBAL_VALUE, VALUE_OF = sym("DESIG::GLOBAL-VALUE"), sym("DESIG::VALUE-OF")
+_OF_THE_PROMPT = frozenset(map(sym, "* ** *** + ++ +++ - / // ///".split()))
 _nested = {name: sym(f"DESIG::{name}") for name in ("A", "AN", "ALL")}
 
 
@@ -46,13 +50,30 @@ def designator_form(type_, pairs, quantifier="A"):
 
 def description_form(pairs):
     """The form that builds the description from ``pairs``, a Lisp list of forms. Entries that are nil at the top vanish."""
-    entries = [entry for entry in (_entry(pair) for pair in _proper(pairs)) if entry is not None]
+    entries = [entry for entry in (_property(pair) for pair in _proper(pairs)) if entry is not None]
     if not entries:
         return None
     if all(_is_constant(entry) for entry in entries):
         return lisp_list(QUOTE, list_from([_constant(entry) for entry in entries]))
     form = Cons(LIST, list_from(entries))
     return form if all(_is_constant(entry) or entry.car is LIST for entry in entries) else lisp_list(PRESENT, form)
+
+
+def _property(pair):
+    """The form for one entry of a description. A key that is a variable whose value cannot be a key is the key itself."""
+    key = pair.car if isinstance(pair, Cons) and isinstance(pair.cdr, Cons) else None
+    if isinstance(key, Symbol) and key.name[:1] != "?" and not is_global_name(key.name) and _is_variable(key):
+        value = value_of(key)
+        if not isinstance(value, Symbol):
+            warn_of(
+                SimpleStyleWarning,
+                "~S is a variable, and the key of a property of a designator here: its value, ~S, cannot be a key, so the key is :~A.",
+                key,
+                value,
+                key.name,
+            )
+            return _entry(Cons(keyword(key.name), pair.cdr))
+    return _entry(pair)
 
 
 def _entry(element):
@@ -77,11 +98,39 @@ def _entry(element):
 
 
 def _symbol(symbol):
-    if isinstance(symbol, Keyword) or symbol.name.startswith("?"):
+    if isinstance(symbol, Keyword) or symbol.name.startswith("?") and symbol.value is UNBOUND:
         return symbol
     if is_global_name(symbol.name):
         return lisp_list(GLOBAL_VALUE, symbol)
+    if _is_variable(symbol):
+        return lisp_list(VALUE_OF, lisp_list(QUOTE, symbol))
     return keyword(symbol.name.upper())
+
+
+def _is_variable(symbol):
+    """Whether ``symbol`` is bound now. Kept code depends on that, and a definition that comes later is warned of."""
+    package = symbol.package
+    if symbol in _OF_THE_PROMPT or package is None:
+        return False
+    bound = symbol.value is not UNBOUND
+    if not package.built_in:
+        place = expansion_place()
+        trace = current_trace()
+        if trace is not None:
+            trace.ask("bound", (package.name, symbol.name, place or ()))
+        if not bound:
+            take_as_keyword(symbol, place)
+    return bound
+
+
+def value_of(symbol):
+    """What the bound ``symbol`` is in a description: its value. A value that is a symbol is looked up in turn, and becomes a keyword."""
+    seen = {symbol}
+    value = symbol.value if symbol.value is not UNBOUND else unbound_variable(symbol)
+    while value.__class__ is Symbol and value.value is not UNBOUND and value not in seen:
+        seen.add(value)
+        value = value.value
+    return global_value(value)
 
 
 def is_global_name(name):
@@ -91,7 +140,7 @@ def is_global_name(name):
 
 def global_value(value):
     """What ``value``, that of a global variable, is in a description: a symbol is a keyword there, as one that is written."""
-    return keyword(value.name.upper()) if value.__class__ is Symbol else value
+    return keyword(value.name.upper()) if value.__class__ is Symbol and value.name[:1] != "?" else value
 
 
 def _is_constant(form):
