@@ -41,6 +41,7 @@ class Client(Program):
         except (ValueError, IndexError):
             conditions.error(SimpleError("~a", f"Usage: rosrun {PACKAGE} {self.usage}"))
         super().__init__(name, namespace, arguments, echo=echo)
+        self._waits = False
         self._timer = kernel.call_every(LOOK_AGAIN, self._ask, kernel.now())
         self.node.on_shutdown.append(self._timer.cancel)
 
@@ -57,6 +58,9 @@ class Client(Program):
         if service is not None:
             self._timer.cancel()
             start_call(service, self.request, self._end)
+        elif not self._waits:
+            self._waits = True
+            self.log(rosout.INFO, f"waitForService: Service [{self.service}] has not been advertised, waiting...")
 
     def _end(self, call: Call) -> None:
         if call.lost or call.failure is not None:
