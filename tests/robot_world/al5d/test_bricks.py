@@ -75,6 +75,15 @@ def test_clear_takes_all_bricks_away_and_counts_anew(table):
     assert not table.simulator.bricks and table.spawn(settle=0) == "brick1"
 
 
+def test_reset_clears_the_table_and_sends_the_arm_home(table):
+    table.spawn(settle=0)
+    table.send(1, 1, -1, 0.3, 0.3, 0)
+    table.call("reset", EMPTY)
+    kernel.sleep(3)
+    assert table.joints() == pytest.approx([0, 1.57, -1.57, 0, 0, 0.03], abs=0.002)
+    assert not table.simulator.bricks and table.spawn(settle=0) == "brick1"
+
+
 def test_teleports_put_a_brick_elsewhere_and_turn_it(table):
     table.spawn()
     table.teleport("brick1", "absolute", 0.1, 0.2, 0, 0, 0, pi / 2)
@@ -112,6 +121,34 @@ def test_fingers_that_are_wider_than_the_brick_hold_nothing(table):
     table.spawn(0, 0.15)
     table.pick(0, 0.15, 0, closed=0.017)
     assert abs(table.brick()[2]) < 0.001
+
+
+def test_fingers_that_are_a_little_narrower_than_the_brick_hold_it(table):
+    table.spawn(0, 0.15)
+    table.pick(0, 0.15, 0, closed=0.015)
+    assert table.brick()[2] > 0.015
+
+
+def test_a_brick_goes_from_one_side_to_the_other_and_is_turned(table):
+    table.spawn(0.08, 0.16)
+    table.pick(0.08, 0.16, 0)
+    table.place(-0.1, 0.15, pi / 2)
+    assert lies(table, -0.1, 0.15, pi / 2)
+
+
+def test_a_brick_that_is_taken_out_of_the_hand_leaves_it_empty(table):
+    table.spawn(0, 0.15)
+    table.pick(0, 0.15, 0)
+    table.teleport("brick1", "absolute", 0.1, 0.2, 0, 0, 0, 0)
+    assert table.brick() == pytest.approx((0.1, 0.2, 0, 0), abs=0.001) and table.joints()[5] < 0.001
+
+
+def test_a_brick_stands_on_another_one_and_one_in_the_air_falls(table):
+    table.spawn(0, 0.2, name="low")
+    table.spawn(0, 0.2, 0.0115, name="high")
+    table.spawn(0.1, 0.2, 0.2, name="falling")
+    kernel.sleep(10)
+    assert 0.0096 < table.brick("high")[2] < 0.0116 and abs(table.brick("falling")[2]) < 0.001
 
 
 def test_open_fingers_drop_the_brick(table):
