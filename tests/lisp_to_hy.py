@@ -14,6 +14,7 @@ from lisp_words import Literal, Marked, NotConvertible, implementation, is_decla
 
 from cramhy_runtime.ground.packages import COMMON_LISP
 from cramhy_runtime.languages.hy.call_parts import CODE
+from cramhy_runtime.languages.hy.expansion import DEFINITIONS
 from cramhy_runtime.languages.operators import OPERATORS
 from cramhy_runtime.languages.operators.grammar import Many, Maybe, Text, Word
 
@@ -22,8 +23,6 @@ AS_DATA = ("a", "an", "all", "<-", "def-fact-group")
 """The operators whose parts are data through and through."""
 
 SAME = frozenset("+ - * / < > <= >= = and or not do when if".split())
-IN_THE_SAME_FUNCTION = frozenset("seq with-retry-counters whenever with-vars-bound with-vars-strictly-bound with-pat-vars-bound".split())
-"""The operators whose bodies do not become functions."""
 
 
 def hy_text(text, lists="python"):
@@ -180,7 +179,7 @@ class Writer:
             parts = parts[:2] + [Literal('""') if part == "nil" else part for part in parts[2:3]] + parts[3:]
         outer = self.exits
         self.exits = [*outer, "break" if operator.name == "WHENEVER" else "leave"]
-        function = operator.name.lower() not in IN_THE_SAME_FUNCTION
+        function = operator.name.startswith(DEFINITIONS)  # other bodies assign the variables of the function around
         if function:
             self.scopes.append({})
         try:

@@ -17,7 +17,7 @@ loaded when those packages are made."
 
 (defoperator def-exec-callback [name bindings #* body]
   (setv goal (gensym "GOAL"))
-  `(defun ~name [~goal] (roslisp::with-fields ~bindings ~goal ~@body)))
+  `(defun ~name [~goal] (catch (quote actionlib::exec-callback-tag) (roslisp::with-fields ~bindings ~goal ~@body))))
 
 (defn message-arguments [arguments]
   "What a macro's arguments hand on for a message: nothing, one form that gives it, or field paths and values."

@@ -1,11 +1,14 @@
 "The operators that Hy writes in another way than Lisp: where a variable is Python's, a class is Python's, or a local macro is not needed.
 
 The other operators come from their declarations (`cramhy_runtime/languages/operators`); these stand in their place in plain Hy. A body
-becomes a function of no arguments, so what it assigns is its own unless it says `nonlocal`, and Hy's `return` belongs to that function:
-`whenever` is left by `(break)`, a form that Lisp leaves by `return` by `(leave value)`."
+becomes a function of no arguments, which `operator_bodies` hides: it assigns the variables of the function around. `whenever` is left by
+`(break)`, a form that Lisp leaves by `return` by `(leave value)`."
 
-(import hy.models [Expression Keyword List Sequence Symbol]
-        cramhy_runtime.languages.hy.lisp-data [constant-form lisp-data package-of])
+(import hy.models [Expression List Sequence Symbol]
+        cramhy_runtime.languages.hy.lisp-data [constant-form lisp-data package-of refuse-case]
+        cramhy_runtime.languages.hy.properties [in-goal]
+        cramhy_runtime.languages.hy.goal-functions [named]
+        cramhy_runtime.languages.hy.operator-bodies [hidden])
 
 (defn _here [compiler]
   "The Lisp package of the module that is compiled."
@@ -106,10 +109,13 @@ becomes a function of no arguments, so what it assigns is its own unless it says
       (do
         (setv name (_tagged form))
         (.replace
-          `((fn []
-              (nonlocal ~name)
-              (setv ~name ((hy.R.cramhy._ours calls prepare-tag) ~name))
-              ((hy.R.cramhy._ours calls execute-tag) ~name (fn [] ~@(map _with-tag-calls (cut form 2 None))))))
+          (Expression
+            [(hidden
+               `(fn []
+                  (nonlocal ~name)
+                  (setv ~name ((hy.R.cramhy._ours calls prepare-tag) ~name))
+                  ((hy.R.cramhy._ours calls execute-tag) ~name ~(hidden `(fn [] ~@(map _with-tag-calls (cut form 2 None))) ":tag")))
+               "with-tags")])
           form))
     (and (isinstance form Sequence) (not (_has-tags-of-its-own form)))
       (.replace ((type form) (map _with-tag-calls form)) form)
@@ -119,11 +125,13 @@ becomes a function of no arguments, so what it assigns is its own unless it says
   "The body, in which `(:tag name form...)` runs its forms as the task `name`: a variable of the body that others can order or suspend."
   (setv body (list (map _with-choices body)) names (_tag-names (List body) []))
   (if names
-    `((fn []
-        ~@(lfor name names
-            `(setv ~name ((hy.R.cramhy._ours calls make-tag-task) ~(_constant _hy-compiler name))))
-        ((hy.R.cramhy._ours calls enter-with-tags))
-        ~@(map _with-tag-calls body)))
+    (Expression
+      [(hidden
+         `(fn [~@names]
+            ((hy.R.cramhy._ours calls enter-with-tags))
+            ~@(map _with-tag-calls body))
+         "with-tags")
+       #* (lfor name names `((hy.R.cramhy._ours calls make-tag-task) ~(_constant _hy-compiler name)))])
     `(do ~@body)))
 
 ;; ------------------------------------------------------------------------------------------------- 8: plan functions
@@ -160,34 +168,15 @@ becomes a function of no arguments, so what it assigns is its own unless it says
 
 ;; ------------------------------------------------------------------------------------------------- Prolog
 
-(setv _property-goals #{"desig-prop" "desig:desig-prop" "cram-designators:desig-prop"}
-      _function-goals #{"lisp-fun" "lisp-pred" "prolog:lisp-fun" "prolog:lisp-pred" "cram-prolog:lisp-fun" "cram-prolog:lisp-pred"})
-
-(defn _goal [form functions]
-  "A goal as it is written in Hy, as Lisp wants it: the properties of a designator are keywords. The functions that it calls go to `functions`."
-  (setv name (if (and (isinstance form Sequence) (len form)) (str (get form 0)) None))
-  (cond
-    (and (in name _property-goals) (= (len form) 3) (isinstance (get form 2) Sequence))
-      (Expression [(get form 0) (get form 1) (Expression (map _property (get form 2)))])
-    (and (in name _function-goals) (> (len form) 1) (isinstance (get form 1) Symbol))
-      (do (.append functions (get form 1)) form)
-    (isinstance form #(Expression List hy.models.Tuple)) (Expression (lfor part form (_goal part functions)))
-    True form))
-
-(defn _property [part]
-  "A word of a property becomes a keyword, a variable stays."
-  (if (and (isinstance part Symbol) (not (.startswith part #("?" "_"))))
-    (Keyword (str part))
-    part))
-
 (defn _with-facts [form collector compiler]
   "`form` with each `(<- head goal...)` in it become a call that collects it."
   (cond
     (and (isinstance form Expression) (len form) (in (get form 0) ['<- 'prolog:<- 'cram-prolog:<-]))
       (do
-        (setv functions [] goals (lfor goal (cut form 1 None) (_goal goal functions)) fact (_constant compiler (Expression goals)))
-        (for [name functions]
-          (setv fact `((hy.R.cramhy._ours calls calling) ~fact ~(_constant compiler name) (fn [] ~name))))
+        (refuse-case form)
+        (setv names {} goals (named (Expression (map in-goal (cut form 1 None))) names) fact (_constant compiler goals))
+        (for [[name function] (.items names)]
+          (setv fact `((hy.R.cramhy._ours calls calling) ~fact ~(_constant compiler name) (fn [] ~function))))
         (.replace `((hy.R.cramhy._ours calls collect-fact) ~collector ~fact) form))
     (isinstance form Sequence)
       (.replace ((type form) (lfor part form (_with-facts part collector compiler))) form)

@@ -2,7 +2,7 @@
 
 import pytest
 
-EXPORTS = """make-action-client action-client wait-for-server call-goal send-goal wait-for-result make-action-goal cancel-goal cancel-all-goals
+EXPORTS = """send-goal-and-wait simple-state connected-to-server make-action-client action-client wait-for-server call-goal send-goal wait-for-result make-action-goal cancel-goal cancel-all-goals
 cancel-at-before-time is-connected goal-handle goal-id goal-status comm-state terminal-state result goal feedback feedback-signal
 server-lost abort-goal start-action-server def-exec-callback succeed-current abort-current preempt-current publish-feedback
 cancel-request-received""".split()
@@ -120,3 +120,42 @@ def test_goals_that_are_over_are_not_kept(client):
     for _ in range(3):
         client("(actionlib:wait-for-result (send 1) 0)")
     assert len(client.value("*client*").tracked) == 0
+
+
+def test_callbacks_by_their_places_are_those_of_the_original(client):
+    client("""(send 1 (lambda (state result) (note (list state (sequence-of result)))) (lambda (f) (note (sequence-of f)))
+                      (lambda () (note :began)) (lambda (state) (note state)))""")
+    assert client("(wait-duration 3) *notes*") == "(:PENDING :BEGAN :ACTIVE #(1) :DONE (:SUCCEEDED #(1 1)))"
+
+
+def test_the_simple_state_of_a_goal(client):
+    assert client("(progn (defvar *h* (send 2)) (actionlib:simple-state *h*))") == ":WAITING-FOR-ACK"
+    assert client("(wait-duration 0.5) (actionlib:simple-state *h*)") == ":ACTIVE"
+    assert client("(wait-duration 5) (actionlib:simple-state *h*)") == ":DONE"
+    assert " ".join(client.error("(actionlib:simple-state 5)").split()) == "The value 5 is not of type ACTIONLIB:GOAL-HANDLE"
+
+
+def test_send_goal_and_wait_is_call_goal(client):
+    goal = "(actionlib:make-action-goal *client* :order {})"
+    assert client(
+        f"(multiple-value-bind (result state) (actionlib:send-goal-and-wait *client* {goal.format(2)}) (list (sequence-of result) state))"
+    ) == ("(#(2 2) :SUCCEEDED)")
+    assert client(f"(actionlib:send-goal-and-wait *client* {goal.format(9)} :exec-timeout 1.5 :result-timeout 1)") == "NIL :TIMEOUT"
+    assert client(f"(actionlib:send-goal-and-wait *client* {goal.format(1)} :feedback-cb (lambda (f) (note (sequence-of f)))) *notes*") == (
+        "(#(1))"
+    )
+
+
+def test_how_long_a_server_may_be_silent_is_a_variable(client):
+    assert client("(list actionlib:*action-server-timeout* actionlib:*status-publish-interval* actionlib:*gc-interval*)") == (
+        "(2.0 0.25 10.0)"
+    )
+    assert client("(list (actionlib:connected-to-server *client*) (let ((actionlib:*action-server-timeout* 0)) (wait-duration 0.1)"
+                  " (actionlib:connected-to-server *client*)))") == "(T NIL)"  # fmt: skip
+    problem = client.error("(let ((actionlib:*action-server-timeout* :long)) (actionlib:connected-to-server *client*))")
+    assert " ".join(problem.split()) == "The value :LONG is not of type REAL"
+
+
+def test_a_callback_may_leave_by_its_tag(lisp):
+    lisp("(actionlib:def-exec-callback leaves (order) (throw 'actionlib:exec-callback-tag (* 2 order)) (note :never))")
+    assert lisp('(leaves (make-message "actionlib_tutorials/FibonacciGoal" :order 4))') == "8"

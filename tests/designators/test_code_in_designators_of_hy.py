@@ -66,3 +66,25 @@ def test_variables_lists_and_templates_are_as_before():
         "(setv goal (desig-prop-value d :goal))"
     )
     assert module.found == 2 and module.goal == [1, 4]
+
+
+@pytest.mark.parametrize(
+    ("form", "one", "other"),
+    [
+        ("(a motion (x ?A) (y ?a))", "?A", "?a"),
+        ("(an object (type cup) (Type spoon))", "type", "Type"),
+        ("(prolog '(and (member ?A (1 2)) (member ?a (2 3))))", "?A", "?a"),
+        ("(prolog `(member ?x (Cup ~n [cup])))", "Cup", "cup"),
+        ("(def-fact-group cases [] (<- (pair ?A ?a) (member ?A (1))))", "?A", "?a"),
+        ("(rete-assert '(on Cup cup))", "Cup", "cup"),
+    ],
+)
+def test_names_in_data_that_differ_by_case_only_are_refused(form, one, other):
+    with pytest.raises((HySyntaxError, MalformedForm)) as told:
+        compiled(f"(setv n 3)\n(defn it [?A ?a] {form})")
+    assert f"{one} and {other} differ by case only, and to Lisp they are one name; give one of them another name" in str(told.value)
+
+
+def test_names_in_two_clauses_and_in_code_may_differ_by_case():
+    assert compiled("(def-fact-group cases [] (<- (pair ?A) (member ?A (1))) (<- (pair ?a) (member ?a (2))))")
+    assert compiled("(setv X 1 x 2 found (prolog `(member ?y (~X ~x))))").found is not None

@@ -166,7 +166,10 @@ def test_without_a_kernel_the_functions_say_what_to_do():
     assert kernel.active() is None
     with pytest.raises(kernel.KernelError) as told:
         kernel.now()
-    assert str(told.value) == "No kernel is running. Call kernel.start() first; the caller becomes the main task."
+    assert str(told.value) == (
+        "No kernel is running. Make the call in a plan: cpl.run(drive), without the parentheses behind drive, or `with cpl.plan():` around "
+        "the call. Or call kernel.start() first; the caller becomes the main task."
+    )
 
 
 def test_the_main_task_is_the_caller_and_the_parent_of_what_it_spawns(k):

@@ -5,6 +5,7 @@ import re
 import pytest
 from prolog_text import ask, error_text, read, show
 
+from cramhy_runtime.ground.data import lisp_list
 from cramhy_runtime.prolog.builtins import productions, rete
 from cramhy_runtime.utilities.lazy_lists import force_ll
 
@@ -55,9 +56,34 @@ def test_bad_facts():
     assert error_text(lambda: rete.rete_assert(None)) and error_text(lambda: rete.rete_assert(read("(a ?_)")))
 
 
-def test_strings_match_by_identity_only():
-    rete.rete_assert(read('(name "rob")'))
-    assert rete.rete_holds(read('(name "bob")')) is None
+def test_texts_and_lists_match_by_content_and_lists_may_have_variables():
+    rete.rete_assert(read('(name "rob" (a "b" (1 2.0)))'))
+    assert rete.rete_holds(read('(name "bob" ?l)')) is None
+    assert show(rete.rete_holds(read('(name "rob" (a "b" (1 2.0)))'))) == "(NIL)"
+    assert show(force_ll(rete.rete_holds(read("(name ?n (a . ?rest))")))) == '(((?REST "b" (1 2.0)) (?N . "rob")))'
+    assert show(force_ll(rete.rete_holds(read('(name ?n (?a "b" (1 ?y)))')))) == '(((?Y . 2.0) (?A . A) (?N . "rob")))'
+    for other in ('(name "rob" (a "b" (1 2)))', '(name "rob" (a "b"))', '(name "rob" (?x ?x ?y))', '(name "rob" a)', "(name ?x (a ?x ?y))"):
+        assert rete.rete_holds(read(other)) is None
+    rete.rete_retract(read('(name "rob" (a "b" (1 2.0)))'))
+    assert rete.rete_holds(read("(name ?x ?y)")) is None and rete.alpha_network_size() == 1
+
+
+def test_a_list_that_is_circular_is_the_same_as_itself_only():
+    ring, other = read("(a)"), read("(a)")
+    ring.cdr, other.cdr = ring, other
+    rete.rete_assert(lisp_list(read("ring"), ring))
+    assert error_text(lambda: rete.rete_retract(lisp_list(read("ring"), other))) == "wme-memory already empty. Cannot retract."
+    rete.rete_retract(lisp_list(read("ring"), ring))
+    assert rete.alpha_network_size() == 1
+
+
+def test_productions_join_by_content_and_look_into_lists():
+    seen = events("placed", "(pose ?what (?x 2))", "(name ?what ?name)")
+    rete.rete_assert(read('(name "cup" ("big" cup))'))
+    rete.rete_assert(read('(pose "cup" (1 3))'))
+    rete.rete_assert(read('(pose "cup" (1 2))'))
+    rete.rete_retract(read('(name "cup" ("big" cup))'))
+    assert seen == [f':{operation} :?WHAT "cup" :?X 1 :?NAME ("big" CUP)' for operation in ("ASSERT", "RETRACT")]
 
 
 def test_a_join():

@@ -134,7 +134,7 @@ def test_the_launch_file_of_turtlesim():
         ),
         (
             '<launch><param name="a" command="rm x"/></launch>',
-            "while processing {path}:\nInvalid <param> tag: cramhy runs no commands and reads no binary files for parameters; give value or "
+            "while processing {path}:\nInvalid <param> tag: cramhy runs no commands for parameters but xacro FILE and cat FILE; give value or "
             'textfile.\n\nThe tag is <param name="a" command="rm x">',
         ),
         (

@@ -57,7 +57,6 @@ EXCEPT = {
     ("swank/calls/compiling.py", "mkdtemp"): "a folder for what Emacs compiles, which goes with the connection",
     ("repl/answer_streams.py", "TemporaryFile"): "what a form prints, until its answer is sent",
     ("swank/sockets.py", "link"): "the name of a socket, which has no content",
-    ("swank/sockets.py", "rename"): "as above",
     ("robot_world/pictures/stills.py", "save"): "into memory, from which storage writes it",
     ("languages/commonlisp/faces/robot_world/picture_calls.py", "save"): "Movie.save, which writes by way of storage",
     ("jupyter/pictures.py", "save"): "into memory, for a notebook",

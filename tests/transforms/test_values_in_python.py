@@ -5,11 +5,12 @@ import pickle
 
 import pytest
 
+from cramhy_runtime.ground.condition_types import TypeError_
 from cramhy_runtime.ground.equality import eql, equal
 from cramhy_runtime.tf.stamped import PointStamped, PoseStamped
 from cramhy_runtime.transforms.poses import Pose, Transform
 from cramhy_runtime.transforms.quaternions import Quaternion
-from cramhy_runtime.transforms.vectors import Vector3, copy_3d_vector
+from cramhy_runtime.transforms.vectors import Vector3, copy_3d_vector, make_3d_vector
 
 MAKERS = {
     "vector": lambda x: Vector3(x, 2, 3),
@@ -46,3 +47,12 @@ def test_a_copy_may_differ():
 
 def test_lisp_can_change_a_slot(lisp):
     assert lisp("(let ((v (cl-transforms:make-3d-vector 1 2 3))) (setf (slot-value v 'cl-transforms:x) 5) (cl-transforms:x v))") == "5.0d0"
+
+
+@pytest.mark.parametrize("number", ["float32", "float64", "int64", "uint8"])
+def test_numbers_of_numpy_are_components(number):
+    numpy = pytest.importorskip("numpy")
+    made = make_3d_vector(*numpy.array([1, 2, 3], number))
+    assert made == make_3d_vector(1, 2, 3) and [type(part) for part in made.components] == [float] * 3
+    with pytest.raises(TypeError_, match="REAL"):
+        make_3d_vector(True, 2, 3)

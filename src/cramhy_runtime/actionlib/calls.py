@@ -12,7 +12,7 @@ from collections import deque
 from .. import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import Condition, Error
-from cramhy_runtime.ground.data import MultipleValues, truth
+from cramhy_runtime.ground.data import Keyword, MultipleValues, truth
 from cramhy_runtime.ground.packages import ensure_package, find_package, keyword
 from . import goals
 from .client import CONNECTED, ActionClient, send_with_callbacks
@@ -70,14 +70,36 @@ class GoalHandle:
         return f"#<GOAL-HANDLE {self.goal.id} {self.goal.communication}>"
 
 
-def send_goal(client, goal, *, done_cb=None, active_cb=None, feedback_cb=None):
+def send_goal(client, goal, *callbacks):
     """Send ``goal`` and go on; returns a `GoalHandle`. Goals that were sent before are tracked as ever.
 
-    The callbacks: done-cb gets state and result, active-cb nothing, feedback-cb the feedback.
+    The callbacks are optional: done-cb, which gets state and result, feedback-cb, which gets the feedback, active-cb, without arguments,
+    and state-change-cb, which gets the simple state when it changes. They may be named, too: ``:active-cb function``.
     """
     if not isinstance(client, ActionClient):
         return conditions.type_error(client, "ACTIONLIB:ACTION-CLIENT")
-    return GoalHandle(client, send_with_callbacks(client, goal, done_cb, active_cb, feedback_cb, alone=False))
+    names = ("DONE-CB", "FEEDBACK-CB", "ACTIVE-CB", "STATE-CHANGE-CB")
+    named = bool(callbacks) and isinstance(callbacks[0], Keyword)
+    pairs = list(zip((key.name for key in callbacks[::2]), callbacks[1::2], strict=True)) if named else list(zip(names, callbacks))
+    given = dict(reversed(pairs))
+    if not named and len(callbacks) > len(names) or given.keys() - set(names):
+        return conditions.program_error(
+            "ACTIONLIB:SEND-GOAL takes a client, a goal, and up to four callbacks: done, feedback, active, state change."
+        )
+    done, feedback, active, change = map(given.get, names)
+    return GoalHandle(client, send_with_callbacks(client, goal, done, active, feedback, alone=False, state_change_cb=change))
+
+
+def send_goal_and_wait(client, goal, *, exec_timeout=None, result_timeout=None, feedback_cb=None):
+    """As `call_goal`, whose ``timeout`` is ``exec_timeout``."""
+    return call_goal(client, goal, timeout=exec_timeout, result_timeout=result_timeout, feedback_cb=feedback_cb)
+
+
+def simple_state(handle):
+    """The state of a goal that was sent, a keyword: ``:waiting-for-ack``, ``:pending``, ``:active`` or ``:done``."""
+    if not isinstance(handle, GoalHandle):
+        return conditions.type_error(handle, "ACTIONLIB:GOAL-HANDLE")
+    return keyword(handle.goal.simple_state)
 
 
 def make_action_client(action_name, action_type):
@@ -145,11 +167,12 @@ def _wait(client, sent, feedbacks, limit):
         return feedbacks or sent.done
 
     while True:
-        silent = max(sent.sent, client.heard or 0.0) + CONNECTED
+        patience = goals.setting("*ACTION-SERVER-TIMEOUT*", CONNECTED)
+        silent = max(sent.sent, client.heard or 0.0) + patience
         until = silent if limit is None else min(silent, limit)
         if client.waiting.wait(something, f"the end of the goal {sent.id} of action {client.name}", until):
             return True
         if limit is not None and kernel.now() >= limit:
             return False
-        if kernel.now() >= max(sent.sent, client.heard or 0.0) + CONNECTED:
+        if kernel.now() >= max(sent.sent, client.heard or 0.0) + patience:
             conditions.error(ServerLost())

@@ -35,6 +35,7 @@ class Goal:
 
     def __init__(self, goal_id, done, active, feedback):
         self.id, self.done_callback, self.active_callback, self.feedback_callback = goal_id, done, active, feedback
+        self.change_callback = self.told = None  # who hears of changes of the simple state, and the last one that was told
         self.communication = "WAITING-FOR-GOAL-ACK"
         self.status, self.terminal, self.result = PENDING, None, None
         self.was_active = False
@@ -51,6 +52,22 @@ class Goal:
         if self.done:
             return goals.NAMES[self.terminal]
         return "ACTIVE" if self.was_active else "PENDING"
+
+    @property
+    def simple_state(self):
+        """The name of its state as ACTIONLIB's client knows it."""
+        if self.done or self.communication == "WAITING-FOR-RESULT":
+            return "DONE"
+        if self.was_active:
+            return "ACTIVE"
+        return "WAITING-FOR-ACK" if self.communication == "WAITING-FOR-GOAL-ACK" else "PENDING"
+
+    def tell_change(self):
+        """Call the callback for changes, if the simple state is another one than it told last."""
+        state = self.simple_state
+        if self.change_callback is not None and state not in (self.told, "WAITING-FOR-ACK"):
+            self.told = state
+            self.change_callback(keyword(state))
 
 
 class ActionClient:
@@ -77,7 +94,7 @@ class ActionClient:
     @property
     def connected(self):
         """Whether the server gave a sign of life within the last two seconds."""
-        return self.heard is not None and kernel.now() - self.heard < CONNECTED
+        return self.heard is not None and kernel.now() - self.heard < goals.setting("*ACTION-SERVER-TIMEOUT*", CONNECTED)
 
     def wait_for_server(self, timeout=0):
         """Wait for a sign of life, at most ``timeout`` seconds (0: for ever); whether there was one."""
@@ -183,6 +200,7 @@ class ActionClient:
             goal.communication = goals.NAMES[status]
         elif goal.communication != "WAITING-FOR-CANCEL-ACK":
             goal.communication = goals.NAMES[status]
+        goal.tell_change()
         self.waiting.changed()
 
     def _feedback(self, message):
@@ -207,6 +225,7 @@ class ActionClient:
         goal.communication, goal.terminal = "DONE", terminal
         self._let_go(goal)
         self.waiting.changed()
+        goal.tell_change()
         if goal.done_callback is not None:
             goal.done_callback(goal)
 
@@ -230,8 +249,14 @@ def _header(stamp):
     return message_class("std_msgs/Header")(stamp=stamp)
 
 
-def send_with_callbacks(client, message, done_cb, active_cb, feedback_cb, alone):
-    """`ActionClient.send` with the callbacks of a Lisp program, nil or functions: done-cb gets the state, a keyword, and the result."""
+def send_with_callbacks(client, message, done_cb, active_cb, feedback_cb, alone, state_change_cb=None):
+    """`ActionClient.send` with the callbacks of a Lisp program, nil or functions: done-cb gets the state, a keyword, and the result.
+
+    state-change-cb gets the simple state, ``:pending``, ``:active`` or ``:done``, whenever it changes.
+    """
     finished = goals.function_or_none(done_cb)
     done = None if finished is None else lambda goal: finished(keyword(goal.state), goal.result)
-    return client.send(message, done, goals.function_or_none(active_cb), goals.function_or_none(feedback_cb), alone)
+    change = goals.function_or_none(state_change_cb)
+    goal = client.send(message, done, goals.function_or_none(active_cb), goals.function_or_none(feedback_cb), alone)
+    goal.change_callback = change
+    return goal

@@ -61,7 +61,7 @@ class GoalServer:
         self.results = self.advertise(f"{name}/result", self.action.action_result)
         self.subscribe(f"{name}/goal", self.action.action_goal, self._goal)
         self.subscribe(f"{name}/cancel", topic_class(goals.GOAL_ID), self._cancel)
-        self.timer = node.graph.kernel.call_every(PERIOD, self.report)
+        self.timer = node.graph.kernel.call_every(goals.setting("*STATUS-PUBLISH-INTERVAL*", PERIOD), self.report)
         node.on_shutdown.append(self.stopped)
         self.report()
 
@@ -166,10 +166,10 @@ class GoalServer:
         """Tell the states of all goals, and forget those that ended long ago."""
         if not self.node.alive:
             return
-        now = kernel.now()
-        self.goals = [goal for goal in self.goals if goal.ended is None or now - goal.ended < MEMORY]
+        now, memory = kernel.now(), goals.setting("*GC-INTERVAL*", MEMORY)
+        self.goals = [goal for goal in self.goals if goal.ended is None or now - goal.ended < memory]
         if self.cancelled_ids:
-            self.cancelled_ids = {name: when for name, when in self.cancelled_ids.items() if now - when < MEMORY}
+            self.cancelled_ids = {name: when for name, when in self.cancelled_ids.items() if now - when < memory}
         statuses = [_status(goal) for goal in self.goals]
         self.statuses.publish(message_class(goals.STATUS_ARRAY)(header=_header(), status_list=statuses))
 

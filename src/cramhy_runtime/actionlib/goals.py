@@ -11,6 +11,8 @@ from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import SimpleError
 from cramhy_runtime.ground.data import LispString, Symbol, truth
 from cramhy_runtime.ground.functions import function_named
+from cramhy_runtime.ground.numbers import is_real
+from cramhy_runtime.ground.packages import find_package
 from cramhy_runtime.ground.printing import princ_to_string
 from ..ros.messages import message_class, topic_class
 from cramhy_runtime.utilities import wait_queue as lines
@@ -71,6 +73,14 @@ def check_message(message, cls):
     if isinstance(message, cls):
         return message
     return conditions.type_error(message, cls.lisp_name.replace("::", ":"))
+
+
+def setting(name: str, default: float) -> float:
+    """The value of the variable ``name`` of the package ACTIONLIB, in seconds; ``default`` where that package was not made."""
+    package = find_package("ACTIONLIB")
+    symbol = package.lookup(name)[0] if package is not None else None
+    value = getattr(symbol, "value", default)
+    return float(value) if is_real(value) else conditions.type_error(value, "REAL")
 
 
 def time_limit(seconds):

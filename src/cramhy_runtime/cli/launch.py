@@ -169,7 +169,7 @@ def _substitution(words, tag, scope):
             return scope.arguments[rest[0]]
         raise _wrong(scope, tag, f'there is no <arg name="{rest[0]}"> above it with a value; give one: {rest[0]}:=VALUE')
     if command == "find" and len(rest) == 1:
-        folder = folder_of(rest[0])
+        folder = "xacro" if rest[0] == "xacro" else folder_of(rest[0])  # the package is one of Python's; see `_output`
         if folder is None:
             raise _wrong(scope, tag, f"there is no package {rest[0]}")
         return str(folder)
@@ -262,8 +262,11 @@ def _param(launched, tag, scope, values, used):
         except (OSError, UnicodeDecodeError) as problem:
             raise _wrong(scope, tag, f"the file cannot be read: {problem}") from None
         return
-    if "command" in tag.attrib or "binfile" in tag.attrib:
-        raise _wrong(scope, tag, "cramhy runs no commands and reads no binary files for parameters; give value or textfile")
+    if "command" in tag.attrib:
+        launched.parameters[name] = _output(tag, scope)
+        return
+    if "binfile" in tag.attrib:
+        raise _wrong(scope, tag, "cramhy reads no binary files for parameters; give value or textfile")
     text = _text(tag, "value", scope)
     if kind != "auto" and kind not in _TYPES:
         raise _wrong(scope, tag, f'there is no type "{kind}"; there are {", ".join(_TYPES)} and auto')
@@ -271,6 +274,27 @@ def _param(launched, tag, scope, values, used):
         launched.parameters[name] = plain_value(text) if kind == "auto" else _TYPES[kind](text)
     except (ValueError, KeyError):
         raise _wrong(scope, tag, f'"{text}" is not of the type {kind}') from None
+
+
+def _output(tag, scope):
+    """What a command for a parameter would print: xacro expands a file, and cat reads it. Others are not run."""
+    from cramhy_runtime.robot_world import xacro_files
+    from cramhy_runtime.robot_world.descriptions import DescriptionError
+
+    try:
+        command, *words = shlex.split(_text(tag, "command", scope))
+    except ValueError as problem:
+        raise _wrong(scope, tag, f"the words of command: {problem}") from None
+    tool = Path(command).name.removesuffix(".py")
+    files = [word for word in words if ":=" not in word and not word.startswith("-")]
+    if tool not in ("xacro", "cat") or len(files) != 1:
+        raise _wrong(scope, tag, "cramhy runs no commands for parameters but xacro FILE and cat FILE; give value or textfile")
+    try:
+        if tool == "cat":
+            return Path(files[0]).read_text(encoding="utf-8")
+        return xacro_files.expanded(files[0], dict(word.split(":=", 1) for word in words if ":=" in word))
+    except (OSError, UnicodeDecodeError, DescriptionError) as problem:
+        raise _wrong(scope, tag, f"the file cannot be read: {problem}") from None
 
 
 def _rosparam(launched, tag, scope, values, used):

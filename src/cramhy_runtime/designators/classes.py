@@ -44,9 +44,9 @@ IN_ERROR_TEXT = special(Symbol("*IN-ERROR-TEXT*"))
 """True while the text of an error is made, which must not cause an error itself."""
 _object_ids = itertools.count(1)
 _live = Cell({}, fresh=True)  # a weak reference to each living designator, in the order of their making: a run must not depend on addresses
-_classes = per_image({})  # type keyword -> class, or the symbol that is to name it
-_types = per_image({})  # class -> the first keyword registered for it
-_makers = per_image({})  # type keyword -> the function of a description that makes such a designator, until methods change
+_classes: dict[Any, Any] = per_image({})  # type keyword -> class, or the symbol that is to name it
+_types: dict[type, Any] = per_image({})  # class -> the first keyword registered for it
+_makers: dict[Any, Any] = per_image({})  # type keyword -> the function of a description that makes such a designator, until methods change
 
 
 class DesignatorError(SimpleError):
@@ -149,13 +149,13 @@ class Designator:
 
     def __deepcopy__(self, memo: dict[int, object]) -> Designator:
         made = memo[id(self)] = blank(self.__class__)
-        lazy = self._lazy
+        lazy = _lazy_slot(self)
         state = {name: value for name, value in _state(self).items() if name not in _EQUATED}
         _fill(made, {name: value if name == lazy else deepcopy(value, memo) for name, value in state.items()})
         return made
 
     def __reduce__(self) -> tuple[object, ...]:
-        state, lazy = _state(self), self._lazy
+        state, lazy = _state(self), _lazy_slot(self)
         state[lazy] = _computed(state.get(lazy))
         return blank, class_reference(self.__class__), state
 
@@ -163,12 +163,17 @@ class Designator:
         _fill(self, state)
 
 
-def blank(cls: type, name: Symbol | None = None) -> Designator:
+def blank(cls: type[Any], name: Symbol | None = None) -> Designator:
     """A designator of the class ``cls``, or of the one with the Lisp name ``name`` if there is one, with nothing in it."""
     cls = referenced(cls, name)
     made: Designator = cls.__new__(cls)
     Designator.__init__(made)
     return made
+
+
+def _lazy_slot(designator: Any) -> str:
+    """The name of the slot with the lazy list of the solutions."""
+    return str(designator._lazy)
 
 
 _EQUATED = ("parent", "successor", "_object_id")
@@ -499,4 +504,5 @@ def desig_prop_value(desig: Designator | None, prop_name: Symbol) -> Any:
 def desig_prop_values(designator: Designator, property_name: Symbol) -> Cons | None:
     """The values of all pairs with the key ``property_name``, in order, as a Lisp list. Source: designators.md section 5."""
     check_key(property_name)
-    return list_from([value_of(pair) for pair in pairs_of(designator) if pair.car is property_name])
+    values: Cons | None = list_from([value_of(pair) for pair in pairs_of(designator) if pair.car is property_name])
+    return values

@@ -28,6 +28,7 @@ from operator import itemgetter
 
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from
 from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.prolog.compiler.compiler import compile_clauses
 from cramhy_runtime.prolog.engine.database import Clause, Predicate, changed, functor_entry, traced
 from cramhy_runtime.prolog.builtins.function_calls import BREAK_ON_LISP_ERRORS
@@ -99,7 +100,7 @@ class ClauseIndex:
 
     def _for_shape(self, shape):
         """(A function that picks the arguments from the dict of values, the call function)."""
-        type_, keys = shape[0], shape[1:]
+        type_, keys = shape[0], frozenset(shape[1:])
         rules = [rule for rule in self.rules if rule.fits(type_, keys)]
         if not rules:
             return _nothing, _failing
@@ -127,7 +128,8 @@ class _Rule:
     """A clause. ``values`` are the properties for which its first goals ask: key → pattern."""
 
     def __init__(self, clause):
-        self.clause, self.values = clause, {}
+        self.clause = clause
+        self.values: dict[Keyword, Any] = {}
         self.goals = list(clause.goals or ())
         designator = clause.head.cdr.car if isinstance(clause.head.cdr, Cons) else None
         if variable(designator) and designator is not ANONYMOUS and proper(clause.head):
@@ -139,8 +141,8 @@ class _Rule:
                 del self.goals[0]
 
     def fits(self, type_, keys):
-        """Whether a designator of that type, with these keys, can satisfy the clause."""
-        if not all(key in keys for key in self.values):
+        """Whether a designator of that type, with this set of keys, can satisfy the clause."""
+        if not keys.issuperset(self.values):
             return False
         wanted = self.values.get(TYPE)
         return not isinstance(wanted, Keyword) or wanted is type_

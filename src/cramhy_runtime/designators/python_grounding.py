@@ -40,7 +40,8 @@ from cramhy_runtime.ground.printing import define_printer, print_unreadable
 from cramhy_runtime.prolog.builtins import native_predicates as natives
 from cramhy_runtime.prolog.python.ground import reasoning
 from cramhy_runtime.prolog.python.rules import fact_group, remove_fact_group
-from cramhy_runtime.prolog.python.terms import USER, Goal, Name, P, V, import_predicates, kw, lisp_name, to_lisp, to_python
+from cramhy_runtime.prolog.python.spelling import lisp_name
+from cramhy_runtime.prolog.python.terms import USER, Goal, Name, P, V, import_predicates, kw, to_lisp, to_python
 from cramhy_runtime.prolog.explanations.failure_reasons import explains
 from cramhy_runtime.prolog.terms.terms import deref, import_term
 from ..utilities.lazy_lists import from_iterator
@@ -347,8 +348,8 @@ def _verdict(answer: Any) -> Keyword:
         return REJECT
     if answer is None:
         return UNKNOWN
-    if answer in VERDICTS:
-        found: Keyword = answer
+    found = to_lisp(answer)  # a keyword of Hy is Lisp's
+    if isinstance(found, Keyword) and found in VERDICTS:
         return found
     raise TypeError(f"A validator returns True, False, None or kw.maybe_reject, not {answer!r}.")
 

@@ -30,12 +30,13 @@ from cramhy_runtime.ground.packages import near_names
 from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.ground.python_names import lisp_spelling
 from cramhy_runtime.prolog.python.ground import reasoning
-from cramhy_runtime.prolog.python.terms import kw, lisp_name, nil_as, python_name, show, to_lisp, to_python
+from cramhy_runtime.prolog.python.spelling import lisp_name, python_name
+from cramhy_runtime.prolog.python.terms import kw, nil_as, show, to_lisp, to_python
 from . import defaults as _defaults  # noqa: F401  the predicates and the generators that come along
 from .classes import ALL, ActionDesignator, Designator, HumanDesignator, LocationDesignator, MotionDesignator, ObjectDesignator, new
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from .signatures import Key, Pair
 
@@ -72,6 +73,7 @@ class Kind(type):
         made.defaults = {**parent.defaults, **{field: body[field] for field in own if field in body}}
         for field in own:
             _check_name(field, name)
+        one_spelling(made.fields, name)
         for field, value in body.items():
             _check_body(field, value, own, name)
         known = _declared.setdefault((made.designators, made.type_), [])
@@ -85,12 +87,17 @@ class Kind(type):
     if not TYPE_CHECKING:  # which knows the initializers: those below, and those that `dataclass_transform` makes
 
         def __call__(cls, *pairs, **properties):
+            if pairs:
+                keys = [pair[0] for pair in pairs if isinstance(pair, (tuple, list)) and pair and isinstance(pair[0], str)]
+                one_spelling([*keys, *properties], cls.__name__)
             return new(cls.designators, list_from([*map(_pair, pairs), *cls._entries(properties)]))
 
     def _entries(cls, properties: dict[str, Any]) -> Iterator[Cons]:
         if cls.type_ is None:
             for name in properties:
                 _check_name(name, cls.__name__)
+                if not name.islower() or name[-1] == "_":
+                    one_spelling(properties, cls.__name__)
             if isinstance(properties.get("type"), str):
                 raise TypeError(
                     f"The type of a designator is a keyword: {cls.__name__}(type=kw.{properties['type']}). "
@@ -160,9 +167,10 @@ def _define_for_derived(kind: Kind) -> None:
 def _derived(kind: Kind) -> list[Kind]:
     """The kinds derived from ``kind``, one for each type but its own, those derived directly first."""
     found: dict[Any, Any] = {kind.type_: kind}
-    waiting = [kind]
+    waiting: list[Any] = [kind]
     while waiting:
-        for other in type.__subclasses__(waiting.pop(0)):
+        derived: list[Any] = type.__subclasses__(waiting.pop(0))
+        for other in derived:
             found.setdefault(other.type_, other)
             waiting.append(other)
     return list(found.values())[1:]
@@ -186,6 +194,18 @@ def _check_name(name: str, of: str) -> None:
         )
 
 
+def one_spelling(names: Iterable[str], of: str) -> None:
+    """Raise a TypeError if two of the ``names`` of properties are one for Lisp: they differ by case, or by an underscore at the end."""
+    spelled: dict[str, str] = {}
+    for name in names:
+        other = spelled.setdefault(lisp_name(name), name)
+        if other.replace("-", "_") != name.replace("-", "_"):
+            raise TypeError(
+                f"The properties {other!r} and {name!r} of {of} are one for Lisp, which sees no case, and no underscore at the end. "
+                "Give one of them another name."
+            )
+
+
 def _check_body(field: str, value: Any, annotations: dict[str, Any], of: str) -> None:
     if field.startswith("__") or field in annotations or isinstance(value, type):
         return
@@ -204,7 +224,9 @@ def _pair(pair: Any) -> Cons:
 
 
 def _key(key: str | Symbol) -> Symbol:
-    return kw[lisp_name(key)] if isinstance(key, str) else key
+    if isinstance(key, str):
+        return kw[lisp_name(key)]
+    return key if isinstance(key, Symbol) else to_lisp(key)
 
 
 class _Readable:
@@ -258,7 +280,7 @@ def properties(designator: Designator) -> list[tuple[str, Any]]:
 def property_values(designator: Designator, name: str | Symbol) -> list[Any]:
     """All values of the key ``name`` in order, converted for Python."""
     wanted = _key(name).name
-    return [_value(designator, entry) for entry in _entries_of(designator) if entry.car.name == wanted]
+    return [_value(designator, entry) for entry in _entries_of(designator) if entry.car.name.replace("_", "-") == wanted]
 
 
 def every(designator: D) -> D:
@@ -273,6 +295,7 @@ def replace(designator: D, **changed: object) -> D:
 
     The order is kept. For a repeated key, the first property is replaced and the others are removed. New properties come at the end.
     """
+    one_spelling(changed, "replace")
     description, left = [], {lisp_name(name): value for name, value in changed.items()}
     done: set[str] = set()
     for entry in designator.description or ():
@@ -284,7 +307,8 @@ def replace(designator: D, **changed: object) -> D:
         else:
             description.append(entry)
     description += [lisp_list(kw[name], to_lisp(value)) for name, value in left.items() if name not in done and value is not None]
-    return new(designator.__class__, list_from(description))
+    made: D = new(designator.__class__, list_from(description))
+    return made
 
 
 def value_of(designator: Designator, key: Symbol) -> Any:
@@ -303,6 +327,8 @@ def _entry(designator: Designator, name: str) -> Cons | None:
     for entry in _entries_of(designator):
         if entry.car.name == name:
             return entry
+    if "-" in name:  # code in Lisp may have written it with underscores
+        return next((entry for entry in _entries_of(designator) if entry.car.name.replace("_", "-") == name), None)
     return None
 
 

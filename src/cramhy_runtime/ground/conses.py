@@ -170,6 +170,17 @@ class Cons:
 
 
 Sequence.register(Cons)  # for ``match``, and for who asks whether something is a sequence
+
+
+class EmptyList(list[Any]):
+    """The empty list that Hy code gets where Lisp gives ``nil``, so that a loop over the answers of a query has no turns.
+
+    It is a new list each time. To plans it is false, as ``nil`` is.
+    """
+
+    __slots__ = ()
+
+
 new_object = object.__new__
 
 

@@ -22,6 +22,7 @@ from .conses import (
     UNBOUND as UNBOUND,
     UNSUPPLIED as UNSUPPLIED,
     Cons as Cons,
+    EmptyList as EmptyList,
     LazyRest as LazyRest,
     conses as conses,
     list_end as list_end,
@@ -150,6 +151,8 @@ class Keyword(Symbol):
         """Whether they are the same object. It warns who compares a keyword with the text of its name, which is never equal."""
         if self is other:
             return True
+        if other.__class__ in STANDS_FOR:
+            return STANDS_FOR[other.__class__](other) is self
         if isinstance(other, str) and other.lstrip(":").upper().replace("_", "-") == self.name:
             written = self.name.lower().replace("-", "_")
             warnings.warn(
@@ -164,6 +167,10 @@ class Keyword(Symbol):
 
     def __repr__(self) -> str:
         return ":" + self.name
+
+
+STANDS_FOR: dict[type, Callable[[Any], object]] = {}
+"""A class of Python → the object of Lisp that one of its objects stands for: a keyword of Hy stands for that of Lisp."""
 
 
 class UndefinedFunction:
@@ -232,11 +239,16 @@ def _answers_for_itself(cls: type) -> bool:
     """
     answer = OWN_ANSWERS.get(cls)
     if answer is None:
-        answer = hasattr(cls, "__bool__") and (
-            cls.__name__ in ("bool", "bool_", "NAType")  # numpy.bool has another name before numpy 2; pandas.NA refuses to answer
-            or hasattr(cls, "dtype")
-            and hasattr(cls, "shape")
-            and not any(base.__name__ == "generic" for base in cls.__mro__)
+        answer = (
+            cls is EmptyList
+            or cls in STANDS_FOR
+            or hasattr(cls, "__bool__")
+            and (
+                cls.__name__ in ("bool", "bool_", "NAType")  # numpy.bool has another name before numpy 2; pandas.NA refuses to answer
+                or hasattr(cls, "dtype")
+                and hasattr(cls, "shape")
+                and not any(base.__name__ == "generic" for base in cls.__mro__)
+            )
         )
         if len(OWN_ANSWERS) >= 500:  # classes that nobody else keeps must not stay for ever
             OWN_ANSWERS.clear()
@@ -247,11 +259,15 @@ def _answers_for_itself(cls: type) -> bool:
 def plain_truth(value: Any) -> Any:
     """``value``, or Python's ``True`` or ``False`` for a truth value of another library. Lisp's own code compares with nothing else.
 
+    For an object that stands for one of Lisp, such as a keyword of Hy, it is that one.
+
     An array without dimensions is one if its elements are truth values.
     """
     cls = value.__class__
-    if cls in TRUE_CLASSES or value is None or not _answers_for_itself(cls):
+    if cls in TRUE_CLASSES or value is None or not _answers_for_itself(cls) or cls is EmptyList:
         return value
+    if cls in STANDS_FOR:
+        return STANDS_FOR[cls](value)
     if cls.__name__ in ("bool", "bool_"):
         return bool(value)
     return bool(value) if value.shape == () and str(value.dtype).removeprefix("torch.") == "bool" else value

@@ -20,7 +20,7 @@ from cramhy_runtime.ground.source_places import keep_text
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.languages.commonlisp.reader.reader import incomplete
-from cramhy_runtime.languages.hy import module_names, plan_code
+from cramhy_runtime.languages.hy import module_names
 
 LISP, HY = "lisp", "hy"
 MODULE = "notebook"
@@ -149,7 +149,7 @@ class Notebook:
         from hy.compiler import hy_compile
 
         statements, expression = hy_compile(model, module, get_expr=True, filename=filename)
-        plan_code.complete([statements], module_names.at_prompt(module))
+        module_names.complete_at_prompt(statements, module)
         space = vars(module)
         exec(compile(statements, filename, "exec"), space)
         return eval(compile(expression, filename, "eval"), space)

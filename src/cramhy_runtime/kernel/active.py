@@ -193,7 +193,10 @@ def active() -> Kernel | None:
 
 
 def _none() -> NoReturn:
-    raise KernelError("No kernel is running. Call kernel.start() first; the caller becomes the main task.")
+    raise KernelError(
+        "No kernel is running. Make the call in a plan: cpl.run(drive), without the parentheses behind drive, or `with cpl.plan():` around "
+        "the call. Or call kernel.start() first; the caller becomes the main task."
+    )
 
 
 def checkpoint() -> None:

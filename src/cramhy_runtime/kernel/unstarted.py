@@ -1,7 +1,8 @@
-"""Functions of Python that run nothing when they are called: those with ``yield``, and ``async def``.
+"""Functions of Python that run nothing when they are called, and values of calls that were to be functions.
 
 A plan, a branch, a grounding or a callback is called once, and what it returns is its result. A generator function or a coroutine
-function returns at once, and its body would never run, without a word. `ran` finds that out where results come in.
+function returns at once, and its body would never run, without a word. `ran` finds that out where results come in. Whoever writes
+``par(drive())`` has called ``drive`` himself, before ``par`` began: `callable_part` tells that where functions come in.
 """
 
 from __future__ import annotations
@@ -39,6 +40,22 @@ def ran(result: Any, role: str) -> Any:
     raise TypeError(
         f"{result.__qualname__} is {role}, and {kind}: the call returned {given}, and has run nothing of it. "
         f"{advice}: plans are plain functions, and wait by calls such as cpl.sleep(1) and cpl.wait_for(fluent)."
+    )
+
+
+def callable_part(given: T, form: str, role: str, written: str = "drive") -> T:
+    """``given``, which the operator ``form`` calls as ``role``, such as "a branch"; a TypeError if it is not a function.
+
+    written: how the arguments of the operator look when they are right.
+    """
+    if callable(given):
+        return given
+    text = repr(given)
+    text = text if len(text) <= 60 else text[:57] + "..."
+    raise TypeError(
+        f"cpl.{form} takes a function as {role}, and calls it, but was given {text} (of the type {type(given).__name__}). If that is "
+        f"what a call such as drive() gave, the call was over before cpl.{form} began. Write cpl.{form}({written}), without the "
+        f"parentheses behind drive, or with arguments cpl.{form}({written.replace('drive', 'lambda: drive(2)')})."
     )
 
 

@@ -38,7 +38,8 @@ from cramhy_runtime.ground.classes import register_class
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.prolog.python.ground import reasoning
 from cramhy_runtime.prolog.python.rules import fact_group, remove_fact_group
-from cramhy_runtime.prolog.python.terms import USER, Goal, Name, P, V, claim, import_predicates, lisp_name, to_lisp, to_python
+from cramhy_runtime.prolog.python.spelling import exact_lisp_name
+from cramhy_runtime.prolog.python.terms import USER, Goal, Name, P, V, claim, import_predicates, to_lisp, to_python
 from . import asynchronous, executing, executive, modules
 from .matching import AVAILABLE, MATCHING
 from .registry import UnknownProcessModule, module_called, register_process_module
@@ -99,7 +100,7 @@ def process_module(*given: Any, matches: Body | None = None, name: Any = None) -
 
 
 def _symbol(name: str) -> Symbol:
-    return USER.intern(lisp_name(name)) if name.isidentifier() else _no_name(name)
+    return USER.intern(exact_lisp_name(name)) if name.isidentifier() else _no_name(name)
 
 
 def _no_name(name: str) -> Symbol:

@@ -37,7 +37,7 @@ from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of, report
 from cramhy_runtime.session import time_setting
-from cramhy_runtime.languages.hy import malformed, module_names, plan_code, program_texts
+from cramhy_runtime.languages.hy import malformed, module_names, program_texts
 from cramhy_runtime.languages.hy.lisp_data import package_of
 from cramhy_runtime.languages.hy.program_texts import TypedName, name_as_later_releases
 from cramhy_runtime.languages.hy.reader import TypedReader, is_way_back, more_wanted, rest_of_text, source_of
@@ -333,7 +333,7 @@ class HyPrompt(Listener):
             if before is not None:
                 before(statements, expression)
             if program_texts.was_typed(self.repl.compile.compiler.hy_compiler.filename):
-                plan_code.complete([statements], module_names.at_prompt(self.repl.module))
+                module_names.complete_at_prompt(statements, self.repl.module)
 
         return complete
 

@@ -1,10 +1,10 @@
-"""Files that describe robots and furniture, of either kind: URDF, or MJCF, which has <mujoco> around all."""
+"""Files that describe robots and furniture: URDF, xacro, which is expanded to URDF, or MJCF, which has <mujoco> around all."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from . import urdf
+from . import urdf, xacro_files
 from .descriptions import Description
 from .xml_elements import read_bytes, root_name
 
@@ -20,6 +20,8 @@ def read_text(text: str | bytes, file: str = "") -> Description:
 
 def read_file(path: str | Path) -> Description:
     """The description in a file. Errors: as of `read_text`; OSError, when it cannot be read."""
+    if xacro_files.is_xacro(path):
+        return urdf.read_text(xacro_files.expanded(path), str(path))
     data = read_bytes(path)
     if root_name(data) == "mujoco":
         from . import mjcf

@@ -26,10 +26,10 @@ def read_file(path: str | Path) -> Description:
 
 def read_text(text: str | bytes, file: str = "") -> Description:
     """The description in the text of a URDF file; ``file`` is its name in errors. Errors: `DescriptionError`."""
-    return _Reading(file).description(parsed(text, file))
+    return Reading(file).description(parsed(text, file))
 
 
-class _Reading:
+class Reading:
     """Reads the elements of one file."""
 
     def __init__(self, file: str) -> None:
@@ -40,7 +40,8 @@ class _Reading:
 
     def description(self, root: Element) -> Description:
         if root.name != "robot":
-            raise self.wrong(root, "a URDF file has <robot> around all. Is it a xacro file? Then expand it first: xacro FILE > robot.urdf")
+            macros = "A file with xacro's macros has a name that ends in .xacro, and is expanded."
+            raise self.wrong(root, f"a URDF file has <robot> around all. {macros}")
         links: dict[str, Link] = {}
         for element in root.all("link"):
             self.put(links, element, self.link(element))

@@ -100,7 +100,7 @@ class World:
         return self._add(Machine(name, skeleton, at or placement(), skeleton.positions(joints or {}), fixed=fixed))
 
     def _add(self, thing: T) -> T:
-        if thing.name in self.things or thing.name == FLOOR:
+        if thing.name in self.things or isinstance(thing.name, str) and thing.name == FLOOR:
             error(WorldError("there is a thing named ~S already.", thing.name))
         for shape in thing.all_shapes():
             if shape.kind == "mesh":

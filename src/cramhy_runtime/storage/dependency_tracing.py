@@ -430,12 +430,12 @@ def _prepare() -> None:
 @functools.cache
 def _library_folders() -> tuple[tuple[str, ...], tuple[str, ...]]:
     """(folders of Python, of cramhy and of what pip has installed; folders in them that are the user's)"""
-    import sysconfig
+    import site  # Python's start has imported it; sysconfig would read a table of a thousand values at each start
     from importlib.util import find_spec
 
-    paths = sysconfig.get_paths()
     ours = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-    folders = {ours, *(paths[name] for name in ("stdlib", "platstdlib", "purelib", "platlib"))}
+    installed = [folder for folder in site.getsitepackages() if folder != sys.prefix]  # which Windows names, too
+    folders = {ours, os.path.dirname(os.__file__), *installed}
     for name in ("cramhy", "hy"):
         spec = find_spec(name)
         folders.update(spec.submodule_search_locations or () if spec is not None else ())

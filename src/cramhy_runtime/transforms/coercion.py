@@ -7,6 +7,7 @@ A component may be any real: integers, ratios and singles become doubles, a sing
 from __future__ import annotations
 
 import math
+from numbers import Real
 
 from cramhy_runtime.ground.arrays import InvalidArrayIndex, wrong_rank
 from cramhy_runtime.ground.arrays import LispArray
@@ -40,6 +41,8 @@ def real(value: Any, parameter: str | None = None) -> float:
             return float(value)
         except OverflowError:
             return too_large_for(value, "DOUBLE-FLOAT")
+    if isinstance(value, Real) and kind is not bool:  # numpy's, or a Fraction
+        return float(value)
     return type_error(value, "REAL", "" if parameter is None else _binding(parameter))
 
 

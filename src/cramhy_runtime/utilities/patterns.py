@@ -59,12 +59,17 @@ def same_atom(a, b):
         return a == b
     if equality.equal(a, b) is not None:
         return True
-    return kind is b.__class__ and kind not in _COMPARED_BY_LISP and _is_value(kind) and bool(a == b)
+    return kind is b.__class__ and compared_by_python(kind) and bool(a == b)
 
 
-def _is_value(cls):
-    """Whether objects of the class ``cls`` are values: equal by their contents, and never changed."""
-    return cls.__eq__ is not object.__eq__ and cls.__hash__ is not None and cls.__hash__ is not object.__hash__
+def compared_by_python(cls):
+    """Whether objects of the class ``cls`` are values of Python's, beside those of Lisp: equal by their contents, and never changed."""
+    return (
+        cls not in _COMPARED_BY_LISP
+        and cls.__eq__ is not object.__eq__
+        and cls.__hash__ is not None
+        and cls.__hash__ is not object.__hash__
+    )
 
 
 def equal(a, b):

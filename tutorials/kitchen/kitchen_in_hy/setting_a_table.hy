@@ -52,7 +52,7 @@
 
 (defn in-hand [type]
   "The designator of a thing of that type which the robot holds, or None."
-  (for [solution (or (force-ll (prolog '(cram-plan-occasions-events:object-in-hand ?thing))) [])]
+  (for [solution (prolog '(cram-plan-occasions-events:object-in-hand ?thing))]
     (setv thing (current-desig (var-value '?thing solution)))
     (when (= (text (get thing "type")) type)
       (return thing))))

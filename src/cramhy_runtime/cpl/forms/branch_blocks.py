@@ -20,6 +20,7 @@ from functools import partial
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, ParamSpec, Self, TypeVar
 
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.unstarted import callable_part
 
 from cramhy_runtime.ground.condition_types import Condition
 from cramhy_runtime.ground.conditions import error
@@ -80,6 +81,10 @@ class BranchBlock(Block):
         """The tasks of the branches, in the order in which they were started."""
         return list(self.branches.tasks)
 
+    def __bool__(self) -> bool:
+        """False before ``with`` has entered the block: ``par(*[])`` gives one as well, and has started nothing."""
+        return self.branches is not None
+
     def __enter__(self) -> Self:
         self.begin(sys._getframe(1))
         self.branches = _Watched(self)
@@ -107,6 +112,7 @@ class BranchBlock(Block):
             )
         if self.asked:
             kernel.yield_()  # the body ends here, if nothing forbids that
+        callable_part(function, f"{self.form.lower().replace('-', '_')}() as branches: branches.start", "a branch")
         body = partial(function, *arguments, **keywords) if arguments or keywords else function
         number = len(self.branches.tasks) + 1
         task: Task[T] = Task(body, lambda: f"[{_name(function) or f'{self.form}-CHILD-#{number}'}]")

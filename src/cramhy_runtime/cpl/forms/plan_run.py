@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, TypeVarTuple
 
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.unstarted import callable_part
 
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import NO_VALUES
@@ -53,6 +54,7 @@ def run(
     numbers. time_limit: seconds of the kernel's clock, after which the plan ends with `TimeLimit`. Inside a plan it is an error. An
     interrupt becomes ``KeyboardInterrupt``.
     """
+    callable_part(main, "run", "the plan")
     with _kernel(clock, backend, seed, time_limit):
         return top_level(lambda: main(*arguments))
 
@@ -111,7 +113,10 @@ def _kernel(clock: object, backend: object, seed: object, time_limit: float | No
     """The kernel for a plan. An interrupt that ends the plan becomes Python's KeyboardInterrupt outside of it."""
     active = kernel.active()
     if active is not None and current_task() is not None:
-        error("A plan was started inside of a plan. Call its function as it is: it then runs as a part of this plan.")
+        error(
+            "A plan was started inside of a plan. Call its function as it is: it then runs as a part of this plan, in the time of this "
+            "one. A plan in another time (clock=) is run before this one or after it, or in a process of its own."
+        )
     given = {"clock": clock, "backend": backend, "seed": seed, "time_limit": time_limit}
     options: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     try:

@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar
 
 from cramhy_runtime.kernel.images import per_image
+from cramhy_runtime.kernel.unstarted import callable_part, plain_function
 from cramhy_runtime.ground import condition_types as types
 from cramhy_runtime.ground.condition_types import shown
 from cramhy_runtime.ground.conditions import as_name, error
@@ -55,7 +56,12 @@ class Policy:
     ):
         self.counted = parameters is not UNSUPPLIED  # Python's functions count their arguments themselves
         self.name, self.parameters, self.description = name, parameters if self.counted else None, description
-        self.init, self.check, self.recover, self.clean_up = init, check, recover, clean_up
+        clauses = self.init, self.check, self.recover, self.clean_up = init, check, recover, clean_up
+        for name, clause in zip(("init", "check", "recover", "clean_up"), clauses):
+            if clause is not None:
+                plain_function(
+                    callable_part(clause, "make_policy", f"the clause {name}", f"name, {name}=drive"), f"the clause {name} of a policy"
+                )
 
 
 class Store:

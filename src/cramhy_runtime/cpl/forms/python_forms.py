@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar, overload
+from cramhy_runtime.kernel.unstarted import callable_part
 
 from cramhy_runtime import kernel
 
@@ -49,7 +50,7 @@ def par(*branches: Thunk[object]) -> object:
     If a branch fails, the others are evaporated, and its failure is raised. Without branches it returns a `ParBlock`, for
     ``with par() as branches:``. Outside of a plan it is an error. Source: cpl.md 6.2.
     """
-    return operators.par(*branches) if branches else ParBlock()
+    return operators.par(*_functions("par", branches)) if branches else ParBlock()
 
 
 @overload
@@ -63,7 +64,7 @@ def pursue(*branches: Thunk[object]) -> object:
     The other branches are evaporated, and dead when this returns. Without branches it returns a `RaceBlock`, for
     ``with pursue() as race:``. Outside of a plan it is an error. Source: cpl.md 6.3.
     """
-    return operators.pursue(*branches) if branches else RaceBlock()
+    return operators.pursue(*_functions("pursue", branches)) if branches else RaceBlock()
 
 
 @overload
@@ -76,7 +77,7 @@ def try_all(*branches: Thunk[object]) -> object:
 
     Without branches it returns a `TryAllBlock`, for ``with try_all() as attempts:``. Outside of a plan it is an error. Source: cpl.md 6.4.
     """
-    return operators.try_all(*branches) if branches else TryAllBlock()
+    return operators.try_all(*_functions("try_all", branches)) if branches else TryAllBlock()
 
 
 @overload
@@ -86,7 +87,14 @@ def try_in_order(*branches: Thunk[T]) -> T: ...
 @for_python
 def try_in_order(*branches: Thunk[object]) -> object:
     """Call one branch after the other until one succeeds. Returns its result; raises `CompositeFailure` if all fail (cpl.md 6.5)."""
-    return operators.try_in_order(*branches)
+    return operators.try_in_order(*_functions("try_in_order", branches))
+
+
+def _functions(form: str, branches: tuple[Thunk[T], ...]) -> tuple[Thunk[T], ...]:
+    for branch in branches:
+        if not callable(branch):
+            callable_part(branch, form, "a branch")
+    return branches
 
 
 @for_python
@@ -95,6 +103,7 @@ def try_each_in_order(elements: Iterable[S], function: Callable[[S], T]) -> T:
 
     Raises `CompositeFailure` if all calls fail. Source: cpl.md 6.6.
     """
+    callable_part(function, "try_each_in_order", "what to try", "elements, drive")
     return operators.try_each_in_order(_lisp_list(elements), function)
 
 
@@ -104,6 +113,7 @@ def par_loop(elements: Iterable[S], function: Callable[[S], T]) -> T | None:
 
     An empty iterable gives ``None``. Source: cpl.md 6.8.
     """
+    callable_part(function, "par_loop", "its body", "elements, drive")
     elements = _lisp_list(elements, empty=())
     return operators.par_loop(elements, function) if elements != () else None
 
@@ -130,7 +140,7 @@ def partial_order(steps: Sequence[Thunk[T]], orderings: Iterable[Ordering]) -> T
 @for_python
 def with_task(body: Thunk[T], name: str = "WITH-TASK") -> T:
     """Run ``body`` in a child task called ``name``, wait for it and return its result. Source: cpl.md 6.10."""
-    return operators.with_task(body, name)
+    return operators.with_task(callable_part(body, "with_task", "its body"), name)
 
 
 @for_python

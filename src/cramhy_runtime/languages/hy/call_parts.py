@@ -15,7 +15,7 @@ from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import Cons, Symbol, list_from
 from cramhy_runtime.ground.packages import intern, sym
 from ..operators.grammar import Many, Maybe, Text, Word, WrongShape, match
-from .lisp_data import call_of, lisp_data, symbol_of
+from .lisp_data import call_of, is_dotted, is_quoted, lisp_data, symbol_of
 
 CODE = frozenset(
     "form body-form watcher step before after fluent task text status test seconds timeout priority message publication client "
@@ -102,10 +102,10 @@ class Call:
             return Code(models.Expression([call_of("items"), argument]))
         if isinstance(item, Word) and item in CODE and (item in ("form", "body-form") or not _is_object(argument)):
             return self.code_part(argument)
-        if item == "failure-type" and _is_dotted(argument):  # module.Class
+        if item == "failure-type" and is_dotted(argument):  # module.Class
             return Code(argument)
         if item == "failure-type" and isinstance(argument, models.Tuple):
-            made = Cons(sym("OR"), list_from([Code(each) if _is_dotted(each) else self.data(each) for each in argument]))
+            made = Cons(sym("OR"), list_from([Code(each) if is_dotted(each) else self.data(each) for each in argument]))
         else:
             made = self.data(argument)
         if item in ("function", "failure-type"):
@@ -120,9 +120,9 @@ class Call:
 
     def data(self, model):
         """A part that is data, or names, or both: lists remember what was written."""
-        if _is_quoted(model):
+        if is_quoted(model):
             return list_from([sym("QUOTE"), lisp_data(model[1], self.package)])
-        if isinstance(model, (models.Expression, models.List, models.Tuple)) and not _is_dotted(model):
+        if isinstance(model, (models.Expression, models.List, models.Tuple)) and not is_dotted(model):
             made = list_from([self.data(item) for item in model])
             self.note(made, model)
             return made
@@ -171,13 +171,9 @@ def _fitting(symbol, pattern, arguments, package):
     return call, form
 
 
-def _is_quoted(model):
-    return isinstance(model, models.Expression) and len(model) == 2 and model[0] == models.Symbol("quote")
-
-
 def _is_object(model):
     """Whether an argument is an object of Lisp as it stands: a quoted name, or a keyword."""
-    return _is_quoted(model) or isinstance(model, models.Keyword)
+    return is_quoted(model) or isinstance(model, models.Keyword)
 
 
 def _is_option(item):
@@ -187,10 +183,6 @@ def _is_option(item):
 def _options(pattern):
     """Name of a keyword option of the pattern → the item for its value."""
     return {item.items[0][1:]: item.items[1] for item in pattern if _is_option(item)}
-
-
-def _is_dotted(model):
-    return len(model) > 0 and model[0] == models.Symbol(".")
 
 
 def _symbols_in(data):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import builtins
 import functools
 import inspect
 
@@ -15,8 +14,7 @@ from cramhy_runtime.cpl.failures.python_exceptions import for_python
 from cramhy_runtime.cpl.forms import plans
 from cramhy_runtime.cpl.tree.tags import enter_with_tags, execute_tag, make_tag_task, prepare_tag
 from cramhy_runtime.ground.classes import find_class
-from cramhy_runtime.ground.conditions import unknown_key
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from
+from cramhy_runtime.ground.data import STANDS_FOR, Cons, Symbol, list_from
 from cramhy_runtime.ground.data import values as as_values
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.keyword_calls import lispify
@@ -28,7 +26,10 @@ from cramhy_runtime.kernel.budget import budget
 from cramhy_runtime.process_modules import AsynchronousModule
 from ..commonlisp.compiler.support import BlockExit, block_value, end_block, return_from
 from ..commonlisp.faces.prolog.macro_support import collect_fact, fact_collector, finish_fact_group
-from .lisp_data import choose_package, constant, inserted, plan_package
+from . import answer_lists, keywords
+from .answer_lists import in_goal, spliced_in_goal
+from .goal_functions import as_lisp_calls, asking, called, calling
+from .lisp_data import choose_package, constant, inserted, is_about_lists, own_symbol, plan_package
 
 __all__ = [
     "AsynchronousModule",
@@ -36,9 +37,13 @@ __all__ = [
     "Cons",
     "RetryCounter",
     "Symbols",
+    "as_lisp",
+    "asking",
     "block",
     "budget",
     "call_plan",
+    "call_service",
+    "called",
     "calling",
     "checkpoint",
     "choose_package",
@@ -54,10 +59,12 @@ __all__ = [
     "failure_type",
     "finish_fact_group",
     "function",
+    "in_goal",
     "inserted",
     "items",
     "get_param",
     "has_param",
+    "keyword_values",
     "lispify",
     "publish_message",
     "set_param",
@@ -67,7 +74,9 @@ __all__ = [
     "prepare_tag",
     "publish",
     "refill",
+    "lists",
     "spliced",
+    "spliced_in_goal",
     "use_package",
     "users_or_ours",
     "wait_for",
@@ -90,6 +99,10 @@ class Symbols:
         return found
 
 
+lists = answer_lists.Lists()
+keyword_values = keywords.Values()
+
+
 class Branching(Symbols):
     """Its attributes are the functions behind the operators with branches; what Python code raised leaves them as the same exception."""
 
@@ -101,6 +114,8 @@ class Branching(Symbols):
 
 def function(package, name):
     """The function that a symbol of a package of ours names. It takes keywords as Python writes them."""
+    if is_about_lists(package, name):
+        return answer_lists.list_function(package, name)
     found = function_of(intern(name, package))
     return found if takes_keywords(found) else _with_keyword_objects(found)
 
@@ -151,6 +166,12 @@ def items(elements):
     return elements if elements is None or isinstance(elements, Cons) else list_from(list(elements))
 
 
+def as_lisp(value):
+    """The object of Lisp that the value of a variable in a designator stands for, such as a keyword, or the value."""
+    kind = value.__class__
+    return STANDS_FOR[kind](value) if kind in STANDS_FOR else value
+
+
 def lisp_list(*items):
     """A list of Lisp."""
     return list_from(items)
@@ -172,8 +193,9 @@ def publish(symbol, function_):
         return function_
     if callable(function_):
         symbol = own_symbol(symbol)
-        symbol.function = _as_lisp_calls(function_)
+        symbol.function = answer_lists.for_lisp(as_lisp_calls(function_))
         symbol.function_changed()
+        answer_lists.published(symbol)
     return symbol
 
 
@@ -182,6 +204,13 @@ def publish_message(topic, message):
     from cramhy_runtime.ros.python import publish
 
     return publish(topic, message)
+
+
+def call_service(service, *rest):
+    """`checked_call_service` of roslisp."""
+    from cramhy_runtime.ros.roslisp.services import checked_call_service
+
+    return checked_call_service(service, *rest)
 
 
 def get_param(key, *default):
@@ -203,39 +232,6 @@ def has_param(key):
     from cramhy_runtime.ros.python import has_param
 
     return has_param(key)
-
-
-def own_symbol(symbol):
-    """``symbol``, or one of that name in no package if it is Lisp's or ours: a function ``list`` of Hy must not be that of Lisp."""
-    built_in = symbol.package is not None and symbol.package.built_in
-    return Symbol(symbol.name) if built_in else symbol
-
-
-def _as_lisp_calls(function_):
-    """``function_``, a function or a class of Hy, called with keyword objects among its arguments: those that name its parameters."""
-    lispified = lispify(function_)
-    if lispified is not function_:
-        return lispified
-    try:
-        names = [name for name, parameter in inspect.signature(function_).parameters.items() if parameter.kind is _BY_NAME_TOO]
-    except (TypeError, ValueError):
-        return function_
-    known = {keyword(name.rstrip("_").replace("_", "-").upper()): name for name in names}
-
-    def call(*arguments):
-        for place, argument in enumerate(arguments[:-1]):
-            if isinstance(argument, Keyword) and argument in known and (len(arguments) - place) % 2 == 0:
-                rest = arguments[place:]
-                unknown = [key for key in rest[::2] if key not in known]
-                if unknown:
-                    return unknown_key(unknown[0], known)
-                return function_(*arguments[:place], **{known[key]: value for key, value in zip(rest[::2], rest[1::2])})
-        return function_(*arguments)
-
-    return functools.update_wrapper(call, function_, updated=()) if known else function_
-
-
-_BY_NAME_TOO = inspect.Parameter.POSITIONAL_OR_KEYWORD
 
 
 def failure_type(symbol, type_):
@@ -268,30 +264,6 @@ def failure_class(found):
 def _condition_type(class_):
     """The class of conditions for a class of exceptions; a failure of plans is one itself."""
     return class_ if issubclass(class_, Condition) or not issubclass(class_, Exception) else condition_class(class_)
-
-
-def calling(fact, symbol, function_):
-    """``fact``, whose ``(lisp-fun symbol ...)`` and ``(lisp-pred symbol ...)`` call what ``function_()`` gives, a function of the user's.
-
-    Where there is none, or Python's own of that name, they call what the symbol names in Lisp.
-    """
-    try:
-        found = function_()
-    except NameError:
-        return fact
-    if not callable(found) or getattr(builtins, getattr(found, "__name__", ""), None) is found:
-        return fact
-    called = publish(symbol, found)
-    return fact if called is symbol else _with_called(fact, symbol, called)
-
-
-def _with_called(form, symbol, called):
-    if not isinstance(form, Cons):
-        return form
-    rest = form.cdr
-    if isinstance(form.car, Symbol) and form.car.name in ("LISP-FUN", "LISP-PRED") and isinstance(rest, Cons) and rest.car is symbol:
-        return Cons(form.car, Cons(called, rest.cdr))
-    return Cons(_with_called(form.car, symbol, called), _with_called(rest, symbol, called))
 
 
 def cpl_parameter(name, value):

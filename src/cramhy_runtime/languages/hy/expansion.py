@@ -5,6 +5,7 @@ The operator's expander makes a Lisp form of the call's parts, which `call_parts
 with the user's parameters, what is quoted is a constant, and the user's code stands in the middle as it was written, with its lines.
 
 A ``block`` named nil, which ``return`` leaves in Lisp, is left by ``(leave value)``: Hy's ``return`` belongs to the function around it.
+`operator_bodies` says what the bodies assign, and where ``return`` may stand.
 """
 
 from __future__ import annotations
@@ -22,8 +23,12 @@ from ..commonlisp.syntax.macros import ensure_loaded, macroexpand_1
 from .call_parts import Code, without_code
 from .lisp_data import call_of, constant_form, function_form, is_simple
 from .module_names import binds, if_global
+from .operator_bodies import CLAUSE, hidden
 
-LEAVE = models.Symbol("leave")
+LEAVE, RETURN = models.Symbol("leave"), models.Symbol("return")
+
+DEFINITIONS = ("DEF", "DECLARE-GOAL", "MAKE-POLICY", "FLET*", "REGISTER-", "REPLACEABLE-FUNCTION", "WITH-PRODUCTION-HANDLERS")
+"""How the names of the operators begin whose bodies are functions of the user's: he gives them a name, or parameters."""
 
 VARIABLES = ("DEFINE-HOOK", "DEFINE-POLICY", "DEFINE-TASK-VARIABLE", "DEFINE-SPECIAL-PROJECTION-VARIABLE")
 """The operators whose first part names a variable: in Hy it has what the definition gives. A special one is read by ``name.value``."""
@@ -40,9 +45,11 @@ def word(name):
 class Translation:
     """The expansion of one call of an operator, a `Call`, for the compiler of Hy."""
 
-    def __init__(self, compiler, call):
+    def __init__(self, compiler, call, operator):
         self.compiler = compiler
         self.call = call
+        self.operator = operator
+        self.is_definition = operator.name.startswith(DEFINITIONS)
         self.fresh = {}  # a symbol that the expander made → a Hy symbol
         self.local_functions = frozenset()  # the names of the flets around
         self.depth = 0  # how many functions of the expansion are around
@@ -130,6 +137,17 @@ class Translation:
     # ------------------------------------------------------------------------------------------- Lisp's own operators in Hy
 
     def lambda_(self, parameters, *forms):
+        return self.function_of(parameters, forms, None if self.is_definition else self.body_name(parameters))
+
+    def body_name(self, parameters):
+        """What `operator_bodies` calls the function with these parameters: by the operator, or a clause."""
+        name = self.operator.name.lower()
+        if name == "with-failure-handling" and not (parameters is not None and parameters.cdr is None and _is_fresh(parameters.car)):
+            return CLAUSE
+        return name
+
+    def function_of(self, parameters, forms, body_of=None):
+        """The ``fn`` of a lambda. body_of: the operator whose body it is, if it is one."""
         rest = _rest_parameter(parameters)
         self.depth += 1
         body = self.body(forms)
@@ -139,6 +157,8 @@ class Translation:
             name = self.variable(rest)
             body = [expression(word("setv"), name, expression(call_of("lisp-list"), expression(word("unpack-iterable"), name))), *body]
         made = expression(word("fn"), self.parameters(parameters), *body)
+        if body_of is not None:
+            made = hidden(made, body_of)
         if written and any(map(_takes_keywords, made[1])):
             return expression(call_of("lispify"), made)  # the caller passes keywords as objects
         return made
@@ -184,12 +204,13 @@ class Translation:
     def block(self, name, *forms):
         if name is not None and name.package is None:  # the expander's own
             leave = self.variable(name)
-        elif name is None and any(_mentions(form, self, LEAVE) for form in forms):
+        elif name is None and any(_mentions(form, self, word) for form in forms for word in (LEAVE, RETURN)):
             leave = LEAVE
         else:
             return self.progn(*forms)
         # no try in place: Hy runs its statements before the arguments that stand before it
-        return expression(call_of("block"), expression(word("fn"), models.List([leave]), *self.body(forms)))
+        around = expression(word("fn"), models.List([leave]), *self.body(forms))
+        return expression(call_of("block"), hidden(around, "block" if self.is_definition else self.operator.name.lower()))
 
     def return_from(self, name, value=None):
         return expression(self.variable(name), self.hy(value))
@@ -211,7 +232,7 @@ class Translation:
         before = self.local_functions
         pairs = []
         for name, parameters, *body in functions or ():
-            pairs += [self.variable(name), self.lambda_(parameters, *body)]
+            pairs += [self.variable(name), self.function_of(parameters, body)]
             binds(self.compiler, hy.mangle(pairs[-2]))
             if name.package is not None:  # the user may write cut:cont for cont
                 for prefix in map(str.lower, name.package.names):
@@ -226,7 +247,10 @@ class Translation:
     def list_(self, *forms):
         made = None
         for form in reversed(forms):
-            made = expression(call_of("Cons"), self.hy(form), made)
+            item = self.hy(form)
+            if isinstance(form, Symbol) and form.name.startswith("?"):  # a variable in a designator
+                item = expression(call_of("as-lisp"), item)
+            made = expression(call_of("Cons"), item, made)
         return models.as_model(made)
 
     def funcall(self, function, *arguments):
@@ -256,7 +280,7 @@ class Translation:
         return expression(word("do"), *outer, expression(word("setv"), made, self.hy(value)), expression(word("setv"), target, made), made)
 
     def defun(self, name, parameters, *forms):
-        definition = expression(word("defn"), self.variable(name), *self.lambda_(parameters, *forms)[1:])
+        definition = expression(word("defn"), self.variable(name), *self.function_of(parameters, forms)[1:])
         return expression(word("do"), definition, expression(call_of("publish"), constant_form(name), self.variable(name)))
 
     def use_package(self, name):
@@ -314,6 +338,10 @@ def _is_declaration(form):
     return isinstance(form, Cons) and form.car is sym("DECLARE")
 
 
+def _is_fresh(parameter):
+    return isinstance(parameter, Symbol) and parameter.package is None
+
+
 def _rest_parameter(lambda_list):
     items = list(lambda_list or ())
     for item, after in zip(items, items[1:]):
@@ -344,9 +372,11 @@ def _model_mentions(model, name):
 
 def expand(compiler, operator, arguments, call, form):
     """The Hy model that a call of ``operator`` stands for, of which `lisp_call` has made ``call`` and the Lisp ``form``."""
+    if operator.name == "PAR" and not arguments:  # nothing is done at once; Lisp's PAR has an error that Python's `par` has not
+        return word("None")
     ensure_loaded()
     expansion, _ = macroexpand_1(form)
-    made = Translation(compiler, call).hy(expansion)
+    made = Translation(compiler, call, operator).hy(expansion)
     if operator.name in VARIABLES and arguments and isinstance(arguments[0], models.Symbol):
         return expression(word("do"), expression(word("setv"), arguments[0], made), arguments[0])
     return made

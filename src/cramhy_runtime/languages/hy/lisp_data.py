@@ -32,6 +32,9 @@ USED = (
 )
 """The packages that the package of a Hy module uses. Where two of them have different symbols of one name, the first counts."""
 
+DESIGNATORS = ("A", "AN", "ALL")
+"""The operators that make designators."""
+
 _chosen: dict[str, str] = per_image({})
 """Module → the package that it chose."""
 
@@ -41,7 +44,12 @@ _constants: dict[str, object] = per_image({})
 
 def package_of(module):
     """The Lisp package of the Hy module of that name; it is made when there is none."""
-    return plan_package(_chosen.get(module) or default_package_name(module))
+    return plan_package(package_name(module))
+
+
+def package_name(module):
+    """The name of that package."""
+    return _chosen.get(module) or default_package_name(module)
 
 
 def default_package_name(module):
@@ -98,19 +106,30 @@ def lisp_data(model, package):
 
 def refuse_code(model):
     """Raise ValueError if a model is read as a list, and looks as if it were evaluated: ``~n`` without a backquote, ``?pose.x``."""
-    if _is_call_of("unquote", model) or _is_call_of("unquote-splice", model):
+    if is_call_of("unquote", model) or is_call_of("unquote-splice", model):
         raise ValueError(f"{written(model)} is evaluated in a template only, behind a backquote: `(a ~b)")
-    if isinstance(model, models.Expression) and len(model) > 2 and model[0] == models.Symbol(".") and str(model[1]).startswith("?"):
+    if is_dotted(model) and str(model[1]) != "None":
         raise ValueError(f"{written(model)} is no Lisp data: attributes are not evaluated in it; give the value a variable first")
+
+
+def is_dotted(model):
+    """Whether a model is an attribute, ``pose.x``."""
+    return isinstance(model, models.Expression) and len(model) > 2 and model[0] == models.Symbol(".")
+
+
+def own_symbol(symbol):
+    """``symbol``, or one of that name in no package if it is Lisp's or ours: a function ``list`` of Hy must not be that of Lisp."""
+    built_in = symbol.package is not None and symbol.package.built_in
+    return Symbol(symbol.name) if built_in else symbol
 
 
 def refuse_code_in_designator(parts):
     """Raise ValueError if in the parts of a designator, or deeper, stands code: only ``?variables`` are evaluated there."""
     for model in parts:
         code = isinstance(model, (models.FString, models.Dict, models.Set, models.Bytes))
-        dotted = isinstance(model, models.Expression) and len(model) > 2 and model[0] == models.Symbol(".")
-        if code or dotted or _is_call_of("unquote", model) or _is_call_of("unquote-splice", model):
-            value = hy.repr(model[1]).removeprefix("'") if _is_call_of("unquote", model) else written(model)
+        dotted = is_dotted(model)
+        if code or dotted or is_call_of("unquote", model) or is_call_of("unquote-splice", model):
+            value = hy.repr(model[1]).removeprefix("'") if is_call_of("unquote", model) else written(model)
             kind = _KINDS.get(type(model), "attribute" if dotted else "~ without a backquote")
             raise ValueError(
                 f"{written(model)} is not evaluated in a designator ({kind}): only ?variables are. "
@@ -118,6 +137,19 @@ def refuse_code_in_designator(parts):
             )
         if isinstance(model, models.Sequence):
             refuse_code_in_designator(model)
+
+
+def refuse_case(model, names=None):
+    """Raise ValueError if two names in a list of Lisp data differ by case only: Lisp has one symbol for both."""
+    names = {} if names is None else names
+    if isinstance(model, models.Symbol):
+        other = names.setdefault(str(model).upper(), str(model))
+        if other != str(model):
+            raise ValueError(f"{other} and {model} differ by case only, and to Lisp they are one name; give one of them another name")
+    elif isinstance(model, (models.Expression, models.List, models.Tuple)):
+        if not (is_call_of("unquote", model) or is_call_of("unquote-splice", model)):
+            for part in model:
+                refuse_case(part, names)
 
 
 _KINDS = {models.FString: "f-string", models.Dict: "dict", models.Set: "set", models.Bytes: "bytes"}
@@ -142,44 +174,71 @@ def inserted(value, package):
 # --------------------------------------------------------------------------------------------------------------- backquotes
 
 
+def is_quoted(model):
+    """Whether a model is data as it stands, ``'(a b)``."""
+    return is_call_of("quote", model)
+
+
 def is_backquoted(model):
     """Whether a model is a template, `` `(a ~b)``."""
-    return _is_call_of("quasiquote", model)
+    return is_call_of("quasiquote", model)
 
 
-def _is_call_of(name, model):
+def is_call_of(name, model):
+    """Whether ``model`` is ``(name part)``."""
     return isinstance(model, models.Expression) and len(model) == 2 and model[0] == models.Symbol(name)
 
 
-def template_form(model, package):
-    """A Hy form for the Lisp data that a template means: what stands behind ``~`` is evaluated, what stands behind ``~@`` is spliced in."""
-    if _is_call_of("unquote", model):
-        return insertion("inserted", model[1], package)
+def template_form(model, package, functor=None):
+    """A Hy form for the Lisp data that a template means: what stands behind ``~`` is evaluated, what stands behind ``~@`` is spliced in.
+
+    functor: in the template of a goal, the Hy form for the functor of the goal around; ``NO_FUNCTOR`` where there is none.
+    """
+    if is_call_of("unquote", model):
+        return insertion("inserted" if functor is None else "in-goal", model[1], package, functor)
     if not _has_insertions(model):
         return constant_form(lisp_data(model, package))
     items, tail = list(model), None
+    if functor is not None:
+        functor = _functor_of(items, package, functor)
     if len(items) > 2 and items[-2] == models.Symbol(".") and items[0] != models.Symbol("."):
         items, tail = items[:-2], items[-1]
-    parts = [_part(item, package) for item in items]
+    parts = [_part(item, package, functor) for item in items]
     if tail is None:
         return models.Expression([call_of("lisp-list"), *parts])
-    return models.Expression([call_of("lisp-list-ending"), template_form(tail, package), *parts])
+    return models.Expression([call_of("lisp-list-ending"), template_form(tail, package, functor), *parts])
 
 
-def _part(item, package):
-    if _is_call_of("unquote-splice", item):
-        return models.Expression([models.Symbol("unpack-iterable"), insertion("spliced", item[1], package)])
-    return template_form(item, package)
+NO_FUNCTOR = models.Symbol("None")
 
 
-def insertion(function, code, package):
+def _functor_of(items, package, outer):
+    """The Hy form for the functor of a list in a goal: its first symbol. What a function gets is the function's at any depth."""
+    if not isinstance(items[0], models.Symbol):
+        return outer if _is_functions(outer) else NO_FUNCTOR
+    found = symbol_of(str(items[0]), package)
+    return outer if _is_functions(outer) or not isinstance(found, Symbol) else constant_form(found)
+
+
+def _is_functions(functor):
+    return any(str(part).endswith(("|LISP-FUN|", "|LISP-PRED|")) for part in functor) if isinstance(functor, models.Expression) else False
+
+
+def _part(item, package, functor):
+    if is_call_of("unquote-splice", item):
+        spliced = insertion("spliced" if functor is None else "spliced-in-goal", item[1], package, functor)
+        return models.Expression([models.Symbol("unpack-iterable"), spliced])
+    return template_form(item, package, functor)
+
+
+def insertion(function, code, package, *functor):
     """A Hy form that evaluates ``code`` and makes Lisp data of its value, by the function of `calls` that is named."""
-    return models.Expression([call_of(function), code, models.String(package.name)])
+    return models.Expression([call_of(function), code, models.String(package.name), *(each for each in functor if each is not None)])
 
 
 def _has_insertions(model):
     if isinstance(model, (models.Expression, models.List, models.Tuple)):
-        return _is_call_of("unquote", model) or _is_call_of("unquote-splice", model) or any(map(_has_insertions, model))
+        return is_call_of("unquote", model) or is_call_of("unquote-splice", model) or any(map(_has_insertions, model))
     return False
 
 
@@ -216,6 +275,46 @@ BRANCHING = "TOP-LEVEL NAMED-TOP-LEVEL PAR PURSUE TRY-ALL TRY-IN-ORDER TRY-EACH-
 """The functions of CRAMHY that raise what a branch failed with: in Hy it is the exception that the branch raised."""
 
 
+GOALS = ("PROLOG", "RETE-ASSERT", "RETE-RETRACT", "RETE-HOLDS", "RETE-PROVE")
+"""Functions whose first argument is a goal, a fact or a pattern of facts, or a list of them."""
+GIVE_LISTS = {
+    "CRAM-PROLOG": ("PROLOG", "RETE-HOLDS", "RETE-PROVE"),
+    "CRAM-UTILITIES": (
+        "FORCE-LL",
+        "LAZY-APPEND",
+        "LAZY-CDR",
+        "LAZY-FILTER",
+        "LAZY-FLATTEN",
+        "LAZY-MAPCAN",
+        "LAZY-MAPCAR",
+        "LAZY-RESTS",
+        "LAZY-SKIP",
+        "LAZY-TAKE",
+    ),
+    "CRAM-DESIGNATORS": ("DESIG-PROP-VALUES", "GET-ALL-DESIGNATORS"),
+}
+"""Package → the functions that give a list: ``nil`` is an empty one for Hy."""
+TAKE_LISTS = {"CRAM-UTILITIES": ("LAZY-CAR", "LAZY-ELT", "LAZY-FOLD", "LAZY-LIST-P")}
+"""Package → the functions that only take lists."""
+
+
+def is_about_lists(package, name):
+    """Whether Hy calls the function ``name`` of ``package`` by `list_function`."""
+    return name in GIVE_LISTS.get(package, ()) or name in TAKE_LISTS.get(package, ())
+
+
+FOR_PYTHON = {
+    ("CRAM-LANGUAGE", "WAIT-FOR"): "wait-for",
+    ("CRAM-LANGUAGE-IMPLEMENTATION", "WAIT-FOR"): "wait-for",
+    ("ROSLISP", "CALL-SERVICE"): "call-service",
+    ("ROSLISP", "PUBLISH"): "publish-message",
+    ("ROSLISP", "GET-PARAM"): "get-param",
+    ("ROSLISP", "SET-PARAM"): "set-param",
+    ("ROSLISP", "HAS-PARAM"): "has-param",
+}
+"""Functions that ask more of their arguments, or give other values, in Hy and Python than in Lisp → their names in ``calls``."""
+
+
 def call_of(name):
     """A Hy form for what `calls` calls ``name``."""
     return _ours("calls", name)
@@ -226,9 +325,13 @@ def _ours(*path):
 
 
 def function_form(package, name):
-    """A Hy form for the function that a symbol of a package of ours names now."""
+    """A Hy form for the function that a symbol of a package of ours names now, or for the one that Python has in its place."""
+    if (package, name) in FOR_PYTHON:
+        return call_of(FOR_PYTHON[package, name])
     if name != name.upper() or "_" in name or "." in name or "." in package:
         return models.Expression([call_of("function"), models.String(package), models.String(name)])
+    if is_about_lists(package, name):
+        return _ours("calls", "lists", package.lower(), name.lower())
     if package == "CRAMHY" and name in BRANCHING:
         return _ours("branching", name.lower())
     symbol = _ours("symbols", package.lower(), name.lower())

@@ -14,7 +14,7 @@ from weakref import WeakKeyDictionary
 from hy import models
 
 from .. import kept_hy
-from . import calls, plan_code
+from . import calls, operator_bodies, plan_code
 from .users_names import variables
 
 _WORD = re.compile(r"[^\W_]+")
@@ -70,19 +70,21 @@ def compiled(compiler, form):
     finally:
         names.at_work = False
     if not _is_lisp(form):
+        operator_bodies.settle(made.stmts, vars(compiler.module).keys() | getattr(compiler.scope, "defined", set()))
         plan_code.complete(made.stmts, lambda name: str(_ours(names, "calls", name)))
     return names.assigned_before(made, compiler, form)
 
 
-def at_prompt(module):
-    """What gives `plan_code.complete` the names of ``module``, which has a prompt."""
+def complete_at_prompt(statements, module):
+    """Finish the syntax tree of a text that was typed at a prompt of ``module``, as `compiled` does with the forms of a file."""
 
     def name(path):
         found = f"_cramhy_{path}"
         vars(module)[found] = getattr(calls, path)
         return found
 
-    return name
+    operator_bodies.settle([statements], vars(module).keys())
+    plan_code.complete([statements], name)
 
 
 def _is_lisp(form):
@@ -143,6 +145,6 @@ def _attribute(value, *path):
     return models.Expression([models.Symbol("."), value, *path])
 
 
-MACROS = {"_ours": ours, "_constant": constant}
+MACROS = {"_ours": ours, "_constant": constant, **operator_bodies.MACROS}
 
-__all__ = ["MACROS", "at_prompt", "binds", "compiled", "if_global", "is_bound"]
+__all__ = ["MACROS", "binds", "compiled", "complete_at_prompt", "if_global", "is_bound"]

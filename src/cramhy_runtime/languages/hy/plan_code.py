@@ -1,4 +1,4 @@
-"""What the loops and the ``finally`` of a Hy program have beside what they say: a checkpoint, and a shield.
+"""What the loops, the ``finally`` and the ``match`` of a Hy program have beside what they say: a checkpoint, a shield, keywords of Lisp.
 
 A task is preempted, and asked to end, at park points and checkpoints. Compiled Common Lisp has a checkpoint in each turn of a loop, and
 its cleanup forms are shielded (law 2). Hy knows of neither. So each syntax tree that Hy's compiler has made is gone through before
@@ -6,7 +6,8 @@ Python compiles it:
 
 * ``while`` and ``for`` take one of ``budget.ticks`` in each turn, as loops of Lisp do, which costs Python some nanoseconds;
 * what stands in ``finally`` stands in a `kernel.cleanup`, which no request to end interrupts. A generator that yields there is left
-  alone: a shield must not stay up while its caller goes on.
+  alone: a shield must not stay up while its caller goes on;
+* the pattern ``:driving`` in ``match`` fits what is equal to the keyword, see `keywords`.
 
 Comprehensions stay as they are, since Python has no place for a statement in them.
 """
@@ -15,6 +16,8 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Iterable
+
+from . import keywords
 
 _LOOPS = (ast.While, ast.For)
 _TRIES = (ast.Try, getattr(ast, "TryStar", ast.Try))
@@ -26,7 +29,7 @@ Names = Callable[[str], str]
 
 
 def complete(trees: Iterable[ast.AST], names: Names) -> None:
-    """Give the loops and the ``finally`` in ``trees`` what they lack."""
+    """Give the loops, the ``finally`` and the ``match`` in ``trees`` what they lack."""
     for tree in trees:
         _complete(tree, names, False)
 
@@ -36,7 +39,9 @@ def _complete(node, names, in_a_class):
     inside = isinstance(node, ast.ClassDef) or in_a_class and not isinstance(node, _FUNCTIONS)
     for child in ast.iter_child_nodes(node):
         _complete(child, names, inside)
-    if isinstance(node, _LOOPS):
+    if isinstance(node, ast.match_case):
+        node.pattern = keywords.patterns(lambda: names("keyword_values")).visit(node.pattern)
+    elif isinstance(node, _LOOPS):
         node.body.insert(0, _at(node, _call(names("checkpoint")) if in_a_class else _turn(names)))
     elif isinstance(node, _TRIES) and node.finalbody and not _yields(node.finalbody):
         node.finalbody = [_at(node.finalbody[0], _shielded(names, node.finalbody))]

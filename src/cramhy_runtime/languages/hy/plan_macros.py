@@ -23,17 +23,23 @@ from cramhy_runtime.ground.packages import find_package, registered
 from ..operators import OPERATORS, operator_of
 from ..operators.declaration import hy_shape
 from ..operators.grammar import WrongShape
-from . import calls
+from . import calls, properties
 from .call_parts import lisp_call
 from .expansion import expand, expression, word
+from .goal_functions import named
 from .lisp_data import (
+    DESIGNATORS,
+    GOALS,
+    NO_FUNCTOR,
     call_of,
     constant_form,
     function_form,
     insertion,
     is_backquoted,
+    is_quoted,
     lisp_data,
     package_of,
+    refuse_case,
     refuse_code_in_designator,
     template_form,
 )
@@ -61,17 +67,6 @@ WITHOUT_PREFIX = (
 )
 """The packages whose names are known as they are. Where two of them have one name, the first counts."""
 
-DESIGNATORS = ("A", "AN", "ALL")
-FOR_PYTHON = {
-    ("CRAM-LANGUAGE", "WAIT-FOR"): "wait-for",
-    ("CRAM-LANGUAGE-IMPLEMENTATION", "WAIT-FOR"): "wait-for",
-    ("ROSLISP", "PUBLISH"): "publish-message",
-    ("ROSLISP", "GET-PARAM"): "get-param",
-    ("ROSLISP", "SET-PARAM"): "set-param",
-    ("ROSLISP", "HAS-PARAM"): "has-param",
-}
-"""Functions that ask more of their arguments, or give other values, in Hy and Python than in Lisp → their names in ``calls``."""
-
 WITH_PREFIX = (*WITHOUT_PREFIX, "CRAM-LANGUAGE-IMPLEMENTATION", "ACTIONLIB-LISP", "CL-TRANSFORMS-STAMPED", "TURTLESIM")
 
 
@@ -93,6 +88,10 @@ def operator_macro(operator, body=None):
         try:
             if operator.name in DESIGNATORS:
                 refuse_code_in_designator(arguments)
+                refuse_case(models.List(arguments))
+                arguments = properties.in_designator(arguments)
+            elif operator.name == "WITH-DESIG-PROPS" and isinstance(arguments[0], models.Sequence):
+                arguments = (models.List(map(properties.key, arguments[0])), *arguments[1:])
             call, form = lisp_call(operator, arguments, package_of(_hy_compiler.module.__name__))
             if body is not None:
                 return with_places(body(_hy_compiler, *arguments), written)
@@ -154,15 +153,21 @@ def function_macro(symbol, name=None):
 
     def macro(_hy_compiler, *arguments):
         _tell_prompt(_hy_compiler.module)
-        here = package_of(_hy_compiler.module.__name__)
+        here, names = package_of(_hy_compiler.module.__name__), {}
+        if lisp_name in GOALS and arguments and (is_quoted(arguments[0]) or is_backquoted(arguments[0])):
+            arguments = (models.Expression([arguments[0][0], named(arguments[0][1], names)]), *arguments[1:])
+        local = name is not None and is_bound(_hy_compiler, mangle(name))  # of the operator around: it takes keywords as objects
         try:
-            made = lisp_arguments(symbol.function, arguments, here)
+            arguments = properties.in_call(lisp_name, arguments)
+            made = lisp_arguments(symbol.function, arguments, here, NO_FUNCTOR if lisp_name in GOALS else None, all_objects=local)
         except (ValueError, Condition) as problem:
             raise refusal(_hy_compiler, _hy_compiler.this, str(problem)) from None
-        if lisp_name in OF_GOALS and made and made[0] is arguments[0]:
+        if lisp_name in GOALS and made:
+            made[0] = insertion("in-goal", made[0], here, NO_FUNCTOR) if made[0] is arguments[0] else asked(made[0], names, here)
+        elif lisp_name == "VAR-VALUE" and made and made[0] is arguments[0]:
             made[0] = insertion("inserted", made[0], here)
-        theirs = name is not None and (may_be_the_users(name, _hy_compiler) or is_bound(_hy_compiler, mangle(name)))
-        function = call_of(FOR_PYTHON[package, lisp_name]) if (package, lisp_name) in FOR_PYTHON else function_form(package, lisp_name)
+        theirs = local or name is not None and may_be_the_users(name, _hy_compiler)
+        function = function_form(package, lisp_name)
         if any(map(_is_keyword, made)) and not calls.takes_keywords(symbol.function):
             if theirs or any(map(_is_mapping, made)):
                 function = expression(call_of("function"), models.String(package), models.String(lisp_name))
@@ -173,10 +178,6 @@ def function_macro(symbol, name=None):
 
     macro.symbol = symbol  # for the Tab key
     return macro
-
-
-OF_GOALS = {"PROLOG", "VAR-VALUE"}
-"""Functions whose first argument is a goal or a variable of one, which Hy code may have made as a model or as lists."""
 
 
 def _users_or(function, name, compiler):
@@ -208,28 +209,41 @@ def _with_keyword_objects(arguments, package):
     return others + keywords
 
 
-def lisp_arguments(function, arguments, package):
-    """Hy models for the arguments of a function of ours: quoted data is Lisp's, a keyword in the place of a parameter is an object."""
-    positional = _positional(function)
+def lisp_arguments(function, arguments, package, functor=None, all_objects=False):
+    """Hy models for the arguments of a function of ours: quoted data is Lisp's, a keyword in the place of a parameter is an object.
+
+    functor: as of `template_form`, for the functions of goals. all_objects: whether each keyword is an object.
+    """
+    positional = len(arguments) if all_objects else _positional(function)
     made, position, rest = [], 0, list(arguments)
     while rest:
         argument = rest.pop(0)
         if isinstance(argument, models.Keyword):
             if position >= positional and rest:
-                made += [argument, _argument(rest.pop(0), package)]
+                made += [argument, _argument(rest.pop(0), package, functor)]
                 continue
-        made.append(_argument(argument, package))
+        made.append(_argument(argument, package, functor))
         position += 1
     return made
 
 
-def _argument(model, package):
+def _argument(model, package, functor=None):
     """An argument that is an object of Lisp as it stands, a quoted name or a keyword, as a constant; any other as it is."""
-    if isinstance(model, models.Expression) and len(model) == 2 and model[0] == models.Symbol("quote"):
+    if is_quoted(model) or is_backquoted(model):
+        refuse_case(model[1])
+    if is_quoted(model):
         return constant_form(lisp_data(model[1], package))
     if is_backquoted(model):
-        return template_form(model[1], package)
+        return template_form(model[1], package, functor)
     return constant_form(lisp_data(model, package)) if isinstance(model, models.Keyword) else model
+
+
+def asked(form, names, package):
+    """``form``, which makes a goal, with the functions of Hy that ``lisp-fun`` calls in it: ``names``, as `named` has found them."""
+    for symbol, function in names.items():
+        meant = expression(word("fn"), models.List(), function)
+        form = expression(call_of("asking"), form, constant_form(lisp_data(symbol, package)), meant)
+    return form
 
 
 def _positional(function):

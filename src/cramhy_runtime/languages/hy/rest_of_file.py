@@ -2,12 +2,13 @@
 
 Hy compiles a whole file before anything in it runs. Common Lisp loads a file form by form, so a form may need what an earlier one
 did: ``(asdf:load-system :my-plans)`` makes the package in whose name the next form calls. What follows such a form is therefore loaded
-when its turn comes, and so is a form that cannot be read or compiled ahead, with all that follows it. If it is wrong, the error comes
-where ``cramhy run`` gives it: after what the forms before it have printed.
+when its turn comes, and so is a form that cannot be read or compiled ahead, with all that follows it, up to ``(in-hy)`` at the beginning
+of a line if there is one. If it is wrong, the error comes where ``cramhy run`` gives it: after what the forms before it have printed.
 """
 
 from __future__ import annotations
 
+import re
 from contextlib import contextmanager
 
 from hy import models, read
@@ -17,6 +18,7 @@ from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import is_symbol, symbol_name
 
 from ..commonlisp.compiler import compilation_unit
+from ..commonlisp.reader.reader import incomplete
 from ..commonlisp.systems import loader
 
 _LOADING = {"LOAD", "LOAD-SYSTEM", "REQUIRE", "QUICKLOAD", "OPERATE", "OOS", "TEST-SYSTEM"}
@@ -37,7 +39,7 @@ class Ahead:
         self.reader = reader
         self.start = None
         self.unit = compilation_unit.CompilationUnit("file") if before is None else before.unit
-        self.whole = True
+        self.whole = before is None or before.whole
 
     @property
     def known(self):
@@ -56,10 +58,11 @@ class Ahead:
         self.start = self.reader.offset
 
     def rest(self, after=False):
-        """The Hy form that loads the text from the last form on, or what comes after it, when the module runs. Nothing more is read."""
+        """The Hy form that loads the text from the last form on, or what comes after it, when the module runs. Only ``(in-hy)`` is read."""
         start = self.reader.offset if after else self.start
-        text, (line, column) = self.reader.text[start:], self.reader.place(start)[:2]
-        self.start, self.whole, self.reader.offset = None, False, len(self.reader.text)
+        end = _end_of_lisp(self.reader.text, start)
+        text, (line, column) = self.reader.text[start:end], self.reader.place(start)[:2]
+        self.start, self.whole, self.reader.offset = None, False, end
         if not text.strip():
             return models.Symbol("None")
         where = models.String(text), models.String(self.reader.filename), models.Integer(line), models.Integer(column)
@@ -70,6 +73,17 @@ class Ahead:
         with self.noticing():
             self.unit.settle(undefined=self.whole)
         self.unit.show()
+
+
+def _end_of_lisp(text, start):
+    """Where Lisp that begins at ``start`` ends: before ``(in-hy)`` at the beginning of a line, and not in a form, string or comment."""
+    for found in _WAY_BACK.finditer(text, start):
+        if not incomplete(text[start : found.start()]):
+            return found.start()
+    return len(text)
+
+
+_WAY_BACK = re.compile(r"^\(in-hy\)", re.M | re.I)
 
 
 def load_rest(text, filename, line, column):

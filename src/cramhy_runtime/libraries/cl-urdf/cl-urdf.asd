@@ -1,4 +1,7 @@
 (defsystem "cl-urdf"
-  :description "Descriptions of robots and furniture, read from URDF: links, joints, limits, shapes."
+  :description "Descriptions of robots and furniture, read from URDF: links, joints, limits, shapes, materials."
   :depends-on ("cl-transforms")
-  :components ((:file "cl-urdf")))
+  :serial t
+  :components ((:file "package")
+               (:file "parts")
+               (:file "robot")))

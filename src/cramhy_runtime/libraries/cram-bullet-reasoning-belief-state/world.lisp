@@ -26,11 +26,11 @@
 
 (defun robot-urdf ()
   (or *robot-urdf*
-      (setf *robot-urdf* (robot-world:read-description (substitute #\Space #\\ (parameter-text *robot-parameter* (robot-file))) *robot-parameter*))))
+      (setf *robot-urdf* (cl-urdf::read-robot (substitute #\Space #\\ (parameter-text *robot-parameter* (robot-file))) *robot-parameter*))))
 
 (defun kitchen-urdf ()
   (or *kitchen-urdf*
-      (setf *kitchen-urdf* (robot-world:read-description (parameter-text *kitchen-parameter* "kitchen.urdf") *kitchen-parameter*))))
+      (setf *kitchen-urdf* (cl-urdf::read-robot (parameter-text *kitchen-parameter* "kitchen.urdf") *kitchen-parameter*))))
 
 (defun there (type name &rest arguments)
   "The object of that name in the current world, which is added at the origin where there is none."

@@ -1,6 +1,6 @@
 (defsystem "cram-bullet-reasoning"
   :description "Worlds of robots and objects, and reasoning about them: what lies where, touches, stands, is seen."
-  :depends-on ("cl-bullet" "cl-bullet-vis" "cram-physics-utils" "cram-prolog" "cram-occasions-events" "cram-designators" "roslisp" "cram-utilities" "cl-transforms-stamped" "cram-robot-interfaces" "cram-tf")
+  :depends-on ("cl-bullet" "cl-bullet-vis" "cram-physics-utils" "cl-urdf" "cram-prolog" "cram-occasions-events" "cram-designators" "roslisp" "cram-utilities" "cl-transforms-stamped" "cram-robot-interfaces" "cram-tf")
   :serial t
   :components ((:file "package")
                (:file "world")

@@ -82,7 +82,7 @@
     (robot-world:add-shape world name :cylinder (list radius height) (ensure-pose pose) :mass mass :color color :types '(:generic-cup)))
   (:method (world (type (eql :urdf)) name pose &key urdf color (collision-group :character-filter) collision-mask compound)
     (declare (ignore collision-mask compound))
-    (robot-world:add-description world name (if (stringp urdf) (robot-world:read-description urdf) urdf) (ensure-pose pose)
+    (robot-world:add-description world name (description-in-world urdf) (ensure-pose pose)
                                  :color color :fixed (eq collision-group :static-filter)))
   (:method (world type name pose &key (mass 0.2) size radius color)
     (cond (size
@@ -94,6 +94,10 @@
           (t
            (error "There is no object of type ~s. There are ~{~s~^, ~}, and :box, :sphere, :cylinder, :cone, :static-plane, :mesh and :urdf."
                   type (robot-world:object-types))))))
+
+(defun description-in-world (urdf)
+  "What a world takes of URDF: a text, a robot of CL-URDF with what a program has changed of it, or a description of ROBOT-WORLD."
+  (cl-urdf::description-of (if (stringp urdf) (cl-urdf:parse-urdf urdf) urdf)))
 
 (defun add-half-lengths (world name type size pose mass color)
   "Add an item of a kind whose size is given as half its lengths: a cylinder where things of the kind are round, else a box."

@@ -40,7 +40,7 @@
 
 (defun joint-above (robot link)
   "The name of the nearest joint that moves LINK, nil when there is none."
-  (loop with joints = (robot-world:description-joints (urdf robot))
+  (loop with joints = (joints-in-file robot)
         for joint = (find link joints :key #'fourth :test #'equal) then (find (third joint) joints :key #'fourth :test #'equal)
         while joint
         unless (eq (second joint) :fixed) return (first joint)))

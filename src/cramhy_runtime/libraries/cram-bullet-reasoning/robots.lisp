@@ -3,8 +3,12 @@
 (in-package #:cram-bullet-reasoning)
 
 (defun urdf (robot)
-  "The description of ROBOT."
-  (robot-world:machine-description robot))
+  "The description of ROBOT, an object of CL-URDF."
+  (cl-urdf::robot-of (robot-world:machine-description robot)))
+
+(defun joints-in-file (robot)
+  "What `robot-world:description-joints' tells of ROBOT."
+  (robot-world:description-joints (robot-world:machine-description robot)))
 
 (defun joint-names (robot)
   "The names of the joints of ROBOT that move."
@@ -69,13 +73,13 @@
 
 (defun root-link (robot)
   "The link of ROBOT that no joint leads to."
-  (loop with children = (mapcar #'fourth (robot-world:description-joints (urdf robot)))
+  (loop with children = (mapcar #'fourth (joints-in-file robot))
         for link in (link-names robot)
         unless (member link children :test #'equal) return link))
 
 (defun moved-links (robot)
   "The links of ROBOT that a joint moves, from the root on."
-  (loop for (nil type nil child) in (robot-world:description-joints (urdf robot))
+  (loop for (nil type nil child) in (joints-in-file robot)
         unless (eq type :fixed) collect child))
 
 (defun calculate-pan-tilt (robot pan-link tilt-link pose)

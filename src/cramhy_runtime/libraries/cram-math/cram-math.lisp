@@ -1,20 +1,24 @@
-;;;; cram-math: angles, vectors and matrices of double-floats, distributions and colours, as robot plans use them. Indices of matrices are
-;;;; row and column; vectors are one-dimensional arrays.
+;;;; cram-math: matrices of double-floats, samples of distributions, polygons and angles, as CRAM's costmaps use them. Indices of matrices are
+;;;; row and column, sizes are width and height. A vector is a matrix that is one element wide.
 
 (defpackage #:cram-math
   (:use #:common-lisp)
   (:nicknames #:cma)
-  (:export #:degrees->radians #:radians->degrees #:normalize-angle #:angle-difference #:square #:clamp #:linear-interpolation
-           #:average #:mean #:variance #:standard-deviation #:covariance #:gauss #:sample-gauss #:2d-cov-ellipse
-           #:double-vector #:make-double-vector #:double-vector-sum #:double-vector-difference #:double-vector-product
-           #:scale-double-vector #:double-vector-norm
-           #:double-matrix #:make-double-matrix #:make-identity-matrix #:copy-double-matrix #:height #:width #:map-double-matrix
-           #:double-matrix-sum #:double-matrix-difference #:scale-double-matrix #:double-matrix-product #:double-matrix-transpose
-           #:double-matrix-determinant #:invert-double-matrix #:normalize-double-matrix
-           #:sample-from-distribution-matrix #:hsv->rgb #:rgb->hsv
-           #:invalid-probability-distribution))
+  (:export
+   ;; samples
+   #:sample #:sample-discrete #:sample-from-distribution-matrix #:invalid-probability-distribution
+   ;; matrices
+   #:double-matrix #:width #:height #:make-double-matrix #:make-double-vector #:double-vector-size #:fill-double-matrix
+   #:double-matrix-from-array #:double-matrix-from-grid #:grid-from-double-matrix #:mref #:map-double-matrix #:map-double-matrix-into
+   #:double-matrix-transpose #:double-matrix-product #:m.+ #:m.- #:m.* #:m./ #:m+ #:m- #:m* #:m/
+   ;; functions
+   #:determinant #:gauss #:average
+   ;; geometry
+   #:2d-point #:polygon #:point-in-polygon #:degrees->radians #:radians->degrees))
 
 (in-package #:cram-math)
+
+;;; ---------------------------------------------------------------------------------------------------------------- geometry
 
 (defun degrees->radians (degrees)
   "An angle in radians, a double-float."
@@ -24,117 +28,126 @@
   "An angle in degrees, a double-float."
   (* radians (/ 180 pi)))
 
-(defun normalize-angle (radians)
-  "The same angle between -pi (exclusive) and pi."
-  (let ((angle (mod radians (* 2 pi))))
-    (if (> angle pi) (- angle (* 2 pi)) angle)))
+(defclass 2d-point ()
+  ((x :initarg :x :reader x)
+   (y :initarg :y :reader y))
+  (:documentation "A point in the plane."))
 
-(defun angle-difference (from to)
-  "The angle by which one turns from FROM to TO, the shorter way: between -pi (exclusive) and pi."
-  (normalize-angle (- to from)))
+(defclass polygon ()
+  ((vertices :initarg :vertices :reader vertices :documentation "A vector of its corners, each a `2d-point', in their order."))
+  (:documentation "A polygon in the plane."))
 
-(defun square (number)
-  (* number number))
+(defmethod initialize-instance :after ((polygon polygon) &key (vertices nil given))
+  (unless given
+    (error "A polygon needs its corners: (make-instance 'polygon :vertices (list point ...))."))
+  (setf (slot-value polygon 'vertices) (coerce vertices 'vector)))
 
-(defun clamp (number low high)
-  "NUMBER, or the nearer one of LOW and HIGH when it is not between them."
-  (max low (min high number)))
-
-(defun linear-interpolation (from to share)
-  "The number between FROM (SHARE is 0) and TO (SHARE is 1)."
-  (+ from (* share (- to from))))
-
-(defun average (numbers)
-  "The mean of a sequence of numbers."
-  (/ (reduce #'+ numbers) (length numbers)))
+(defgeneric point-in-polygon (point polygon)
+  (:documentation "Whether POINT is inside of POLYGON.")
+  (:method ((point 2d-point) (polygon polygon))
+    ;; A ray from the point to greater x crosses the border an odd number of times.
+    (let* ((corners (vertices polygon)) (inside nil) (count (length corners)))
+      (dotimes (index count inside)
+        (let ((one (aref corners index)) (other (aref corners (mod (1- index) count))))
+          (when (and (not (eq (> (y one) (y point)) (> (y other) (y point))))
+                     (< (- (x point) (x one))
+                        (/ (* (- (x other) (x one)) (- (y point) (y one))) (- (y other) (y one)))))
+            (setf inside (not inside))))))))
 
 ;;; --------------------------------------------------------------------------------------------------------------- matrices
 
-(deftype double-vector (&optional (size '*)) `(simple-array double-float (,size)))
-(deftype double-matrix (&optional (height '*) (width '*)) `(simple-array double-float (,height ,width)))
-
-(defun make-double-vector (size &key (initial-element 0d0) initial-contents)
-  (if initial-contents
-      (map-into (make-array size :element-type 'double-float) (lambda (number) (float number 1d0)) initial-contents)
-      (make-array size :element-type 'double-float :initial-element (float initial-element 1d0))))
-
-(defun make-double-matrix (width height &key (initial-element 0d0) initial-contents)
-  "A matrix of HEIGHT rows and WIDTH columns; INITIAL-CONTENTS is a list of rows."
-  (let ((matrix (make-array (list height width) :element-type 'double-float :initial-element (float initial-element 1d0))))
-    (loop for row in initial-contents for y from 0
-          do (loop for number in row for x from 0 do (setf (aref matrix y x) (float number 1d0))))
-    matrix))
-
-(defun double-vector-sum (left right)
-  (map 'double-vector #'+ left right))
-
-(defun double-vector-difference (left right)
-  (map 'double-vector #'- left right))
-
-(defun double-vector-product (left right)
-  "The scalar product of two vectors."
-  (reduce #'+ (map 'vector #'* left right) :initial-value 0d0))
-
-(defun scale-double-vector (vector factor)
-  (map 'double-vector (lambda (number) (float (* number factor) 1d0)) vector))
-
-(defun double-vector-norm (vector)
-  "The length of VECTOR."
-  (sqrt (double-vector-product vector vector)))
+(deftype double-matrix () '(simple-array double-float (* *)))
 
 (defun height (matrix) (array-dimension matrix 0))
 (defun width (matrix) (array-dimension matrix 1))
 
-(defun map-double-matrix (function matrix)
-  "A matrix of what FUNCTION makes of each element."
-  (let ((result (make-double-matrix (width matrix) (height matrix))))
-    (dotimes (index (array-total-size matrix) result)
-      (setf (row-major-aref result index) (float (funcall function (row-major-aref matrix index)) 1d0)))))
+(defun leaves (contents)
+  "The numbers in CONTENTS, a list of lists, from left to right."
+  (if (listp contents) (mapcan #'leaves contents) (list contents)))
 
-(defun copy-double-matrix (matrix)
+(defun fill-double-matrix (matrix &key (initial-element nil given) initial-contents)
+  "Put INITIAL-ELEMENT everywhere into MATRIX, or INITIAL-CONTENTS, a list of rows or of all its elements. Returns MATRIX."
+  (check-type matrix double-matrix)
+  (cond (initial-contents
+         (loop for number in (leaves initial-contents) for index below (array-total-size matrix)
+               do (setf (row-major-aref matrix index) (float number 1d0))))
+        (given
+         (dotimes (index (array-total-size matrix))
+           (setf (row-major-aref matrix index) (float initial-element 1d0)))))
+  matrix)
+
+(defun make-double-matrix (width height &key initial-contents (initial-element 0.0d0))
+  "A matrix of HEIGHT rows and WIDTH columns; INITIAL-CONTENTS is a list of rows or of all elements."
+  (fill-double-matrix (make-array (list height width) :element-type 'double-float :initial-element (float initial-element 1d0))
+                      :initial-contents initial-contents))
+
+(defun make-double-vector (size &key initial-contents)
+  "A matrix of SIZE rows and one column."
+  (make-double-matrix 1 size :initial-contents initial-contents))
+
+(defun double-vector-size (vector)
+  "How many elements VECTOR has, a matrix of one column."
+  (assert (= (width vector) 1) () "A vector is a matrix of one column, and this one has ~D." (width vector))
+  (height vector))
+
+(defun map-double-matrix-into (result function &rest matrices)
+  "Put what FUNCTION makes of the elements of MATRICES at each place into RESULT, and return it."
+  (dotimes (index (array-total-size result) result)
+    (setf (row-major-aref result index)
+          (float (apply function (mapcar (lambda (matrix) (row-major-aref matrix index)) matrices)) 1d0))))
+
+(defun map-double-matrix (function &rest matrices)
+  "A matrix of what FUNCTION makes of the elements of MATRICES at each place."
+  (apply #'map-double-matrix-into (make-double-matrix (width (first matrices)) (height (first matrices))) function matrices))
+
+(defun double-matrix-from-array (array &optional out)
+  "A matrix with the elements of ARRAY, of one or two dimensions; one of one dimension becomes a vector. OUT: where to put them."
+  (let ((matrix (or out
+                    (ecase (array-rank array)
+                      (1 (make-double-vector (array-dimension array 0)))
+                      (2 (make-double-matrix (array-dimension array 1) (array-dimension array 0)))))))
+    (dotimes (index (array-total-size array) matrix)
+      (setf (row-major-aref matrix index) (float (row-major-aref array index) 1d0)))))
+
+(defun double-matrix-from-grid (grid &optional out)
+  "A matrix with the elements of GRID. Grids are arrays of two dimensions here."
+  (double-matrix-from-array grid out))
+
+(defun grid-from-double-matrix (matrix)
+  "A new grid with the elements of MATRIX. Grids are arrays of two dimensions here."
   (map-double-matrix #'identity matrix))
 
-(defun combine (function left right)
-  "A matrix of what FUNCTION makes of the elements of LEFT and RIGHT at each place."
-  (unless (equal (array-dimensions left) (array-dimensions right))
-    (error "Matrices of ~D x ~D and ~D x ~D elements do not fit." (height left) (width left) (height right) (width right)))
-  (let ((result (make-double-matrix (width left) (height left))))
-    (dotimes (index (array-total-size left) result)
-      (setf (row-major-aref result index)
-            (float (funcall function (row-major-aref left index) (row-major-aref right index)) 1d0)))))
+(defun double-matrix-transpose (matrix &optional (out (make-double-matrix (height matrix) (width matrix))))
+  "MATRIX with rows for columns, in OUT."
+  (dotimes (row (height matrix) out)
+    (dotimes (column (width matrix))
+      (setf (aref out column row) (aref matrix row column)))))
 
-(defun double-matrix-sum (left right) (combine #'+ left right))
-(defun double-matrix-difference (left right) (combine #'- left right))
-
-(defun scale-double-matrix (matrix factor)
-  (map-double-matrix (lambda (number) (* number factor)) matrix))
-
-(defun total (matrix)
-  (loop for index below (array-total-size matrix) sum (row-major-aref matrix index)))
-
-(defun normalize-double-matrix (matrix)
-  "A matrix in the same proportions whose elements have the sum 1, a distribution; a sum that is not positive is an error."
-  (let ((sum (total matrix)))
-    (unless (plusp sum)
-      (error "A matrix whose elements have the sum ~S is no distribution: the sum must be positive." sum))
-    (scale-double-matrix matrix (/ sum))))
-
-(defun double-matrix-transpose (matrix)
-  "MATRIX with rows for columns."
-  (let ((result (make-double-matrix (height matrix) (width matrix))))
-    (dotimes (y (height matrix) result)
-      (dotimes (x (width matrix))
-        (setf (aref result x y) (aref matrix y x))))))
-
-(defun double-matrix-product (left right)
-  "The product of two matrices; the width of LEFT must be the height of RIGHT."
+(defun double-matrix-product (left right &optional (out (make-double-matrix (width right) (height left))))
+  "The product of two matrices, in OUT; the width of LEFT must be the height of RIGHT."
   (unless (= (width left) (height right))
     (error "A matrix of ~D columns cannot be multiplied with one of ~D rows." (width left) (height right)))
-  (let ((result (make-double-matrix (width right) (height left))))
-    (dotimes (y (height left) result)
-      (dotimes (x (width right))
-        (setf (aref result y x)
-              (loop for k below (width left) sum (* (aref left y k) (aref right k x))))))))
+  (dotimes (row (height left) out)
+    (dotimes (column (width right))
+      (setf (aref out row column)
+            (loop for index below (width left) sum (* (aref left row index) (aref right index column)) of-type double-float)))))
+
+(macrolet ((with-number (name operator)
+             `(defun ,name (matrix number &optional (out (make-double-matrix (width matrix) (height matrix))))
+                ,(format nil "The matrix of (~A element NUMBER) for each element of MATRIX, in OUT." operator)
+                (map-double-matrix-into out (lambda (element) (,operator element number)) matrix)))
+           (with-matrix (name operator)
+             `(defun ,name (left right &optional (out (make-double-matrix (width left) (height right))))
+                ,(format nil "The matrix of (~A l r) for the elements of LEFT and RIGHT at each place, in OUT." operator)
+                (map-double-matrix-into out #',operator left right))))
+  (with-number m.+ +)
+  (with-number m.- -)
+  (with-number m.* *)
+  (with-number m./ /)
+  (with-matrix m+ +)
+  (with-matrix m- -)
+  (with-matrix m* *)
+  (with-matrix m/ /))
 
 (defun eliminate (matrix right)
   "Gauss's elimination with the greatest pivots, of MATRIX and RIGHT beside it, both changed. The determinant of MATRIX."
@@ -171,110 +184,62 @@
   (let ((matrix (make-double-matrix size size)))
     (dotimes (index size matrix) (setf (aref matrix index index) 1d0))))
 
-(defun double-matrix-determinant (matrix)
-  (eliminate (copy-double-matrix matrix) (make-identity-matrix (height matrix))))
+(defun determinant (matrix)
+  "The determinant of a square matrix."
+  (eliminate (map-double-matrix #'identity matrix) (make-identity-matrix (height matrix))))
 
-(defun invert-double-matrix (matrix)
-  "The inverse of MATRIX; one that has none is an error."
-  (let ((inverse (make-identity-matrix (height matrix))))
-    (when (zerop (eliminate (copy-double-matrix matrix) inverse))
+(defun invert-matrix (matrix)
+  "Two values: the inverse of MATRIX and its determinant; a matrix that has no inverse is an error."
+  (let* ((inverse (make-identity-matrix (height matrix)))
+         (determinant (eliminate (map-double-matrix #'identity matrix) inverse)))
+    (when (zerop determinant)
       (error "The matrix ~S has no inverse." matrix))
-    inverse))
+    (values inverse determinant)))
 
-;;; -------------------------------------------------------------------------------------------------------------- statistics
+;;; ------------------------------------------------------------------------------------------------------------ distributions
 
-(defun mean (samples)
-  "The vector of the means of SAMPLES, a list of vectors of one length."
-  (make-double-vector (length (first samples))
-                      :initial-contents (loop for index below (length (first samples))
-                                              collect (average (mapcar (lambda (sample) (elt sample index)) samples)))))
+(defun average (numbers)
+  "The mean of a sequence of numbers."
+  (/ (reduce #'+ numbers) (length numbers)))
 
-(defun variance (numbers)
-  "The mean of the squares of the distances from the mean, of a sequence of numbers."
-  (let ((middle (average numbers)))
-    (average (map 'list (lambda (number) (square (- number middle))) numbers))))
-
-(defun standard-deviation (numbers)
-  (sqrt (float (variance numbers) 1d0)))
+(defun gauss (covariance mean)
+  "A function of a vector: the density there of the normal distribution with this matrix of covariances and this mean, a vector."
+  (multiple-value-bind (inverse determinant) (invert-matrix covariance)
+    (let* ((size (double-vector-size mean))
+           (factor (/ (* (expt (* 2 pi) (/ size 2)) (sqrt determinant)))))
+      (lambda (point)
+        (let ((offset (m- point mean (make-double-vector size))))
+          (* factor (exp (* -0.5 (aref (double-matrix-product (double-matrix-transpose offset) (double-matrix-product inverse offset))
+                                       0 0)))))))))
 
 (define-condition invalid-probability-distribution (error) ()
   (:report "The probabilities are 0 everywhere, so that nothing can be drawn from them.")
   (:documentation "A distribution whose sum is 0."))
 
-(defun covariance (samples)
-  "The matrix of covariances of SAMPLES, a list of vectors of one length."
-  (let* ((size (length (first samples)))
-         (means (loop for index below size collect (average (mapcar (lambda (sample) (elt sample index)) samples))))
-         (matrix (make-double-matrix size size)))
-    (dotimes (y size matrix)
-      (dotimes (x size)
-        (setf (aref matrix y x)
-              (float (average (mapcar (lambda (sample)
-                                        (* (- (elt sample y) (nth y means)) (- (elt sample x) (nth x means))))
-                                      samples))
-                     1d0))))))
+(defun sample (variable probability &optional (max-retries 10000000))
+  "What VARIABLE, a function of a number from 0 to 1, gives for a random one, as often as PROBABILITY, a function of it, says, from 0 to 1."
+  (loop repeat max-retries
+        for drawn = (funcall variable (random 1.0d0))
+        when (<= (random 1.0d0) (funcall probability drawn)) do (return-from sample drawn))
+  (error "No sample was drawn in ~D trials: the probabilities are too small." max-retries))
 
-(defun gauss (covariance mean)
-  "A function of a vector: the density there of the normal distribution with this matrix of covariances and this mean."
-  (let* ((inverse (invert-double-matrix covariance))
-         (size (length mean))
-         (factor (/ (sqrt (* (expt (* 2 pi) size) (double-matrix-determinant covariance))))))
-    (lambda (point)
-      (let ((offset (map 'vector #'- point mean)))
-        (* factor
-           (exp (* -1/2 (loop for y below size
-                              sum (loop for x below size
-                                        sum (* (aref offset y) (aref inverse y x) (aref offset x)))))))))))
-
-(defun sample-gauss (mean standard-deviation)
-  "A random number of the normal distribution, by the method of Box and Muller."
-  (+ mean (* standard-deviation
-             (sqrt (* -2 (log (- 1d0 (random 1d0)))))
-             (cos (* 2 pi (random 1d0))))))
-
-(defun 2d-cov-ellipse (covariance)
-  "The ellipse of a 2 x 2 matrix of covariances: three values, half its greater axis, half its smaller one, and the angle of the former."
-  (let* ((a (aref covariance 0 0)) (b (aref covariance 0 1)) (c (aref covariance 1 1))
-         (middle (/ (+ a c) 2))
-         (distance (sqrt (+ (square (/ (- a c) 2)) (square b)))))
-    (values (sqrt (max 0d0 (+ middle distance)))
-            (sqrt (max 0d0 (- middle distance)))
-            (if (and (zerop b) (>= a c)) 0d0 (atan (- (+ middle distance) a) b)))))
+(defun sample-discrete (values-and-probabilities)
+  "A value of the list ((value . probability) ...) that is drawn by lot."
+  (let ((pairs (coerce values-and-probabilities 'vector)))
+    (car (sample (lambda (number) (aref pairs (truncate (* number (length pairs))))) #'cdr))))
 
 (defun sample-from-distribution-matrix (matrix)
   "The list (column row) of an element of MATRIX that is drawn by lot; its value is its chance against the others.
 No element may be negative. A matrix of zeros is an error."
-  (let ((left (random 1d0)) (sum (total matrix)))
+  (let* ((sum (loop for index below (array-total-size matrix) sum (row-major-aref matrix index)))
+         (left (* (random 1d0) sum)) (drawn nil))
     (unless (plusp sum)
-      (error "Nothing can be drawn from a matrix whose elements have the sum ~S: the sum must be positive." sum))
-    (setf left (* left sum))
-    (let ((drawn nil))
-      (dotimes (index (array-total-size matrix))
-        (let ((weight (row-major-aref matrix index)))
-          (when (plusp weight)
-            (setf drawn index)
-            (when (< left weight) (return))
-            (decf left weight))))
-      (multiple-value-bind (row column) (floor drawn (width matrix))
-        (list column row)))))
-
-;;; ------------------------------------------------------------------------------------------------------------------ colours
-
-(defun hsv->rgb (hsv)
-  "The list (red green blue) of a colour (hue saturation value): the hue in degrees, all others from 0 to 1."
-  (destructuring-bind (hue saturation value) (coerce hsv 'list)
-    (flet ((part (offset)
-             (let ((place (mod (+ offset (/ hue 60)) 6)))
-               (- value (* value saturation (clamp (min place (- 4 place)) 0 1))))))
-      (list (part 5) (part 3) (part 1)))))
-
-(defun rgb->hsv (rgb)
-  "The list (hue saturation value) of a colour (red green blue), as HSV->RGB takes it."
-  (destructuring-bind (red green blue) (coerce rgb 'list)
-    (let* ((value (max red green blue)) (range (- value (min red green blue))))
-      (list (cond ((zerop range) 0)
-                  ((= value red) (mod (* 60 (/ (- green blue) range)) 360))
-                  ((= value green) (+ 120 (* 60 (/ (- blue red) range))))
-                  (t (+ 240 (* 60 (/ (- red green) range)))))
-            (if (zerop value) 0 (/ range value))
-            value))))
+      (error 'invalid-probability-distribution))
+    (dotimes (index (array-total-size matrix))
+      (let ((weight (row-major-aref matrix index)))
+        (when (plusp weight)
+          (setf drawn index)
+          (when (< left weight) (return))
+          (decf left weight))))
+    (multiple-value-bind (row column) (floor drawn (width matrix))
+      (list column row))))

@@ -9,8 +9,10 @@ Plan failures and other conditions that are not errors pass. Source: prolog.md s
 from __future__ import annotations
 
 import operator
+from collections.abc import Callable
 
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.ground.catching import CATCHABLE, Case, HandlerExit, caught
 from cramhy_runtime.ground.conditions import Error, SimpleWarning, StorageCondition, type_error, undefined_function, warn
 from cramhy_runtime.ground.data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, is_ratio, lisp_list, truth
@@ -21,6 +23,9 @@ from cramhy_runtime.utilities.lazy_lists import force_ll
 from ..engine.failing_calls import note_place
 from ..symbols import CUT, PROLOG, sym
 from ..terms.terms import TermTail, Var, import_term, raw, resolve, undo, unify
+
+FINDERS: list[Callable[[Symbol], Callable[..., Any] | None]] = []
+"""Functions that find what a symbol without a function means in another language, or give ``None``."""
 
 BREAK_ON_LISP_ERRORS = special(PROLOG.intern("*BREAK-ON-LISP-ERRORS*"))
 
@@ -92,7 +97,10 @@ def _apply(function, arguments):
                 break
     code = function.function
     if code.__class__ is UndefinedFunction:
-        return undefined_function(function, tuple(arguments), {})
+        found = next(filter(None, (find(function) for find in FINDERS)), None)
+        if found is None:
+            return undefined_function(function, tuple(arguments), {})
+        code = found
     value = code(*arguments)
     if value.__class__ is MultipleValues:
         return value[0] if len(value) else None
@@ -118,7 +126,14 @@ def lisp_value(m, function, arguments):
     kind = value.__class__
     if kind is Cons or kind is Symbol or kind is Keyword or kind is bool:
         return import_term(value, m.names)
+    if kind not in _ATOMS and function in RESULTS:
+        return RESULTS[function](value)
     return value
+
+
+RESULTS: dict[Symbol, Callable[[Any], Any]] = {}
+"""The symbol of a function that was written in Hy → what makes Lisp data of its result. Such a result may be a collection of Python."""
+_ATOMS = frozenset((int, float, str, type(None)))
 
 
 def lisp_fun(m, function, arguments, result):

@@ -13,17 +13,17 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from cramhy_runtime.kernel.images import per_image
+from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.ground.conditions import SimpleError, as_name, error, style_warn
-from cramhy_runtime.ground.data import Cons, list_from, python_list
+from cramhy_runtime.ground.data import Cons, Symbol, list_from, python_list
 from cramhy_runtime.ground.dynamic import binding, special
-from cramhy_runtime.ground.equality import eql_key
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.packages import keyword
 from cramhy_runtime.ground.printing import define_printer
 from cramhy_runtime.ground.printing import print_slots
-from cramhy_runtime.utilities.patterns import ANONYMOUS, variable, variables_of
+from cramhy_runtime.utilities.patterns import ANONYMOUS, variable, variables_of, vars_in
 
-from .rete import identity, match_fact, memory
+from .rete import content_key, match_fact, memory
 from ..symbols import PROLOG, sym
 
 _definitions = special(PROLOG.intern("*PRODUCTION-DEFINITIONS*"), {})
@@ -78,8 +78,8 @@ class Store:
         return list(index.get(key, {}).items())
 
 
-def _key(row, columns):
-    return tuple([eql_key(identity(row[column])) for column in columns])
+def _key(row: list[Any], columns: tuple[int, ...]) -> tuple[Any, ...]:
+    return tuple([content_key(row[column]) for column in columns])
 
 
 class Network:
@@ -119,7 +119,7 @@ class Network:
             return
         if not self.watching:
             return
-        stores = [*self.by_first.get(eql_key(identity(occurrence.fact.car)), ()), *self.by_first.get(None, ())]
+        stores = [*self.by_first.get(content_key(occurrence.fact.car), ()), *self.by_first.get(None, ())]
         asserted = operation == "ASSERT"
         touched = [store for store in stores if (store.add(occurrence) if asserted else store.remove(occurrence))]
         places = {}
@@ -133,24 +133,35 @@ class Network:
         _tell_all([match.announce if asserted else match.take_back for _, match in news])
 
 
-def _shape(pattern):
+def _shape(pattern: Any) -> tuple[Any, ...]:
     """A key that is the same for patterns that differ in the names of variables only."""
-    numbers, shape = {}, []
+    return _shape_of(pattern, {})
+
+
+def _shape_of(pattern: Any, numbers: dict[Symbol, int]) -> tuple[Any, ...]:
+    shape = []
     while isinstance(pattern, Cons):
         shape.append(_part(pattern.car, numbers))
         pattern = pattern.cdr
     return (*shape, "." if pattern is not None else None, _part(pattern, numbers))
 
 
-def _part(item, numbers):
+def _part(item: Any, numbers: dict[Symbol, int]) -> Any:
     if item is ANONYMOUS:
         return "_"
-    return ("?", numbers.setdefault(item, len(numbers))) if variable(item) else ("c", eql_key(identity(item)))
+    if variable(item):
+        return "?", numbers.setdefault(item, len(numbers))
+    return ("list", _shape_of(item, numbers)) if _is_open(item) else ("c", content_key(item))
 
 
-def _first_key(pattern):
+def _is_open(item: object) -> bool:
+    """Whether ``item`` is a list with variables in it."""
+    return isinstance(item, Cons) and vars_in(item) is not None
+
+
+def _first_key(pattern: Any) -> Any:
     """The key of the first element of all facts of the pattern; ``None`` if it is a variable."""
-    return None if not isinstance(pattern, Cons) or variable(pattern.car) else eql_key(identity(pattern.car))
+    return None if not isinstance(pattern, Cons) or variable(pattern.car) or _is_open(pattern.car) else content_key(pattern.car)
 
 
 _network = per_image(Network())
@@ -248,7 +259,7 @@ class Production:
                 return
             place, columns = self.orders[first][step]
             names = self.names[place]
-            key = tuple([eql_key(identity(values[names[column]])) for column in columns])
+            key = tuple([content_key(values[names[column]]) for column in columns])
             for other, row in self.stores[place].having(columns, key):
                 if not (excluding and other is occurrence and place < first):
                     join(step + 1, (*occurrences, other), {**values, **dict(zip(names, row))})

@@ -1,8 +1,9 @@
 """Rete's memory: facts that come and go, and queries for patterns of facts.
 
 A fact is a proper list of constants; the memory counts how often each was asserted. It is a tree that branches by the elements of
-the facts (the original's alpha network), so the search for a pattern follows only its constants. Elements are compared by ``eql`` of
-their `object_id`, so strings and lists never match by content. Watchers of the memory hear of facts that come and go (see
+the facts (the original's alpha network), so the search for a pattern follows only its constants. Elements are compared as Prolog compares
+terms, by content, and lists in a pattern may have variables in them. The original compares by ``eql``, so that a text or a list never
+matches; a class with a method for `object_id` is compared by what that gives. Watchers of the memory hear of facts that come and go (see
 ``productions.py``). Source: prolog.md section 12.1.
 """
 
@@ -13,14 +14,15 @@ from contextlib import contextmanager
 
 from cramhy_runtime.ground.data import list_end
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol, list_from, one, python_list, truth
-from cramhy_runtime.ground.equality import eql, eql_key
+from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol, list_from, list_parts, one, python_list, truth
+from cramhy_runtime.ground.equality import eql_key, equal_key
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.printing import define_printer, output_object, print_unreadable
 from cramhy_runtime.ground.dispatch.generic_functions import generic, specializer_of, when_methods_change
-from cramhy_runtime.utilities.lazy_lists import from_iterator
-from cramhy_runtime.utilities.patterns import ANONYMOUS, substitute_vars, variable, vars_in
+from cramhy_runtime.utilities.lazy_lists import force_ll, from_iterator, lazy_cdr
+from cramhy_runtime.utilities.patterns import ANONYMOUS, compared_by_python, equal, substitute_vars, variable, vars_in
 from cramhy_runtime.kernel.images import Cell, per_image
+from cramhy_runtime.kernel.typing_names import Any
 
 from .native_predicates import predicate
 from ..symbols import sym
@@ -47,25 +49,48 @@ def _see_who_has_identity(function):
         _plain.value = frozenset() if about_atoms else _ATOMS
 
 
-def identity(obj):
+def identity(obj: Any) -> Any:
     """The `object_id` of ``obj``."""
     return obj if obj.__class__ in _plain.value else one(object_id(obj))
+
+
+def content_key(obj: Any) -> Any:
+    """A hashable value that is the same for two elements of facts exactly if they are the same for Prolog. It may hold ``id(obj)``.
+
+    A list that is circular is the same as itself only.
+    """
+    obj = identity(obj)
+    cls = obj.__class__
+    if cls is Symbol or cls is Keyword or cls is int or cls is str or obj is None:
+        return obj
+    if isinstance(obj, Cons):
+        if isinstance(list_end(obj), Cons):
+            return eql_key(obj)
+        items, end = list_parts(force_ll(obj))
+        return ("cons", *map(content_key, items), content_key(end))
+    if compared_by_python(cls):
+        try:
+            hash(obj)
+        except TypeError:  # a part of it can change
+            return eql_key(obj)
+        return cls, obj
+    return equal_key(obj)
 
 
 class Node:
     """A node of the tree: the facts with the same beginning. At the end of a fact, ``occurrences`` are its assertions that still hold."""
 
-    __slots__ = ("parent", "identity", "children", "fact", "occurrences")
+    __slots__ = ("parent", "key", "identity", "children", "fact", "occurrences")
 
-    def __init__(self, parent=None, identity=None):
-        self.parent, self.identity = parent, identity  # an `eql_key` is only good while the object lives
+    def __init__(self, parent=None, key=None, identity=None):
+        self.parent, self.key, self.identity = parent, key, identity  # a key is only good while the object lives
         self.children = {}
         self.fact = None
         self.occurrences = []
 
     def copy(self):
         """A copy of the tree from here on."""
-        made = Node(self.parent, self.identity)
+        made = Node(self.parent, self.key, self.identity)
         made.fact, made.occurrences = self.fact, list(self.occurrences)
         for key, child in self.children.items():
             made.children[key] = copied = child.copy()
@@ -89,8 +114,8 @@ class Node:
                 yield node
             if isinstance(cell, Cons):
                 item, rest = cell.car, cell.cdr
-                if not variable(item):
-                    child = node.children.get(eql_key(identity(item)))
+                if not variable(item) and (item.__class__ is not Cons or vars_in(item) is None):
+                    child = node.children.get(content_key(item))
                     if child is not None:
                         stack.append((child, rest))
                     continue
@@ -146,12 +171,20 @@ class Memory:
 memory = per_image(Memory())
 
 
-def match_fact(pattern, fact, bindings, test=eql):
-    """A copy of the dict ``bindings``, extended so that ``pattern`` equals ``fact``, or ``None`` if that is impossible."""
+def same(one_element: object, other: object) -> bool:
+    """Whether two elements of facts are the same for Prolog."""
+    return bool(equal(one_element, other))
+
+
+def match_fact(pattern: Any, fact: Any, bindings: dict[Symbol, Any], test: Any = same) -> dict[Symbol, Any] | None:
+    """A copy of the dict ``bindings``, extended so that ``pattern`` equals ``fact``, or ``None`` if that is impossible.
+
+    test: compares two elements that are no variables. Only with `same` are lists in the pattern looked into.
+    """
     extended = dict(bindings)
     while pattern.__class__ is Cons and fact.__class__ is Cons:
         item = pattern.car
-        if item.__class__ is Symbol and item is fact.car and item.name[:1] != "?" and test is eql:
+        if item.__class__ is Symbol and item is fact.car and item.name[:1] != "?" and test is same:
             pass
         elif not _element_matches(item, fact.car, extended, test):
             return None
@@ -161,7 +194,7 @@ def match_fact(pattern, fact, bindings, test=eql):
     return None
 
 
-def _element_matches(item, value, bindings, test):
+def _element_matches(item: Any, value: Any, bindings: dict[Symbol, Any], test: Any) -> bool:
     if variable(item):
         if item is ANONYMOUS:
             return True
@@ -169,7 +202,19 @@ def _element_matches(item, value, bindings, test):
             bindings[item] = value
             return True
         item = bindings[item]
+    elif item.__class__ is Cons and value.__class__ is Cons and test is same:
+        return _list_matches(item, value, bindings)
     return truth(one(test(identity(item), identity(value))))
+
+
+def _list_matches(pattern: Any, value: Any, bindings: dict[Symbol, Any]) -> bool:
+    while pattern.__class__ is Cons and value.__class__ is Cons:
+        if pattern is value and vars_in(pattern) is None:
+            return True
+        if not _element_matches(pattern.car, value.car, bindings, same):
+            return False
+        pattern, value = lazy_cdr(pattern), lazy_cdr(value)
+    return _element_matches(pattern, value, bindings, same)
 
 
 # -------------------------------------------------------------------------------------------------------------------- facts
@@ -178,13 +223,12 @@ def _element_matches(item, value, bindings, test):
 def _leaf(fact, create):
     node = memory.root
     for element in python_list(fact):
-        known = identity(element)
-        key = eql_key(known)
+        key = content_key(element)
         child = node.children.get(key)
         if child is None:
             if not create:
                 return None
-            child = node.children[key] = Node(node, known)
+            child = node.children[key] = Node(node, key, element)
         node = child
     return node
 
@@ -229,7 +273,7 @@ def rete_retract(fact):
     del memory.occurrences[occurrence]
     empty = node
     while not empty.occurrences and not empty.children and empty.parent is not None:  # what no fact needs takes no room
-        del empty.parent.children[eql_key(empty.identity)]
+        del empty.parent.children[empty.key]
         empty = empty.parent
     memory.tell("RETRACT", occurrence)
     return node
@@ -290,15 +334,16 @@ def _pairs(bindings, tail=None):
 def rete_holds(fact_pattern, test=None, processed=None, node=None):
     """``(rete-holds fact-pattern)``: the lazy list of bindings under which the pattern is a fact, the newest fact first.
 
-    test: compares the identities of elements (default: ``eql``). node: a node of the memory; then only facts below it count.
+    test: compares the identities of elements; by default Prolog does, also within lists. node: a node of the memory; then only facts
+    below it count.
     """
-    compare = eql if test is None else function_of(test)
-    if compare is eql and node is None and vars_in(fact_pattern) is None:
+    compare = same if test is None else function_of(test)
+    if compare is same and node is None and vars_in(fact_pattern) is None:
         leaf = _leaf(fact_pattern, False) if isinstance(fact_pattern, Cons) else None
         return Cons(None) if leaf is not None and leaf.occurrences else None
 
     def matches():
-        by_constants = fact_pattern if compare is eql and node is None else None
+        by_constants = fact_pattern if compare is same and node is None else None
         for leaf in list((node or memory.root).leaves(by_constants)):
             bindings = match_fact(fact_pattern, leaf.fact, {}, compare)
             if bindings is not None:

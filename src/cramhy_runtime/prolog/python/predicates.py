@@ -29,7 +29,8 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Generic, NoRe
 from cramhy_runtime.kernel.unstarted import plain_function, ran
 from cramhy_runtime.ground.data import Cons, Symbol, list_from
 from ..builtins import native_predicates as natives
-from .terms import P, Name, claim, lisp_name, python_arguments, python_predicates, show, to_lisp, what_nil_means
+from .spelling import exact_lisp_name, lisp_name
+from .terms import P, Name, claim, python_arguments, python_predicates, show, to_lisp, what_nil_means
 from ..symbols import sym
 from ..terms.terms import Var, deref, import_term, resolve
 
@@ -117,7 +118,7 @@ class Predicate(Name, Generic[F]):
     def goal_text(self, m: Machine, terms: tuple[object, ...]) -> str:
         """The goal as messages show it, with the values of variables."""
         if self.symbol in (LISP_FUN, LISP_PRED):
-            terms = (Symbol(getattr(self.function, "__name__", str(self.function))), *terms)
+            terms = (Symbol(exact_lisp_name(getattr(self.function, "__name__", str(self.function)))), *terms)
         return show(Cons(self.symbol, list_from([resolve(term, m.names) for term in terms])))
 
     def called(self, m: Machine, terms: tuple[object, ...], step: Callable[[], T]) -> T:

@@ -165,7 +165,7 @@ class Answer(Mapping[str, Any]):
     def _pairs(self) -> list[tuple[str, Any]]:
         return [(name, self[name]) for name in self._values]
 
-    def in_lisp(self, symbol: Symbol) -> Any:
+    def in_lisp(self, symbol: Symbol) -> object:
         """The value of the variable ``symbol`` as Lisp data; the symbol itself if the answer leaves it open."""
         return self._values.get(_variable_name(symbol), symbol)
 
@@ -315,8 +315,9 @@ def _check_predicates(form: Any) -> None:
             if isinstance(part, Cons):
                 _check_predicates(part)
     elif functor not in control.CONTROL and not is_defined(functor):
-        near = near_names(functor.name, [symbol.name for symbol in functors if isinstance(symbol, Symbol) and is_defined(symbol)], 1)
-        hint = f" Did you mean {near[0].lower()}?" if near else " Define it in a fact group, or by @predicate."
+        known = {symbol.name.upper(): symbol for symbol in functors if isinstance(symbol, Symbol) and is_defined(symbol)}
+        near = near_names(functor.name.upper(), known, 1)
+        hint = f" Did you mean {show(known[near[0]])}?" if near else " Define it in a fact group, or by @predicate."
         raise UnknownPredicate(f"Nobody has defined the predicate {show(functor)} of the goal {show(form)}.{hint}")
 
 

@@ -1,10 +1,12 @@
 """Terms in Python's notation: ``P.parent("tom", V.who)`` is the goal ``(parent "tom" ?who)``.
 
-* ``V.who`` is the variable ``?who``, and ``V._`` the one that matches anything.
+* ``V.who`` is the variable ``?who``, and ``V._`` the one that matches anything. ``V.A`` and ``V.a`` are two variables.
 * ``P.parent`` is the name ``parent``. A call of it makes a goal; among arguments it stands for the symbol. Names of built-in
   predicates stand for these (``P.member``, ``P.findall``, ``P.not_``). Others are symbols of the package PYTHON-USER, so Lisp code can
-  write ``python-user:parent``. ``names("TUT")`` gives the names of another package.
-* ``kw.driving`` is the keyword ``:driving``, the object itself. A Python string is a string, and equal to no name.
+  write ``python-user:parent``, and ``python-user:|Parent|`` for ``P.Parent``, which is another name. ``names("TUT")`` gives the names of
+  another package.
+* ``kw.driving`` is the keyword ``:driving``, the object itself. A Python string is a string, and equal to no name. Keywords are shared with
+  Lisp, which does not see case: ``kw.Driving`` is an error.
 * A list or tuple is a list, ``[V.first, *V.rest]`` one whose rest is a variable. ``None``, ``False`` and ``[]`` are the empty list,
   ``nil``: Lisp has one object for them. ``True`` is ``t``, and neither 1 nor 1.0.
 * In a goal or a fact, a set, a range, a view of a dict, a deque and an array are lists, too; equal sets are the same list. An iterator
@@ -27,14 +29,15 @@ from collections import deque
 from types import BuiltinFunctionType, FunctionType, GeneratorType, MethodType
 from cramhy_runtime.kernel.typing_names import Any, NoReturn, Self, annotations_of
 
-from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, Cons, Keyword, Symbol, list_from
-from cramhy_runtime.ground.python_names import attribute_symbols
+from cramhy_runtime.ground.data import STANDS_FOR, WRITABLE_STRINGS, Character, Cons, EmptyList, Keyword, Symbol, list_from
+from cramhy_runtime.ground.python_names import attribute_symbols, hy_name
 from cramhy_runtime.ground.packages import KEYWORD, Package, ensure_package, named_package, near_names, package_names, printed
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import CURRENT
 from cramhy_runtime.utilities.lazy_lists import force_ll, lazy_list_p
 from cramhy_runtime.utilities.patterns import ANONYMOUS
 from .ground import reasoning
+from .spelling import exact_lisp_name, lisp_name, other_case, python_name
 from ..symbols import sym
 
 USER: Package = ensure_package("PYTHON-USER")
@@ -129,7 +132,7 @@ class Variable:
         raise TypeError(f"The variable {self!r} was asked whether it is true. It has a value in an answer only.")
 
     def __repr__(self) -> str:
-        return self.symbol.name.lower()
+        return other_case(self.symbol.name)
 
     def __format__(self, how: str) -> NoReturn:
         raise TypeError(
@@ -174,7 +177,7 @@ class Variables:
     def __getattr__(self, name: str) -> Variable:
         if name.startswith("__"):
             raise AttributeError(name)
-        return variable_of(ANONYMOUS if name == "_" else USER.intern("?" + lisp_name(name)))
+        return variable_of(ANONYMOUS if name == "_" else USER.intern("?" + exact_lisp_name(name)))
 
     def __reduce__(self) -> str:
         return "V"
@@ -237,11 +240,28 @@ class Names:
     def __getattr__(self, name: str) -> Name:
         if name.startswith("__"):
             raise AttributeError(name)
-        known = attribute_symbols(self._package, name)
-        return Name(known[0]) if known else self[lisp_name(name)]
+        exact = exact_lisp_name(name)
+        symbol, status = self._package.lookup(exact)
+        if status:
+            return Name(symbol)
+        capitals = exact != exact.upper()
+        known = () if capitals or self._package is USER else attribute_symbols(self._package, name)
+        if known:
+            return Name(known[0])
+        if capitals and self._package is not USER:
+            raise AttributeError(
+                f"The name {name!r} has capitals, and those of the Lisp package {self._package.name} are in small letters in Python: "
+                f"names({self._package.name!r}).{name.lower()}.",
+                name=name,
+                obj=self,
+            )
+        return self._name(exact)
 
     def __getitem__(self, name: str) -> Name:
-        symbol = self._package.intern(name.upper())
+        return self._name(name.upper())
+
+    def _name(self, lisp_name: str) -> Name:
+        symbol = self._package.intern(lisp_name)
         if self._package is USER and symbol.package is USER:
             USER.export(symbol)
         return Name(symbol)
@@ -256,15 +276,22 @@ class Keywords:
     def __getattr__(self, name: str) -> Keyword:
         if name.startswith("__"):
             raise AttributeError(name)
+        name = hy_name(name)
+        if name != name.lower():
+            raise AttributeError(_CAPITALS.format(f"kw.{name}", f"kw.{name.lower()}"), name=name, obj=self)
         return self[lisp_name(name)]
 
     def __getitem__(self, name: str) -> Keyword:
+        if name != name.lower() and name != name.upper():
+            raise KeyError(_CAPITALS.format(f"kw[{name!r}]", f"kw[{name.lower()!r}]"))
         found: Keyword = KEYWORD.intern(name.upper())
         return found
 
     def __reduce__(self) -> str:
         return "kw"
 
+
+_CAPITALS = "{} has capitals. Keywords of Lisp do not differ by case, so that all of Python's are written in small letters: {}."
 
 P = Names(USER)
 kw = Keywords()
@@ -315,16 +342,6 @@ def claim(symbol: Symbol, function: Any, kind: str) -> None:
         )
 
 
-def lisp_name(name: str) -> str:
-    """The Lisp name for a Python name: ``lisp_fun`` becomes ``LISP-FUN``, and ``not_`` becomes ``NOT``."""
-    return (name.rstrip("_") or name).replace("_", "-").upper()
-
-
-def python_name(name: str) -> str:
-    """The Python name for a Lisp name: ``LISP-FUN`` becomes ``lisp_fun``."""
-    return name.lower().replace("-", "_")
-
-
 # ------------------------------------------------------------------------------------------------------------ to Lisp and back
 
 
@@ -336,16 +353,32 @@ def make_goal(functor: Symbol, arguments: tuple[object, ...]) -> Goal:
     """
     if functor in _CALLS and arguments and callable(arguments[0]) and not isinstance(arguments[0], Name):
         return Goal(Cons(_CALLS[functor], Cons(arguments[0], _lisp_list(arguments[1:]))))
-    if functor in _CALLS or functor in python_predicates:  # functions get the objects that are written
+    if gets_objects(functor):
         return Goal(Cons(functor, _lisp_list(arguments)))
     if functor in _OF_LISTS:
         for argument in arguments:
-            if argument.__class__ is dict:
-                raise TypeError(
-                    f"The goal {python_name(functor.name)} is about lists, and a dict is none: {shortened(argument)}. "
-                    "Write list(d) for its keys, list(d.values()) for its values, or list(d.items())."
-                )
+            _refuse_dict(functor, argument)
     return Goal(Cons(functor, _lisp_list(arguments, True)))
+
+
+def gets_objects(functor: Symbol) -> bool:
+    """Whether the arguments of a goal of ``functor`` are those of a function of Python, which gets collections as they are."""
+    return functor in _CALLS or functor in python_predicates
+
+
+def list_argument(functor: Symbol | None, thing: Any) -> Any:
+    """The Lisp data for ``thing`` as an argument of ``functor``: a collection of Python is a list. What cannot be one is a TypeError."""
+    if functor in _OF_LISTS:
+        _refuse_dict(functor, thing)
+    return to_lisp(thing, True)
+
+
+def _refuse_dict(functor: Symbol | None, thing: object) -> None:
+    if thing.__class__ is dict and functor is not None:
+        raise TypeError(
+            f"The goal {python_name(functor.name)} is about lists, and a dict is none: {shortened(thing)}. "
+            "Write list(d) for its keys, list(d.values()) for its values, or list(d.items())."
+        )
 
 
 python_predicates: set[Symbol] = set()
@@ -378,7 +411,7 @@ def shortened(thing: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-_COLLECTIONS = (range, type({}.keys()), type({}.values()), type({}.items()), deque)
+_COLLECTIONS: tuple[type, ...] = (range, type({}.keys()), type({}.values()), type({}.items()), deque)
 _OF_LISTS = {sym(f"CRAM-PROLOG::{name}") for name in ("MEMBER", "LENGTH", "APPEND", "NTH", "TAKE")}
 
 
@@ -387,7 +420,7 @@ def to_lisp(thing: Any, collections: bool = False) -> Any:
     kind = thing.__class__
     if kind is str or kind is int or kind is float or thing is None or thing is True:
         return thing
-    if kind is list or kind is tuple:
+    if kind is list or kind is tuple or kind is EmptyList:
         return _lisp_list(thing, collections)
     if thing is False:
         return None
@@ -401,6 +434,8 @@ def to_lisp(thing: Any, collections: bool = False) -> Any:
         return function_symbol(thing)
     if kind.__module__ == "numpy" and getattr(thing, "shape", None) == () and hasattr(thing, "item"):
         return to_lisp(thing.item())  # a number of numpy's is the number
+    if kind in STANDS_FOR:
+        return STANDS_FOR[kind](thing)
     return collection(thing) if collections else thing
 
 
@@ -534,7 +569,7 @@ def show(form: Any) -> str:
     if isinstance(form, Keyword):
         return ":" + form.name.lower()
     if isinstance(form, Symbol):
-        return form.name.lower()
+        return other_case(form.name)
     if isinstance(form, str):
         return '"' + form.replace("\\", "\\\\").replace('"', '\\"') + '"'
     return repr(form)

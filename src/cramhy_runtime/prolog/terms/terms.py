@@ -10,7 +10,7 @@ A `LazyTail` in a term stands for the list that it will compute. Looking at it f
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from
+from cramhy_runtime.ground.data import Cons, EmptyList, Keyword, Symbol, list_from
 
 from cramhy_runtime.utilities.lazy_lists import LazyTail, force_ll
 from cramhy_runtime.utilities.patterns import ANONYMOUS, fresh_name, same_atom
@@ -114,7 +114,7 @@ def import_term(term, table):
             variable = table[term] = named_variable(term)
         return variable
     if kind is not Cons:
-        return None if term is False else term
+        return None if term is False or kind is EmptyList else term
     cell = term
     for _ in _CELLS:  # as far as nothing changes
         car = cell.car

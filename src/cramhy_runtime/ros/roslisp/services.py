@@ -23,11 +23,14 @@ from .. import messages, wire
 from ..message_building import get_field, instance
 from ..messages import RosMessage
 from ..services import Service, exchange
+from ..strict import check
 from . import logging, node
 from .errors import ServiceCallError, ServiceError, legal, ros_error, rpc_error
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ..graph import Node
     from ..services import Call
     from ..signatures import Handler, ServiceName, Text
@@ -193,6 +196,15 @@ def call_service(service: ServiceClient | Text, *rest_args: object) -> RosMessag
     The request is keywords and values, or exactly one request object. If no node offers the service, it is a ``ros-rpc-error``;
     if the call fails, an error. Source: roslisp.md 7.1.
     """
+    return _call_service(service, rest_args)
+
+
+def checked_call_service(service: ServiceClient | Text, *rest_args: object) -> RosMessage | None:
+    """`call_service`, whose request is refused where one of Python would be: an integer that is out of range is a ValueError."""
+    return _call_service(service, rest_args, check)
+
+
+def _call_service(service: Any, rest_args: tuple[Any, ...], check_request: Callable[[RosMessage], None] | None = None) -> RosMessage | None:
     here = node.require_node()
     if isinstance(service, ServiceClient):
         name, service_type, arguments = service.name, service.type, rest_args
@@ -209,6 +221,8 @@ def call_service(service: ServiceClient | Text, *rest_args: object) -> RosMessag
     else:
         name, service_type, arguments = legal(str(service), "service"), messages.service_type(rest_args[0]), rest_args[1:]
     request = _request(service_type, arguments)
+    if check_request is not None:
+        check_request(request)
     found = lookup(here, here.resolve(name))
     return None if found is None else call(found, request)
 

@@ -135,7 +135,7 @@ def component(text, offset=0, whole=None):
         index += 1
     if plain:
         pieces.append("".join(plain))
-    if pieces == [MULTI_CHAR]:
+    if len(pieces) == 1 and pieces[0] is MULTI_CHAR:
         return WILD
     if all(piece.__class__ is str for piece in pieces):
         return "".join(pieces)

@@ -35,7 +35,7 @@ def wild_pathname_p(designator, field=None):
 
 def component_matches(part, wild):
     """Whether the component ``part`` is one of those that ``wild`` means."""
-    if part == wild or wild is WILD:
+    if wild is WILD or part is wild or part.__class__ is wild.__class__ and part == wild:
         return True
     return isinstance(wild, Pattern) and isinstance(part, str) and wild.match(part) is not None
 

@@ -25,7 +25,7 @@ def define_faces():
     for name in NAMES:
         on_demand.pop(name, None)
         ensure_package(name)
-    from cramhy_runtime.actionlib import calls, server, simple_client
+    from cramhy_runtime.actionlib import calls, client, goal_server, server, simple_client
     from . import macro_support
     from cramhy_runtime.actionlib.client import ActionClient
 
@@ -42,13 +42,19 @@ def define_faces():
     define_face(
         "ACTIONLIB",
         functions={
-            calls: "make-action-client call-goal send-goal goal feedback",
+            calls: "make-action-client call-goal send-goal send-goal-and-wait simple-state goal feedback",
             simple_client: "wait-for-server wait-for-result cancel-goal cancel-all-goals cancel-at-before-time is-connected goal-id "
             "goal-status comm-state terminal-state result",
             server: "start-action-server cancel-request-received",
             macro_support: "build-goal end-goal tell-feedback",
+            "connected-to-server": simple_client.is_connected,
         },
-        export="abort-goal action-client feedback-signal goal-handle server-lost",
+        variables={
+            "*action-server-timeout*": client.CONNECTED,
+            "*status-publish-interval*": goal_server.PERIOD,
+            "*gc-interval*": goal_server.MEMORY,
+        },
+        export="exec-callback-tag abort-goal action-client feedback-signal goal-handle server-lost",
         internal="build-goal end-goal tell-feedback",  # macros expand into them: a kept file names them, and so makes the packages
     )
     register_class(sym("ACTIONLIB-LISP::SIMPLE-ACTION-CLIENT"), ActionClient)

@@ -15,8 +15,9 @@ from cramhy_runtime.robot_world.things import Item, Machine, Thing
 from cramhy_runtime.robot_world.world import World
 
 from ...packages.face_definition import define_face
-from . import costmap_calls, link_calls, motion_calls, picture_calls, shape_calls, world_calls
+from . import costmap_calls, description_calls, link_calls, motion_calls, picture_calls, shape_calls, world_calls
 
+CALLS = (world_calls, shape_calls, description_calls, link_calls, motion_calls, costmap_calls, picture_calls)
 CLASSES = {
     "WORLD": World,
     "THING": Thing,
@@ -33,10 +34,7 @@ def define_faces() -> None:
     """Make the package."""
     on_demand.pop("ROBOT-WORLD", None)
     package = define_face(
-        "ROBOT-WORLD",
-        use=("COMMON-LISP",),
-        functions={calls: calls.LISP_NAMES for calls in (world_calls, shape_calls, link_calls, motion_calls, costmap_calls, picture_calls)},
-        export=" ".join(CLASSES),
+        "ROBOT-WORLD", use=("COMMON-LISP",), functions={calls: calls.LISP_NAMES for calls in CALLS}, export=" ".join(CLASSES)
     )
     for name, cls in CLASSES.items():
         register_class(package.intern(name), cls)

@@ -156,12 +156,12 @@ def description_name(description: Description) -> str:
 def description_links(description: Description) -> Cons | None:
     """A list (name mass shapes) for each link; a shape is (kind size pose file)."""
     return list_from(
-        lisp_list(link.name, DoubleFloat(link.mass), list_from(_told(shape) for shape in link.shapes))
+        lisp_list(link.name, DoubleFloat(link.mass), list_from(told_shape(shape) for shape in link.shapes))
         for link in description.links.values()
     )
 
 
-def _told(shape: Shape) -> Cons:
+def told_shape(shape: Shape) -> Cons:
     return lisp_list(keyword(shape.kind.upper()), list_from(map(DoubleFloat, shape.size)), _pose(shape.frame), shape.mesh or None)
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import Cons, DoubleFloat, FreshString, MultipleValues, boolean, lisp_list, list_from
 from cramhy_runtime.ground.packages import is_symbol, keyword, symbol_name
-from cramhy_runtime.robot_world import description_files, models, remarks
+from cramhy_runtime.robot_world import description_files, models, remarks, xacro_files
 from cramhy_runtime.robot_world.descriptions import Description, DescriptionError
 from cramhy_runtime.robot_world.physical.world import PhysicalWorld
 from cramhy_runtime.robot_world.placements import of_pose
@@ -230,13 +230,18 @@ def read_description(text: str, file: str = "") -> Description:
 
 
 def description_text(name: Symbol | str) -> str:
-    """The URDF text that comes with cramhy, of :PR2 or :KITCHEN, or a file's, by its path; one in no folder may be a file of ours."""
+    """The URDF text that comes with cramhy, of :PR2 or :KITCHEN, or a file's, by its path; one in no folder may be a file of ours.
+
+    A file whose name ends in ``.xacro`` is expanded.
+    """
     if is_symbol(name):
         return FreshString(models.urdf_text(symbol_name(name).lower()))
     path = Path(str(name))
     try:
+        if xacro_files.is_xacro(path):
+            return FreshString(xacro_files.expanded(path))
         return FreshString((path if path.is_file() else models.DATA / path).read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as problem:
+    except (OSError, UnicodeDecodeError, DescriptionError) as problem:
         return error("the description ~a cannot be read: ~a", str(name), str(problem))
 
 
