@@ -128,3 +128,15 @@ def test_without_mujoco_the_one_who_asks_learns_how_to_install_it(monkeypatch, t
     with pytest.raises(SimpleError) as problem:
         table.states()
     assert problem.value.report().startswith("The arm /lynxmotion_al5d cannot start. ")
+
+
+def test_without_mujoco_a_client_of_another_process_gets_a_topic_without_messages(monkeypatch, table):
+    from cramhy_runtime.robot_world.al5d import demand
+
+    monkeypatch.setitem(sys.modules, "cramhy_runtime.robot_world.al5d.node", None)
+    table.simulator.shutdown()
+    demand.start_when_asked_for()
+    heard = []
+    kernel.post(lambda: heard.append(table.states()))
+    kernel.sleep(0.1)
+    assert heard == [[]] and "/lynxmotion_al5d" not in graph.active().nodes
