@@ -104,7 +104,7 @@ def test_the_editor_of_the_prompt_is_there_and_recalls_commands(terminal):
 
 @pytest.mark.parametrize(
     ("words", "told"),
-    [(["nowhere"], "There is no page nowhere. There are first-forms, "), (["0"], "There is no page 0"), (["13"], "There is no page 13")],
+    [(["nowhere"], "There is no page nowhere. There are first-forms, "), (["0"], "There is no page 0"), (["14"], "There is no page 14")],
 )
 def test_a_page_that_is_not_there_is_told(terminal, words, told):
     with terminal(*words) as there:

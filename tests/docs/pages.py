@@ -118,8 +118,8 @@ class Page:
 LECTURES = ["lecture-34.md", "simple-plans.md", "motion-designators.md", "lecture-38.md"]
 """Pages on which one package grows, in their order."""
 
-KITCHEN = [*sorted((DOCS / "tutorials" / "kitchen").glob("*.md")), DOCS / "how-to" / "add-a-robot.md"]
-"""Pages with the robot in the kitchen, which `play` runs, too. They need the extra ``robot``, and take longer."""
+KITCHEN = [*sorted((DOCS / "tutorials" / "kitchen").glob("*.md")), DOCS / "how-to" / "add-a-robot.md", DOCS / "tutorials" / "bricks.md"]
+"""Pages with the robot in the kitchen, or with the arm, which `play` runs, too. They need the extra ``robot``, and take longer."""
 PAGES = [
     path
     for path in sorted(DOCS.rglob("*.md"), key=lambda path: (LECTURES.index(path.name) if path.name in LECTURES else -1, path))

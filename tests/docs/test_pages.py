@@ -24,8 +24,8 @@ def without_seconds(text):
     return re.sub(r"\bin \d+\.\d\ds\b", "in 0.00s", text)
 
 
-SHORT = [path for path in KITCHEN if path.name in ("arms-and-grasps.md", "recovering.md")]
-"""What of the kitchen is played in ordinary tests, too."""
+SHORT = [path for path in KITCHEN if path.name in ("arms-and-grasps.md", "recovering.md", "bricks.md")]
+"""What of the kitchen and the arm is played in ordinary tests, too."""
 
 
 def rounded(text):
@@ -34,7 +34,7 @@ def rounded(text):
 
 
 STALE = "the page shows other answers than come now; if these are right, `make docs` writes them into the page"
-PICTURES_FROM_ELSEWHERE = {"page.png", "architecture.svg", "spiral.replay.svg", "emacs.png"}
+PICTURES_FROM_ELSEWHERE = {"bricks.png", "page.png", "architecture.svg", "spiral.replay.svg", "emacs.png"}
 PICTURES_FROM_ELSEWHERE |= {f"notebook-{name}.png" for name in ("live", "values", "fluents", "failure")}  # `notebook_pictures.py`
 
 

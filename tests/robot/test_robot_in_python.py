@@ -150,7 +150,7 @@ def test_without_the_extra_one_line_names_it():
     code = "import sys; sys.modules['mujoco'] = None\nfrom cramhy import robot\nrobot.world()"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert done.returncode and "cramhy" in done.stderr and "robot" in done.stderr
-    assert "The kitchen needs MuJoCo, which is not installed" in done.stderr.splitlines()[-1]
+    assert "Robot worlds need MuJoCo, which is not installed" in done.stderr.splitlines()[-1]
 
 
 def test_another_mode_is_told():

@@ -16,6 +16,7 @@ from typing import NamedTuple
 from xml.etree import ElementTree
 
 from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.ros import definition_files
 from cramhy_runtime.ros.names import plain_value
 from cramhy_runtime.ros_tools import executables, yaml_reading
 
@@ -70,7 +71,7 @@ def load(words, values):
 def _files(words):
     if len(words) == 2 and not Path(words[0]).is_file():
         package, name = words
-        folder = folder_of(package)
+        folder = _folder_with(package, name)
         wanted = Path(name).parts
         below = (path for path in sorted(folder.rglob("*")) if wanted and path.parts[-len(wanted) :] == wanted) if folder else ()
         found = [path for path in (folder / name, *below) if path.is_file()] if folder else []
@@ -84,6 +85,16 @@ def _files(words):
     if missing:
         raise LaunchError(f"[{missing[0]}] is not a launch file name")
     return [Path(word).absolute() for word in words]
+
+
+def _folder_with(package, name):
+    """The folder of a package in which a launch file is looked for: cramhy's own, if it has that file, since its programs are ours."""
+    ours = definition_files.own_folder(package)
+    if ours is None or not (ours / "launch" / name).is_file():
+        return folder_of(package)
+    if folder_of(package) != ours:
+        print(f"; {name} of cramhy is launched, since cramhy has its own programs for {package}.", file=sys.stderr)
+    return ours
 
 
 def _launch_files_of(package, folder):

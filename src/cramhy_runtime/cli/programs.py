@@ -150,12 +150,14 @@ def run(programs, parameters=None, port=None, view=None, time=None):
 
 
 def _what(programs):
-    return "the turtle lives" if _has_window(programs) else "the program runs"
+    return "the turtle lives" if any(each.package == "turtlesim" for each in programs) else "the program runs"
 
 
 def _has_window(programs):
-    """Whether one of the programs opens a window in ROS."""
-    return any(each.executable == "turtlesim_node" for each in programs)
+    """Whether one of the programs opens a window in ROS: a simulator."""
+    from cramhy_runtime.ros_tools.hosting import SHARED
+
+    return any((each.package, each.executable) in SHARED for each in programs)
 
 
 def _tell(text):

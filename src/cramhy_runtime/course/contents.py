@@ -20,10 +20,13 @@ NAMES = (
     "high-level-plans",
     "failure-handling",
     "tests",
+    "bricks",
 )
 """The names of the pages, in their order."""
 GROWING = ("lecture-34", "simple-plans", "motion-designators", "lecture-38")
 """The pages on which one package grows: each needs the files of those before it."""
+WITH_ROBOT = ("bricks",)
+"""Pages whose forms need the extra ``robot``, which a browser's tab does not have."""
 
 
 def folder() -> Path:

@@ -19,7 +19,7 @@ _PICTURE = re.compile(r"!\[([^\]]*)\]\(([^)]+)\)")
 
 
 def as_json() -> dict[str, Any]:
-    """All pages as data that `json` can write::
+    """All pages for a browser's tab, without those `contents.WITH_ROBOT`, as data that `json` can write::
 
         {"pages": [{"name", "title", "parts": [
             {"kind": "text", "html"}
@@ -33,7 +33,9 @@ def as_json() -> dict[str, Any]:
     """
     return {
         "pages": [
-            {"name": page.name, "title": page.title, "parts": [data for part in page.parts for data in _data(part)]} for page in pages()
+            {"name": page.name, "title": page.title, "parts": [data for part in page.parts for data in _data(part)]}
+            for page in pages()
+            if page.name not in contents.WITH_ROBOT
         ]
     }
 

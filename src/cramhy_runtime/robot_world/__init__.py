@@ -14,6 +14,7 @@
 ``remarks``               what a plan considers, for whoever looks on
 ``pictures/``             pictures and movies of a world, without a screen
 ``simulated_robot``       the motions of a robot in such a world
+``al5d/``                 a small arm on a table with bricks, as a ROS node
 ``data/``                 the PR2 and the kitchen of Bremen, as URDF of our own
 ========================  ===========================================================================================
 

@@ -16,7 +16,7 @@ from .meshes import mesh_of
 try:
     import mujoco
 except ImportError as _problem:  # pragma: no cover  the tests of missing extras hide it
-    raise ImportError(f"The kitchen needs MuJoCo, which is not installed: {install_command('robot')}") from _problem
+    raise ImportError(f"Robot worlds need MuJoCo, which is not installed: {install_command('robot')}") from _problem
 
 __all__ = ["add_links", "add_shape", "body_name", "mujoco"]
 

@@ -17,6 +17,9 @@ A session that is joined to a robot (room ``rosbridge``) sets two more attribute
 topic's name and a message class. If the topic has another type on the robot, it returns that type and where it is; it waits for
 the answer. `Graph.cut_off` is a text that says why the robot cannot be reached at the moment, or ``None``.
 
+`Graph.on_demand` has functions by the first part of names: ``"arm"`` for ``/arm/state``. The first who asks for such a topic or service,
+when there is none and no node ``/arm``, starts it: a simulator that need not run while nobody wants it.
+
 There is one active graph per kernel, as there is one roscore per user. Laws: a tick is one step for all tasks (law 4); all
 waiting goes through the kernel (law 5); a node that ends takes its topics, services and waiting callers along (law 1).
 """
@@ -57,6 +60,7 @@ class Graph:
         self.lisp_node: Node | None = None
         self.debug_levels: dict[tuple[str, ...], int] = {}
         self.before_first_node: list[Callable[[], object]] = []
+        self.on_demand: dict[str, Callable[[], object]] = {}
         self.type_elsewhere: Callable[[str, MessageType], tuple[str, str] | None] | None = None
         self.cut_off: str | None = None
         self._ports = 0
@@ -85,10 +89,25 @@ class Graph:
 
     def topic(self, name: str, message_type: MessageType) -> Topic:
         """The topic with the global name ``name``; if there is none, it is made with the type ``message_type``."""
+        if name not in self.topics:
+            self._start_on_demand(name)
         topic = self.topics.get(name)
         if topic is None:
             topic = self.topics[name] = Topic(name, message_type)
         return topic
+
+    def service(self, name: str) -> Service | None:
+        """The service with the global name ``name``, or ``None``."""
+        if name not in self.services:
+            self._start_on_demand(name)
+        return self.services.get(name)
+
+    def _start_on_demand(self, name: str) -> None:
+        if self.on_demand:
+            first = name.lstrip("/").partition("/")[0]
+            start = self.on_demand.get(first)
+            if start is not None and f"/{first}" not in self.nodes:
+                start()
 
     def next_address(self) -> str:
         """A new address for a node, as ``"127.0.0.1:40001"``; there is no socket behind it."""

@@ -25,10 +25,11 @@ if TYPE_CHECKING:
 class Publication:
     """One node's publishing end of a topic (from ``advertise``). ``connections``: the connected subscriptions.
 
-    ``hidden``: how many of them belong to hidden nodes.
+    ``hidden``: how many of them belong to hidden nodes. ``on_listeners``: called when a subscriber has come or gone, or ``None``; a node
+    whose messages take long to make learns there whether somebody listens.
     """
 
-    __slots__ = ("node", "name", "type", "latch", "last_message", "connections", "hidden")
+    __slots__ = ("node", "name", "type", "latch", "last_message", "connections", "hidden", "on_listeners")
     lisp_name = "ROSLISP::PUBLICATION"
 
     def __init__(self, node: Node, name: str, message_type: MessageType, latch: bool = False):
@@ -36,6 +37,7 @@ class Publication:
         self.last_message: RosMessage | None = None
         self.connections: list[Connection] = []
         self.hidden = 0
+        self.on_listeners: Callable[[], object] | None = None
 
     @property
     def subscribers(self) -> int:
@@ -53,6 +55,8 @@ class Publication:
         self.hidden += subscription.node.hidden
         if self.latch and self.last_message is not None:
             subscription.receive(wire.fresh(self.last_message))
+        if self.on_listeners is not None:
+            self.on_listeners()
 
     def mismatch(self, client: Node, message_type: MessageType) -> str:
         """The text of the error about ``client``, a node that wants messages of ``message_type``, another type."""
@@ -66,6 +70,8 @@ class Publication:
         if subscription in self.connections:
             self.connections.remove(subscription)
             self.hidden -= subscription.node.hidden
+            if self.on_listeners is not None:
+                self.on_listeners()
 
     def publish(self, message: RosMessage) -> int:
         """Check and send ``message``; returns the number of subscribers. A wrong value in a field is an error of serialisation."""

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ..ros.signatures import Echo, Words
 
 _FRAMES, _TURTLES, _SHAPES = "tf.programs.frames", "tf.programs.turtles", "actionlib.shape_server"
+_ARM, _BRICKS = ("robot_world.al5d.node", "Simulator"), "robot_world.al5d.clients"
 EXECUTABLES: dict[str, dict[str, tuple[str, str]]] = {
     "turtlesim": {name: (program.__module__.partition(".")[2], program.__name__) for name, program in PROGRAMS.items()},
     "turtle_actionlib": {"shape_server": (_SHAPES, "ShapeServer"), "shape_client": (_SHAPES, "ShapeClient")},
@@ -26,6 +27,11 @@ EXECUTABLES: dict[str, dict[str, tuple[str, str]]] = {
     "turtle_tf": {
         **dict.fromkeys(("turtle_tf_broadcaster", "turtle_tf_broadcaster.py"), (_TURTLES, "Broadcaster")),
         **dict.fromkeys(("turtle_tf_listener", "turtle_tf_listener.py"), (_TURTLES, "Follower")),
+    },
+    "lynxmotion_al5d_description": {
+        **dict.fromkeys(("simulator", "manager_node"), _ARM),  # the course's manager of bricks is a node beside Gazebo
+        "spawn_brick": (_BRICKS, "SpawnBrick"),
+        "kill_brick": (_BRICKS, "KillBrick"),
     },
     "turtle_tf2": {
         **dict.fromkeys(("turtle_tf2_broadcaster", "turtle_tf2_broadcaster.py"), (_TURTLES, "Tf2Broadcaster")),
@@ -58,4 +64,8 @@ def start(package: str, executable: str, arguments: Words = (), echo: Echo = Non
     if problem is not None:
         conditions.error(SimpleError("~a", problem))
     module, name = EXECUTABLES[package][executable]
-    return getattr(import_module(f"cramhy_runtime.{module}"), name)(arguments=arguments, echo=echo)
+    try:
+        program = getattr(import_module(f"cramhy_runtime.{module}"), name)
+    except ImportError as missing:  # an extra that is not installed
+        return conditions.error(SimpleError("~a", f"{package}/{executable} cannot start. {missing}"))
+    return program(arguments=arguments, echo=echo)

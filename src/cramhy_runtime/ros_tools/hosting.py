@@ -12,6 +12,7 @@ import sys
 
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import Error
+from ..robot_world.al5d.names import NAME, PACKAGE
 from ..ros import graph
 from ..ros.messages import message_class_exact, service_type_exact
 from ..ros.services import OfCaller, Refusal, Service
@@ -26,8 +27,8 @@ LOG = "/cramhy/program_log"
 SERVICES = {"start_program": "StartProgram", "feed_program": "FeedProgram", "end_node": "EndNode", "open_page": "OpenPage"}
 MOST_ARGUMENTS = 10_000
 """Characters in the arguments of a program that a client starts."""
-SHARED = (("turtlesim", "turtlesim_node"),)
-"""What runs once: whoever starts it a second time under its name looks on, as at a window."""
+SHARED = {("turtlesim", "turtlesim_node"): Turtlesim.name, **{(PACKAGE, simulator): NAME for simulator in ("simulator", "manager_node")}}
+"""What runs once, and its name: whoever starts it a second time under its name looks on, as at a window."""
 
 
 class Host:
@@ -67,7 +68,7 @@ class Host:
         def in_ros(function, *words):
             return conditions.handler_case([(Error, fail)], lambda: function(*words))
 
-        there = in_ros(self._simulator_that_is_meant, arguments) if (package, executable) in SHARED else None
+        there = in_ros(self._simulator_that_is_meant, package, executable, arguments) if (package, executable) in SHARED else None
         if there is not None:
             self.tell(there)
             return there.node.name, True, list(there.lines)
@@ -83,23 +84,24 @@ class Host:
             program.node.on_shutdown.append(lambda: caller.at_end.discard(program.shutdown))
         return program.node.name, False, list(program.lines)
 
-    def _simulator_that_is_meant(self, arguments):
-        """The simulator ``/turtlesim`` of the session, if a ``turtlesim_node`` with these arguments would take its name; else ``None``.
+    def _simulator_that_is_meant(self, package, executable, arguments):
+        """The simulator of the session whose name this one would take with these arguments, ``/turtlesim`` for one; else ``None``.
 
         A plan may be driving the session's own turtle. So whoever starts another one under its name looks on, and ends nothing by Ctrl-C.
         """
-        naming = naming_of(Turtlesim.name, arguments=arguments)
-        if naming.node_name != "/turtlesim":
+        own = SHARED[package, executable]
+        naming = naming_of(own, arguments=arguments)
+        if naming.node_name != f"/{own}":
             return None
-        if naming.node_name not in self.graph.nodes:
+        if own == Turtlesim.name and naming.node_name not in self.graph.nodes:
             start_waiting()
         there = getattr(self.graph.nodes.get(naming.node_name), "program", None)
         if there is None or not (naming.remappings or naming.private_parameters):
             return there
         if not there.of_client:
             raise Refusal(
-                "/turtlesim is the session's own, and would end if another one took its name. Give yours another name: __name:=other. "
-                "To look on at the session's, leave out the words after turtlesim_node."
+                f"/{own} is the session's own, and would end if another one took its name. Give yours another name: __name:=other. "
+                f"To look on at the session's, leave out the words after {executable}."
             )
         return None
 

@@ -56,7 +56,7 @@ class HereGraph(Graph):
         return list(self.graph.visible_services())
 
     def service(self, name):
-        service = self.graph.services.get(name)
+        service = self.graph.service(name)
         return service and (service.node.name, service.type.name)
 
     def call(self, name, ros_type, request):

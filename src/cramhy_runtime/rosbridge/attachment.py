@@ -65,6 +65,7 @@ class Link:
         self._numbers = 0
         self._parameters = here.parameters
         here.before_first_node.clear()  # our turtle is not started: the robot is there
+        here.on_demand.clear()
         here.type_elsewhere, here.cut_off = self.type_there, None
         self.kernel.count_outside(1)
         self.kernel.at_stop(self.close)

@@ -298,7 +298,7 @@ class Session:
         """A client calls. It waits for a ``service_response``, so whatever is wrong is told by one (`_tell`)."""
         _compression(operation), _fragment_size(operation)  # before anything is done whose answer could not be sent
         name = self.hub.name(operation.get("service"), "service")
-        service = self.hub.graph.services.get(name)
+        service = self.hub.graph.service(name)
         if service is None:
             raise Refused(NOBODY.format(name))
         if len(self.calls) >= self.limits.calls:

@@ -104,7 +104,7 @@ class RosApi:
         return (list(self.graph.visible_services()),)
 
     def _service(self, name):
-        return self.graph.services.get(global_name(name))
+        return self.graph.service(global_name(name))
 
     def services_for_type(self, ros_type):
         return ([name for name, service in self.graph.visible_services().items() if service.type.name == ros_type],)

@@ -152,8 +152,10 @@ def fresh_start(
     kernel.start(clock=clock or time_setting.decide(), backend=backend, seed=seed, time_limit=time_limit, **options)
     boot() if whole else begin()
     from cramhy_runtime.languages.commonlisp.numbers.random_state import seed_random
+    from cramhy_runtime.robot_world.al5d.demand import start_when_asked_for
     from cramhy_runtime.turtlesim.node import start_with_first_node
 
     seed_random(seed)
     if turtlesim:
         start_with_first_node()
+        start_when_asked_for()

@@ -31,6 +31,7 @@ from cramhy_runtime.ros.search_folders import entries, is_file
 from cramhy_runtime.languages.commonlisp.pathnames.pathnames import DEFAULTS
 from cramhy_runtime.ground.source_places import circumstance, locate
 from .boot import fresh_start
+from cramhy_runtime.robot_world.al5d.demand import start_when_asked_for
 from cramhy_runtime.turtlesim.node import start_with_first_node
 
 from . import typed_texts
@@ -118,6 +119,7 @@ class Session:
             return cls(time)
         joined = cls.__new__(cls)
         start_with_first_node()
+        start_when_asked_for()
         joined._begin()
         return joined
 

@@ -76,8 +76,10 @@ def used_joints(machine: Machine, parts: RobotParts) -> tuple[list[str], dict[st
 class Engine:
     """The model of ``things``; ``robots``: the parts of those machines that servos drive, by their names.
 
-    before: an engine whose servos and trajectories go on.
+    before: an engine whose servos and trajectories go on. timestep: seconds of one step; a subclass for small things has a shorter one.
     """
+
+    timestep = STEP
 
     def __init__(self, things: Iterable[Item | Machine], robots: Mapping[Hashable, RobotParts], before: Engine | None = None) -> None:
         self.things, self.robots = list(things), dict(robots)
@@ -98,7 +100,11 @@ class Engine:
         spec = mujoco.MjSpec()
         spec.compiler.degree = False
         option = spec.option
-        option.timestep, option.integrator, option.cone = STEP, mujoco.mjtIntegrator.mjINT_IMPLICITFAST, mujoco.mjtCone.mjCONE_ELLIPTIC
+        option.timestep, option.integrator, option.cone = (
+            self.timestep,
+            mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
+            mujoco.mjtCone.mjCONE_ELLIPTIC,
+        )
         option.impratio = 10  # friction is ten times as stiff as contact, so that what is held does not creep
         has_floor = any(shape.kind == "plane" for thing in self.things for shape in thing.all_shapes())
         height = -1000 if has_floor else 0
@@ -338,7 +344,7 @@ class Engine:
     def step(self, seconds: float) -> None:
         """Let so much time pass."""
         model, data, step = self.model, self.data, mujoco.mj_step
-        count = max(1, round(seconds / STEP))
+        count = max(1, round(seconds / self.timestep))
         going = [(trajectory, servos) for _, trajectory, servos in self.trajectories if not trajectory.done]
         if not going:
             step(model, data, count)
@@ -346,7 +352,7 @@ class Engine:
         ctrl = data.ctrl
         for _ in range(count):
             for trajectory, servos in going:
-                ctrl[servos] = trajectory.after(STEP)
+                ctrl[servos] = trajectory.after(self.timestep)
             step(model, data)
 
     def at_rest(self) -> bool:

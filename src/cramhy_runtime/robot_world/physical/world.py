@@ -34,9 +34,14 @@ _LONGEST = 500  # ticks after the last motion: what trembles then lies
 
 
 class PhysicalWorld(World):
-    """Things by their names, with MuJoCo's state of them."""
+    """Things by their names, with MuJoCo's state of them.
+
+    engine_class: makes the model. tick: how many seconds the timer lets pass at once.
+    """
 
     lisp_name = "ROBOT-WORLD::PHYSICAL-WORLD"
+    engine_class: type[Engine] = Engine
+    tick = TICK
 
     def __init__(self) -> None:
         super().__init__()
@@ -54,7 +59,7 @@ class PhysicalWorld(World):
         """MuJoCo's model of the things, made anew when the set of them has changed."""
         if self._engine is None:
             robots = {name: parts for name, parts in self.parts.items() if name in self.things}
-            self._engine, self._before = Engine(self.solids(), robots, self._before), None
+            self._engine, self._before = self.engine_class(self.solids(), robots, self._before), None
         return self._engine
 
     def drive_with(self, name: Hashable, parts: RobotParts) -> None:
@@ -122,15 +127,15 @@ class PhysicalWorld(World):
         if active is not self._kernel:
             self._kernel, self._timer = active, None
         if active is not None and self._timer is None:
-            self._timer = active.call_at(active.now() + TICK, self._tick)
+            self._timer = active.call_at(active.now() + self.tick, self._tick)
 
     def _tick(self) -> None:
         self._timer = None
         if self._kernel is not kernel.active():
             return
-        self.advance(TICK)
+        self.advance(self.tick)
         if not self.at_rest:
-            self._timer = self._kernel.call_at(self._kernel.now() + TICK, self._tick)
+            self._timer = self._kernel.call_at(self._kernel.now() + self.tick, self._tick)
 
     def advance(self, seconds: float) -> None:
         """Let so much time pass at once."""

@@ -156,8 +156,7 @@ def lookup(here: Node, name: str) -> Service | None:
 
     If a handler ignores the error, the result is the service if it is offered by then, else ``None``.
     """
-    services = here.graph.services
-    if name not in services:
+    if here.graph.service(name) is None:
         cut_off = here.graph.cut_off
         rpc_error(
             f"lookupService {name}",
@@ -165,7 +164,7 @@ def lookup(here: Node, name: str) -> Service | None:
             f"no provider: {cut_off}" if cut_off else "no provider",
             hint=f'(wait-for-service "{name}") waits until the service is there again.' if cut_off else None,
         )
-    return services.get(name)
+    return here.graph.services.get(name)
 
 
 class ServiceClient:
@@ -254,7 +253,7 @@ def wait_for_service(service: ServiceClient | Text, timeout: float | None = None
     if not name.startswith(("/", "~")):
         name = here.naming.namespace + name  # what the master makes of it; remappings are not looked at here
     deadline = time_limit(timeout)
-    while name not in here.graph.services:
+    while here.graph.service(name) is None:
         if deadline is not None and kernel.now() >= deadline:
             return None
         pause = 0.1 if deadline is None else min(0.1, deadline - kernel.now())
