@@ -24,8 +24,8 @@ def without_seconds(text):
     return re.sub(r"\bin \d+\.\d\ds\b", "in 0.00s", text)
 
 
-SHORT = [path for path in KITCHEN if path.name in ("arms-and-grasps.md", "recovering.md", "bricks.md")]
-"""What of the kitchen and the arm is played in ordinary tests, too."""
+SHORT = [path for path in KITCHEN if path.name in ("arms-and-grasps.md", "recovering.md")]
+"""What of the kitchen is played in ordinary tests, too."""
 
 
 def rounded(text):

@@ -110,7 +110,7 @@ def test_the_exercise_of_the_course_ends_with_the_brick_where_it_is_to_be(table)
     assert lies(table, 0.06, 0.18, 3 * pi / 4)
 
 
-@pytest.mark.parametrize(("x", "y"), [(0.003, 0.15), (-0.003, 0.15), (0, 0.153), (0, 0.147)])
+@pytest.mark.parametrize(("x", "y"), [(0.003, 0.15), (0, 0.147)])
 def test_a_brick_that_is_not_quite_there_is_taken_all_the_same(table, x, y):
     table.spawn(x, y, yaw=pi / 2)
     table.pick(0, 0.15, pi / 2)
