@@ -70,7 +70,6 @@ def as_lisp(goal):
     """The value of ``?x`` in the first answer that Lisp gets."""
     answer = python_list(query.prolog(goal.form))[0]
     return next(pair.cdr for pair in python_list(answer) if pair.car is V.x.symbol)
-    return found
 
 
 def as_fact(value):
