@@ -22,10 +22,7 @@
 (pr2-proj:with-simulated-robot (perform (an action (type moving-torso) (joint-angle upper-limit))))
 ;=> NIL
 
-(flet ((from-there-p (x z)
-         (flet ((at (x y z) (cl-transforms-stamped:make-pose-stamped "map" 0.0 (cl-transforms:make-3d-vector x y z) (cl-transforms:make-identity-rotation))))
-           (and (validate-location-designator-solution
-                 (make-designator :location `((:reachable-for cram-pr2-description:pr2) (:pose ,(at 1 1 0.8)))) (at x 1 z))
-                t))))
-  (list (from-there-p 0.5 0.0) (from-there-p 0.9 0.0) (from-there-p 0.5 0.3)))
-;=> \(T NIL NIL\)
+(loop with names = (format nil "~s" (list-location-validation-functions))
+      for name in '("ROBOT-LOCATION-ON-FLOOR" "REACHABLE-LOCATION-VALIDATOR" "VISIBLE-LOCATION-VALIDATOR")
+      always (integerp (search name names)))
+;=> T
