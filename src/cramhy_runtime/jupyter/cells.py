@@ -156,10 +156,13 @@ class Notebook:
 
     def shown(self, value):
         """The text of a value of the last cell: as Lisp prints it, and as Hy does where Hy has answered and the value is not ours."""
-        if self.answered_in == HY and type(value).__module__.partition(".")[0] != "cramhy_runtime":
+        if self.answered_in == HY:
             import hy
 
-            return hy.repr(value)
+            from cramhy_runtime.languages.hy.answer_lists import is_ours
+
+            if not is_ours(value):
+                return hy.repr(value)
         with binding(PACKAGE, self.package):
             return value_text(value)
 

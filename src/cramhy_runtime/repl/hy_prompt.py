@@ -37,7 +37,7 @@ from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of, report
 from cramhy_runtime.session import time_setting
-from cramhy_runtime.languages.hy import malformed, module_names, program_texts
+from cramhy_runtime.languages.hy import answer_lists, malformed, module_names, program_texts
 from cramhy_runtime.languages.hy.lisp_data import package_of
 from cramhy_runtime.languages.hy.program_texts import TypedName, name_as_later_releases
 from cramhy_runtime.languages.hy.reader import TypedReader, is_way_back, more_wanted, rest_of_text, source_of
@@ -339,7 +339,7 @@ class HyPrompt(Listener):
 
     def shown_in_hy(self, value):
         """The text that the REPL shows for ``value`` in Hy: what is ours as Lisp prints it in the package of the module."""
-        if type(value).__module__.partition(".")[0] != "cramhy_runtime":
+        if not answer_lists.is_ours(value):
             return hy.repr(value)
         with binding(PACKAGE, package_of(self.repl.module.__name__)):
             text = prin1_to_string(value)

@@ -50,6 +50,12 @@ class Lists:
         return found
 
 
+def is_ours(value):
+    """Whether a prompt of Hy shows ``value`` as Lisp prints it. An `EmptyList` is shown as any empty list of Hy."""
+    kind = type(value)
+    return kind.__module__.partition(".")[0] == "cramhy_runtime" and kind is not EmptyList
+
+
 def in_goal(value, package, functor):
     """The Lisp object that ``value`` stands for in a goal of ``functor``, a symbol or ``None``; package: as for `inserted`."""
     if functor is not None and gets_objects(functor):
