@@ -318,7 +318,11 @@ def _read_definitions(path):
 
 def asdf_user():
     """The package ASDF-USER, in which ``.asd`` files are read."""
-    return find_package("ASDF-USER") or register(Package("ASDF-USER", (), [find_package(name) for name in ("COMMON-LISP", "ASDF", "UIOP")]))
+    known = find_package("ASDF-USER")
+    if known is not None:
+        return known
+    find_package("UIOP").complete()
+    return register(Package("ASDF-USER", (), [find_package(name) for name in ("COMMON-LISP", "ASDF", "UIOP")]))
 
 
 # ----------------------------------------------------------------------------------------------------------------- loading
