@@ -132,7 +132,7 @@ def _ask_registry(name):
         path = _find_below(f"{name}.asd", True)
     if path is not None:
         load_asd(path)
-        choose_file(path.absolute())
+        choose_file(really_at(path))
 
 
 def central_registry():
@@ -291,7 +291,7 @@ def known_systems():
 
 def load_asd(path, force=False):
     """Read a ``.asd`` file unless that was done and it has not changed: define its systems, evaluate its other forms."""
-    path = Path(path).absolute()
+    path = really_at(path)
     state = file_state(path)
     if path in _reading or not force and unchanged(path, _read.get(path)):
         return
@@ -301,6 +301,13 @@ def load_asd(path, force=False):
     finally:
         _reading.remove(path)
     _read[path] = state
+
+
+def really_at(path):
+    """The file ``path`` from the root on; of a link that is called as its target, the target: the files of the system lie beside it."""
+    path = Path(path).absolute()
+    target = Path(os.path.realpath(path)) if path.is_symlink() else path
+    return target if target.name == path.name else path
 
 
 def _read_definitions(path):
@@ -333,6 +340,8 @@ def find_system(name, required_by=None):
     if is_provided(name):
         return systems.setdefault(name, System(name, Path(__file__).parents[3]))
     path = find_asd(name)
+    if path is None and "." in name and name not in systems:
+        path = find_asd(name.rpartition(".")[0])  # cl-json.test stands in cl-json.asd
     if path is not None:
         load_asd(path)
     system = systems.get(name)
@@ -349,7 +358,7 @@ def _why_missing(name, path, required_by):
     near = near_names(name, known_systems())
     hint = f" Did you mean {' or '.join(near)}?" if near else ""
     if path is not None:
-        there = ", ".join(sorted(system.name for system in systems.values() if system.file == path)) or "no system"
+        there = ", ".join(sorted(system.name for system in systems.values() if system.file == really_at(path))) or "no system"
         return f"{path} defines {there}.{hint}"
     if name in NOT_TO_BE_HAD:
         return f"{name} cannot be had in cramhy: {NOT_TO_BE_HAD[name]}."
@@ -482,6 +491,8 @@ def _ordered(module):
             )
         active.append(component.name)
         for other in component.depends_on:
+            if other not in by_name and other in module.without:
+                continue
             if other not in by_name:
                 error(
                     CompileError(
