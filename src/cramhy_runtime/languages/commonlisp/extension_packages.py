@@ -16,7 +16,7 @@ from .files import files
 from .pathnames import pathnames
 from .numbers import random_state
 from .objects import protocol
-from cramhy_runtime.ground.packages import Package, ensure_package, our_own, sym
+from cramhy_runtime.ground.packages import COMMON_LISP, Package, ensure_package, our_own, sym
 from .packages import package_functions
 
 INFINITIES = {
@@ -80,6 +80,9 @@ def define_faces():
     define_face("SB-MOP", functions={protocol: protocol.MOP_NAMES})
     for name in LATE:
         come_late(name)
+    internals = ensure_package("SB-IMPL")  # programs write sb-impl::file-stream
+    internals.built_in = True
+    internals.use_package(COMMON_LISP)
 
 
 def come_late(name):

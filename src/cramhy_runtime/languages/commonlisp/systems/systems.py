@@ -51,6 +51,10 @@ chosen: dict = per_image({})
 """Name of a system that cramhy contains, too → the ``.asd`` file that the user has loaded, or has put into the central registry."""
 NOT_TO_BE_HAD = {
     "sb-bsd-sockets": "it is part of SBCL; Python's socket module does its work",
+    "sb-rt": "it is part of SBCL; Debian's rt is the same library, apart from its name",
+    "sb-concurrency": "it is part of SBCL; cram-utilities has queues, and waiting on a fluent does the work of a mailbox",
+    "sb-cltl2": "it is part of SBCL and asks its compiler, which is another here",
+    "uffi": "it calls functions of C, which cramhy cannot; Python's ctypes does its work",
     "usocket": "it opens sockets by functions of the system; Python's socket module does its work",
     "osicat": "it calls functions of C, which cramhy cannot; Python's os module does its work",
     "gsll": "it calls the GNU Scientific Library; cram-math, and numpy by (py:import numpy), do its work",
