@@ -106,6 +106,7 @@ RECORDINGS = [
         comments=True,
         library="/usr/share/common-lisp/source/alexandria",
     ),
+    Recording(TESTS / "libraries" / "uiop.txt", (*SBCL, "record.lisp", "uiop"), comments=True),
 ]
 
 

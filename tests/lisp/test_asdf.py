@@ -263,3 +263,81 @@ def test_systems_that_are_part_of_cramhy_may_be_depended_on(write, run):
 def test_the_arguments_of_the_command_line(run):
     assert run('(let ((uiop:*command-line-arguments* \'("a"))) (uiop:command-line-arguments))') == '("a")'
     assert run("(every #'stringp uiop:*command-line-arguments*)") == "T"
+
+
+FUNCTIONS_WITH_METHODS = """component-name component-pathname component-version component-parent component-system component-children
+    component-loaded-p find-system find-component system-source-file system-description system-author system-license system-depends-on
+    version-satisfies""".split()
+
+
+@pytest.mark.parametrize("name", FUNCTIONS_WITH_METHODS)
+def test_the_functions_of_asdf_take_methods(run, name):
+    """For a class of the program's own; what they say of systems stays as it was."""
+    lambda_list = {"find-component": "((b asdf-thing) path)", "version-satisfies": "((v asdf-thing) wanted)"}.get(name, "((c asdf-thing))")
+    if name == "find-system":
+        lambda_list = "((c asdf-thing) &optional e)"
+    arguments = "(make-instance 'asdf-thing)" + (" nil" if name in ("find-component", "version-satisfies") else "")
+    assert (
+        run(f"""(defclass asdf-thing () ()) (defmethod asdf:{name} {lambda_list} :mine)
+    (prog1 (list (asdf:{name} {arguments}) (asdf:component-name (asdf:find-system :roslisp)))
+      (remove-method #'asdf:{name} (find (find-class 'asdf-thing) (sb-mop:generic-function-methods #'asdf:{name})
+        :key (lambda (m) (first (sb-mop:method-specializers m))))))""")
+        == '(:MINE "roslisp")'
+    )
+
+
+def test_methods_on_operate_and_perform_of_files(write, run):
+    write(
+        "operated.asd",
+        """(defsystem "operated" :components ((:file "operated-x")))
+(defmethod asdf:operate :after ((o (eql 'asdf:load-op)) (c (eql :operated)) &key) (push :after cl-user::*log*))""",
+    )
+    write("operated-x.lisp", logging(":x"))
+    assert run("(asdf:find-system :operated) (asdf:operate 'asdf:load-op :operated) (reverse *log*)") == "(:X :AFTER)"
+
+
+def test_components_of_a_class_of_the_program(write, run):
+    write(
+        "classed.asd",
+        """(defclass own-file (asdf:cl-source-file) ())
+(defclass own-data (asdf:static-file) ())
+(defsystem "classed" :default-component-class own-file :components ((:file "classed-a") (:own-file "classed-b") (:own-data "d.txt")))""",
+    )
+    write("classed-a.lisp", logging(":a"))
+    write("classed-b.lisp", logging(":b"))
+    assert run("(asdf:load-system :classed) (reverse *log*)") == "(:A :B)"
+    assert (
+        run("(mapcar #'type-of (asdf:component-children (asdf:find-system :classed)))")
+        == "(ASDF-USER::OWN-FILE ASDF-USER::OWN-FILE ASDF-USER::OWN-DATA)"
+    )
+
+
+def test_a_link_to_an_asd_file_is_read_where_the_file_lies(write, run, tmp_path):
+    """Catkin packages have ``pkg/x.asd -> src/x.asd``, Debian ``systems/x.asd -> ../source/x/x.asd``."""
+    write("real/src/linked.asd", '(defsystem "linked" :components ((:file "linked-x")))')
+    write("real/src/linked-x.lisp", logging(":linked"))
+    (tmp_path / "real" / "linked.asd").symlink_to("src/linked.asd")
+    assert run("(asdf:load-system :linked) *log*") == "(:LINKED)"
+    assert run("(namestring (asdf:system-source-directory :linked))").endswith('/real/src/"')
+
+
+def test_others_may_depend_on_a_component_whose_feature_is_missing(write, run):
+    write(
+        "featured.asd",
+        """(defsystem "featured" :components ((:file "f-no" :if-feature :no-such) (:file "f-yes" :depends-on ("f-no"))
+  (:module "m" :if-feature :no-such :components ((:file "y"))) (:file "f-last" :depends-on ("m" "f-yes"))))""",
+    )
+    write("f-yes.lisp", logging(":yes"))
+    write("f-last.lisp", logging(":last"))
+    assert run("(asdf:load-system :featured) (reverse *log*)") == "(:YES :LAST)"
+
+
+@pytest.mark.parametrize("name", ["dotted.test", "dotted/test", "net.example.dotted"])
+def test_a_system_may_have_a_dot_in_its_name(write, run, name):
+    write(
+        "dotted.asd",
+        '(defsystem "dotted") (defsystem "dotted.test" :components ((:file "dotted-x"))) (defsystem "dotted/test" :components ((:file "dotted-x")))',
+    )
+    write("net.example.dotted.asd", '(defsystem "net.example.dotted" :components ((:file "dotted-x")))')
+    write("dotted-x.lisp", logging(":dotted"))
+    assert run(f"(asdf:load-system {name!r}) *log*".replace("'", '"')) == "(:DOTTED)"

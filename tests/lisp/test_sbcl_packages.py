@@ -226,6 +226,27 @@ def test_hooks_run_before_the_debugger_and_at_the_end(tmp_path, lisp):
     assert process(tmp_path, "-m", "cramhy_runtime.cli", "run", "hooks.lisp") == ["1", ":BYE"]
 
 
+@pytest.mark.parametrize(
+    ("form", "value"),
+    [
+        ("(sb-int:constant-form-value ''a)", "A"),
+        ("(sb-int:constant-form-value 'pi)", "3.141592653589793d0"),
+        ("(locally (declare (sb-ext:muffle-conditions sb-ext:compiler-note sb-ext:code-deletion-note)) 1)", "1"),
+        ("(handler-case 2 (sb-ext:code-deletion-note () 3))", "2"),
+        ("(subtypep 'sb-ext:code-deletion-note 'sb-ext:compiler-note)", "T"),
+        ("(let ((sb-ext:*derive-function-types* t) (sb-ext:*inline-expansion-limit* 100)) 1)", "1"),
+        ("(eq 'sb-impl::file-stream 'cl:file-stream)", "T"),
+        ("(class-name (find-class 'sb-mop:slot-definition))", "SB-MOP:SLOT-DEFINITION"),
+        ("(typep (first (sb-mop:class-direct-slots (defclass sbcl-slotted () (a)))) 'sb-mop:slot-definition)", "T"),
+        ("(subtypep 'sb-mop:effective-slot-definition 'sb-mop:slot-definition)", "T"),
+        ("(let ((cpl-impl::*tasks* (cut:make-queue))) (cpl-impl::list-saved-tasks))", "NIL"),
+        ("(mapcar (lambda (s) (asdf:load-system s)) '(:roslisp-utils :roslisp-msg-protocol :ros-load-manifest))", "(T T T)"),
+    ],
+)
+def test_names_that_libraries_declare_about_and_systems_that_they_ask_for(session, form, value):
+    assert prin1_to_string(session.evaluate_text(form)[0]) == value
+
+
 def process(folder, *words):
     done = subprocess.run(
         [sys.executable, *words], capture_output=True, text=True, cwd=folder, env={**os.environ, "PYTHONDONTWRITEBYTECODE": ""}
@@ -248,6 +269,6 @@ import sys
 from cramhy_runtime.repl.session import Session
 session = Session(time="virtual")
 session.evaluate_text("(print (list sb-ext:double-float-positive-infinity (sb-ext:posix-getenv \\"NO\\")))")
-print([name for name in sys.modules if ".commonlisp.sbcl" in name])
+print([name for name in sys.modules if ".commonlisp.sbcl" in name or ".uiop." in name and not name.endswith(".texts")])
 """
     assert process(tmp_path, "-c", program)[-1] == "[]"

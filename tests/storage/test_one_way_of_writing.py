@@ -44,6 +44,8 @@ EXCEPT = {
         "open",
     ): "Lisp's :append and :overwrite change a file where it is, as they should; devices, too",
     ("languages/commonlisp/files/files.py", "rename"): "rename-file renames a file that the user named",
+    ("languages/commonlisp/uiop/files.py", "mkstemp"): "UIOP's files that a program wants for a moment, and its new, empty ones",
+    ("languages/commonlisp/uiop/processes.py", "open"): "a file that another program appends to",
     ("repl/history.py", "open"): "forms are appended, each in a piece, to a file that sessions share",
     ("ros/roslisp/log_file.py", "open"): "a log is appended to, line by line",
     ("rosbridge/sessions.py", "fdopen"): "session files have rules of their own; they are written beside their place and renamed there",

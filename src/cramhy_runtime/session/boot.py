@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 SYSTEMS = """cram-language cram-utilities cram-prolog cram-designators cram-process-modules cram-language-designator-support
 cram-executive cram-projection cram-execution-trace cram-occasions-events cl-transforms
 cl-transforms-stamped cl-tf cl-tf2 actionlib actionlib-lisp roslisp roslisp-utilities turtlesim asdf uiop trivial-features
-sb-posix sb-thread"""
+sb-posix sb-thread roslisp-utils roslisp-msg-protocol ros-load-manifest asdf-package-system"""
 """The systems of CRAM, ROS and ASDF that need no loading, because they are here. Those of messages are made on demand (ros/messages.py)."""
 
 TF_PACKAGES = ("CL-TRANSFORMS-STAMPED", "TF-TYPES", "CL-TF", "TF", "CL-TF2")
@@ -73,7 +73,9 @@ def boot():
 def _complete():
     from cramhy_runtime.kernel import images
     from cramhy_runtime.ground import packages
-    from cramhy_runtime.languages.commonlisp.systems import asdf, ros_load, systems, uiop, unit_tests
+    from cramhy_runtime.languages.commonlisp.systems import asdf, ros_load, systems, unit_tests
+    from cramhy_runtime.languages.commonlisp.extension_packages import come_late
+    from cramhy_runtime.languages.commonlisp.uiop import texts
     from cramhy_runtime.languages.commonlisp.faces.all_faces import FACES
     from cramhy_runtime.languages.commonlisp.packages.face_definition import define_face
     from . import time_setting
@@ -88,7 +90,8 @@ def _complete():
         packages.on_demand.update(dict.fromkeys(("ACTIONLIB-LISP", "ACTIONLIB"), define_actionlib))
         ros_load.define_faces()
         asdf.define_faces()
-        uiop.define_faces()
+        texts.define_faces()
+        come_late("UIOP")
         define_face(
             "CRAMHY", functions={"within-limit": unit_tests.within_limit, "time": time_setting.time, "define-costmaps": define_costmaps}
         )

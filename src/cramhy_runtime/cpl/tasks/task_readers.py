@@ -94,5 +94,5 @@ def list_saved_tasks():
 
 
 def save_tasks(tasks):
-    """``(setf *tasks* list)``: let ``list`` be what `list_saved_tasks` returns."""
-    saved_tasks[:] = list(tasks) if truth(tasks) else []
+    """``(setf *tasks* list)``: let ``list``, or what is in a queue, be what `list_saved_tasks` returns."""
+    saved_tasks[:] = list(getattr(tasks, "items", tasks)) if truth(tasks) else []

@@ -9,7 +9,8 @@ imports only from those that are named before it:
 * `reader`, `printer`, `format`
 * `compiler`, `evaluation` (definitions, places, symbols, functions)
 * `python` (joins the two languages), `tools` (answers at the prompt), `coverage` (of the standard), `systems` (loads programs)
-* `sbcl` (SBCL's own packages: threads, timers, streams of users' classes), `extension_packages` (makes them when they are named)
+* `sbcl` (SBCL's own packages: threads, timers, streams of users' classes), `uiop` (the portable functions of ASDF),
+  `extension_packages` (makes them when they are named)
 * `answers` (at the ports of the ground), `package` (makes COMMON-LISP)
 * `faces` (show the rooms below)
 """

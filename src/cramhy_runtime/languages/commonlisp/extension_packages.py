@@ -16,7 +16,7 @@ from .files import files
 from .pathnames import pathnames
 from .numbers import random_state
 from .objects import protocol
-from cramhy_runtime.ground.packages import Package, ensure_package, our_own, sym
+from cramhy_runtime.ground.packages import COMMON_LISP, Package, ensure_package, our_own, sym
 from .packages import package_functions
 
 INFINITIES = {
@@ -28,7 +28,7 @@ INFINITIES = {
 
 
 LATE = ("SB-THREAD", "SB-EXT", "SB-SYS", "SB-POSIX", "SB-DEBUG", "SB-GRAY", "SB-MOP", "SB-PCL", "SB-INT")
-"""The packages of which a part comes late."""
+"""The packages of SBCL of which a part comes late; so does the greater part of UIOP."""
 
 
 class LatePackage(Package):
@@ -47,10 +47,15 @@ class LatePackage(Package):
         """Make sure that all external symbols are there."""
         if not self.is_complete:
             self.is_complete = True
-            from .sbcl import packages
-
             with our_own:
-                packages.complete(self.name)
+                if self.name == "UIOP":
+                    from .uiop import names
+
+                    names.complete()
+                else:
+                    from .sbcl import packages
+
+                    packages.complete(self.name)
 
 
 def define_faces():
@@ -74,5 +79,13 @@ def define_faces():
         sym(f"SB-EXT::{name.upper()}").constant = True
     define_face("SB-MOP", functions={protocol: protocol.MOP_NAMES})
     for name in LATE:
-        package = ensure_package(name)
-        package.built_in, package.__class__ = True, LatePackage
+        come_late(name)
+    internals = ensure_package("SB-IMPL")  # programs write sb-impl::file-stream
+    internals.built_in = True
+    internals.use_package(COMMON_LISP)
+
+
+def come_late(name):
+    """Let the rest of the package ``name`` come when a program asks for it."""
+    package = ensure_package(name)
+    package.built_in, package.__class__ = True, LatePackage

@@ -87,7 +87,13 @@ def _name(cls):
     return printed(symbol) if symbol is not None else vars(cls).get("lisp_name", cls.__name__)
 
 
-class DirectSlot:
+class SlotDefinition:
+    """The class of `DirectSlot` and `Slot`."""
+
+    lisp_name = "SB-MOP::SLOT-DEFINITION"
+
+
+class DirectSlot(SlotDefinition):
     """A slot as a class definition gives it. ``initfunction`` is a thunk or ``None``; ``cell`` holds the value of a class slot."""
 
     def __init__(
@@ -108,7 +114,7 @@ class DirectSlot:
         self.cell = None
 
 
-class Slot:
+class Slot(SlotDefinition):
     """A slot as instances of one class have it: `DirectSlot` definitions of all superclasses combined (ANSI 7.5.3)."""
 
     def __init__(self, name, attribute, initargs=(), initfunction=None, initform=None, type=True, owner=None):

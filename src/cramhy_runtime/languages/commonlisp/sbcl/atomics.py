@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
-def _stored(place: Any, environment: Any, compute: Callable[[Any], Any], gives_old: bool = True, before: Any = ()) -> Any:
+def stored(place: Any, environment: Any, compute: Callable[[Any], Any], gives_old: bool = True, before: Any = ()) -> Any:
     """The form that stores what ``compute(old)`` says into PLACE. BEFORE: pairs of variables and forms that are evaluated first."""
     temporaries, forms, stores, setter, getter = setf_expansion(place, environment)
     old = gensym("OLD")
@@ -28,7 +28,7 @@ def _stored(place: Any, environment: Any, compute: Callable[[Any], Any], gives_o
 
 def _counting(operator: str) -> Callable[[Any, Any, Any], Any]:
     def expand(environment: Any, place: Any, difference: Any = 1) -> Any:
-        return _stored(place, environment, lambda old: lisp_list(sym(operator), old, difference))
+        return stored(place, environment, lambda old: lisp_list(sym(operator), old, difference))
 
     return expand
 
@@ -43,15 +43,15 @@ def _swap(environment: Any, place: Any, expected: Any, new: Any) -> Any:
 
 def _push(environment: Any, item: Any, place: Any) -> Any:
     value = gensym("ITEM")
-    return _stored(place, environment, lambda old: lisp_list(sym("CONS"), value, old), gives_old=False, before=[(value, item)])
+    return stored(place, environment, lambda old: lisp_list(sym("CONS"), value, old), gives_old=False, before=[(value, item)])
 
 
 def _pop(environment: Any, place: Any) -> Any:
-    return lisp_list(sym("CAR"), _stored(place, environment, lambda old: lisp_list(sym("CDR"), old)))
+    return lisp_list(sym("CAR"), stored(place, environment, lambda old: lisp_list(sym("CDR"), old)))
 
 
 def _update(environment: Any, place: Any, function: Any, *arguments: Any) -> Any:
-    return _stored(place, environment, lambda old: lisp_list(sym("FUNCALL"), function, *arguments, old), gives_old=False)
+    return stored(place, environment, lambda old: lisp_list(sym("FUNCALL"), function, *arguments, old), gives_old=False)
 
 
 def _defined(environment: Any, name: Any, value: Any, *documentation: Any) -> Any:

@@ -10,9 +10,9 @@ import sys
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ground import hash_tables
-from cramhy_runtime.ground.condition_types import SeriousCondition
+from cramhy_runtime.ground.condition_types import Condition, SeriousCondition
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Cons, LispString, MultipleValues, boolean, lisp_list, list_from
+from cramhy_runtime.ground.data import Cons, LispString, MultipleValues, boolean, lisp_list, list_from, one
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.hash_tables import need_table
 from cramhy_runtime.ground.packages import printed, sym
@@ -22,6 +22,8 @@ from cramhy_runtime.utilities.locks import lock_of_table
 
 from ..collections.array_making import make_array
 from ..collections.sequence_types import bounds, part
+from ..evaluation.evaluator import evaluate
+from ..evaluation.forms import constantp
 from ..evaluation.process_usage import peak_memory
 from ..streams.external_formats import external_format as format_of
 from ..types.types import expand_type, is_known_type, type_expander
@@ -136,6 +138,25 @@ def _run_exit_hooks() -> None:
     hooks, _exit_hooks[:] = list(_exit_hooks), []
     for hook in hooks:
         function_of(hook)()
+
+
+class CompilerNote(Condition):
+    """What SBCL's compiler says of code that it could make faster. Here it is never signalled, but programs declare about it."""
+
+    lisp_name = "SB-EXT::COMPILER-NOTE"
+
+
+class CodeDeletionNote(CompilerNote):
+    """What SBCL's compiler says of code that is never reached. Here it is never signalled."""
+
+    lisp_name = "SB-EXT::CODE-DELETION-NOTE"
+
+
+def constant_form_value(form: Any, environment: Any = None) -> object:
+    """``sb-int:constant-form-value``: the value of a form for which ``constantp`` is true; another is an error."""
+    if constantp(form, environment) is None:
+        return error("~S is not a constant form", form)
+    return one(evaluate(form))
 
 
 class InteractiveInterrupt(SeriousCondition):

@@ -17,7 +17,7 @@ from cramhy_runtime.utilities.wait_queue import need
 
 from ..objects import slots
 from ..objects.class_definition import default_initargs
-from ..objects.class_objects import DirectSlot, Slot
+from ..objects.class_objects import DirectSlot, Slot, SlotDefinition
 from ..objects.classes import alias_class
 from ..objects.protocol import allocate_instance
 from ..packages.face_definition import define_face
@@ -124,6 +124,13 @@ slot-definition direct-slot-definition effective-slot-definition standard-slot-d
 standard-effective-slot-definition"""
 
 
+_SLOT_CLASSES = {
+    SlotDefinition: "STANDARD-SLOT-DEFINITION",
+    DirectSlot: "DIRECT-SLOT-DEFINITION STANDARD-DIRECT-SLOT-DEFINITION",
+    Slot: "EFFECTIVE-SLOT-DEFINITION STANDARD-EFFECTIVE-SLOT-DEFINITION",
+}
+
+
 def define() -> None:
     """Complete SB-MOP, and make SB-PCL of it."""
     this = sys.modules[__name__]
@@ -133,8 +140,9 @@ def define() -> None:
     if not validate.methods:
         validate.method(None, None)(lambda class_, superclass: True)
     package.export(package.intern("VALIDATE-SUPERCLASS"))
-    for name, cls in {"STANDARD-DIRECT-SLOT-DEFINITION": DirectSlot, "STANDARD-EFFECTIVE-SLOT-DEFINITION": Slot}.items():
-        alias_class(package.intern(name), cls)
+    for cls, names in _SLOT_CLASSES.items():
+        for name in names.split():
+            alias_class(package.intern(name), cls)
     pcl = ensure_package("SB-PCL")
     for symbol in list(package.external.values()):
         name = getattr(symbol, "name", None)

@@ -108,10 +108,13 @@ def define_extensions() -> None:
             "*after-gc-hooks*": None,
             "*gc-run-time*": 0,
             "*default-external-format*": sym(":UTF-8"),
+            "*derive-function-types*": None,
+            "*inline-expansion-limit*": 350,
+            "*muffled-warnings*": None,
             "*runtime-pathname*": None,
             "*core-pathname*": None,
         },
-        export="timeout timer weak-pointer word",
+        export="timeout timer weak-pointer word compiler-note code-deletion-note",
         internal="timeout-seconds",
     )
     _macros("SB-EXT")
@@ -151,8 +154,8 @@ def define_debug() -> None:
 
 
 def define_internals() -> None:
-    """The part of SB-INT that programs use."""
-    define_face("SB-INT", export="compiled-program-error")
+    """What programs use of SB-INT."""
+    define_face("SB-INT", functions={extensions: "constant-form-value"}, export="compiled-program-error")
     _macros("SB-INT")
 
 

@@ -8,6 +8,8 @@ from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import Cons, list_from, lisp_list, truth
 from ..packages.face_definition import define_face
 from ..files.files import lisp_path
+from cramhy_runtime.ground.dispatch.generic_functions import protocol_function
+from cramhy_runtime.ground.keyword_calls import lispify
 from cramhy_runtime.ground.packages import is_symbol, keyword, string_designator, sym, symbol_name
 from ..reader.dispatch_macros import FEATURES
 from ..streams.streams import STANDARD_OUTPUT
@@ -103,7 +105,7 @@ def load_asd(pathname, *, name=None):
     if not path.is_file():
         return error(systems.MissingComponent("There is no file ~A.", str(path)))
     systems.load_asd(path, force=True)
-    systems.choose_file(path.absolute())
+    systems.choose_file(systems.really_at(path))
     return None
 
 
@@ -212,45 +214,50 @@ def define_system_here(form):
     return define_system(form, folder_of_load(), load=systems.load_system)
 
 
+GENERIC = {
+    "operate": ("(operation component &key &allow-other-keys)", operate),
+    "system-source-file": ("(component)", system_source_file),
+    "system-source-directory": ("(component)", system_source_directory),
+    "component-pathname": ("(component)", component_pathname),
+    "component-name": ("(component)", component_name_of),
+    "component-parent": ("(component)", component_parent),
+    "component-system": ("(component)", component_system),
+    "component-children": ("(component)", component_children),
+    "component-version": ("(component)", component_version),
+    "component-loaded-p": ("(component)", component_loaded_p),
+    "find-component": ("(base path)", find_component),
+    "find-system": ("(system &optional error-p)", find_system),
+    "version-satisfies": ("(version wanted)", version_satisfies),
+    "system-description": ("(component)", _option("DESCRIPTION")),
+    "system-author": ("(component)", _option("AUTHOR")),
+    "system-maintainer": ("(component)", _option("MAINTAINER")),
+    "system-license": ("(component)", _option("LICENSE", "LICENCE")),
+    "system-licence": ("(component)", _option("LICENSE", "LICENCE")),
+    "system-long-description": ("(component)", _option("LONG-DESCRIPTION")),
+    "system-depends-on": ("(component)", system_depends_on),
+}
+"""The functions to which programs add methods for classes of their own, as they may in ASDF: name, lambda list, what it says of ours."""
+
+
 def define_faces():
     """Make the packages ASDF and QL."""
     FEATURES.value = list_from([*(FEATURES.value or ()), *(keyword(name) for name in ("ASDF", "ASDF2", "ASDF3", "ASDF3.1", "ASDF3.2"))])
     define_face(
         "ASDF",
         functions={
-            "find-system": find_system,
             "load-system": load_system,
             "load-systems": load_systems,
             "require-system": require_system,
             "compile-system": load_system,
             "make": load_system,
-            "operate": operate,
-            "oos": operate,
+            "oos": lambda operation, component, *options: sym("ASDF::OPERATE").function(operation, component, *options),
             "test-system": test_system,
             "clear-system": clear_system,
             "load-asd": load_asd,
             "registered-systems": registered_systems,
             "already-loaded-systems": already_loaded_systems,
-            "component-loaded-p": component_loaded_p,
-            "system-source-file": system_source_file,
-            "system-source-directory": system_source_directory,
             "system-relative-pathname": system_relative_pathname,
-            "component-pathname": component_pathname,
-            "component-name": component_name_of,
-            "component-parent": component_parent,
-            "component-system": component_system,
-            "component-children": component_children,
             "module-components": component_children,
-            "component-version": component_version,
-            "find-component": find_component,
-            "system-description": _option("DESCRIPTION"),
-            "system-author": _option("AUTHOR"),
-            "system-maintainer": _option("MAINTAINER"),
-            "system-license": _option("LICENSE", "LICENCE"),
-            "system-licence": _option("LICENSE", "LICENCE"),
-            "system-long-description": _option("LONG-DESCRIPTION"),
-            "system-depends-on": system_depends_on,
-            "version-satisfies": version_satisfies,
             "asdf-version": lambda: "3.3.1",
             "initialize-source-registry": initialize_source_registry,
             "perform": PERFORM,
@@ -259,6 +266,9 @@ def define_faces():
         export="defsystem operation component module system cl-source-file static-file doc-file html-file "
         "missing-component missing-dependency " + " ".join(name.lower() for name in OPERATIONS),
     )
+    for name, (lambda_list, function) in GENERIC.items():
+        made = protocol_function(f"ASDF::{name.upper()}", lambda_list, lispify(function))
+        sym(f"ASDF::{name.upper()}").package.export(made.__lisp_name__)
     define_face("CRAMHY", functions={"define-system-here": define_system_here})
     define_face("QUICKLISP-CLIENT", nicknames=["QL"], functions={"quickload": quickload})
     sym("ASDF::DEFSYSTEM").macro = _defsystem

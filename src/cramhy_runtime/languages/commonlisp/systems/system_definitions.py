@@ -11,10 +11,20 @@ from pathlib import Path
 
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.ground.conditions import CompileError, error, style_warn
-from cramhy_runtime.ground.data import Cons, Symbol, list_from, lisp_list
-from ..evaluation.evaluator import evaluate
+from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from, lisp_list
+from ..evaluation.evaluator import PACKAGE, evaluate
+from ..objects.classes import find_class
 from cramhy_runtime.ground.dispatch.generic_functions import EqlSpecializer, add_method, generic, remove_method
-from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, is_symbol, keyword, string_designator, sym, symbol_name
+from cramhy_runtime.ground.packages import (
+    COMMON_LISP,
+    ensure_package,
+    find_package,
+    is_symbol,
+    keyword,
+    string_designator,
+    sym,
+    symbol_name,
+)
 from ..printer.printer import define_printer
 from ..reader.dispatch_macros import FEATURES
 
@@ -97,11 +107,13 @@ class SourceFile(Component):
 
 
 class Module(Component):
+    """A folder of components. without: the names of those that are left out, since a feature that they need is missing."""
+
     lisp_name = "ASDF::MODULE"
 
     def __init__(self, name, parent=None, depends_on=(), path=None):
         super().__init__(name, parent, depends_on, path)
-        self.components = []
+        self.components, self.without, self.default_component_class = [], set(), None
 
 
 class System(Module):
@@ -278,6 +290,8 @@ def _components(parent, table):
             form.car,
         )
         form = Cons(form, None)
+    inherited = parent.parent and parent.parent.default_component_class
+    parent.default_component_class = table.get("DEFAULT-COMPONENT-CLASS") or inherited
     made = [component for item in _listed(system, "COMPONENTS", form) if (component := _component(parent, item)) is not None]
     if table.get("SERIAL") is not None:
         for earlier, later in zip(made, made[1:]):
@@ -307,15 +321,36 @@ def _component(parent, form):
         return error(CompileError('DEFSYSTEM ~A: a component is (:file "name" ...) or (:module "name" ...), not ~S.', system, form))
     options = _component_options(system, form)
     if "IF-FEATURE" in options and not holds(options["IF-FEATURE"]):
+        parent.without.add(component_name(form.cdr.car))
         return None
     depends = [
         component_name(item.cdr.cdr.car if isinstance(item, Cons) else item)
         for item in _listed(system, "DEPENDS-ON", options.get("DEPENDS-ON"))
         if not isinstance(item, Cons) or holds(item.cdr.car)
     ]  # (:feature f "x")
-    made = _KINDS.get(symbol_name(form.car), StaticFile)(component_name(form.cdr.car), parent, depends, _path(options.get("PATHNAME")))
+    made = _made(_class_of_component(parent, form.car), component_name(form.cdr.car), parent, depends, _path(options.get("PATHNAME")))
     if isinstance(made, Module):
         made.components = _components(made, options)
+    return made
+
+
+def _class_of_component(parent, kind):
+    """The class of a component: ASDF's, or one that the program has made of it with ``defclass``, in the current package or ASDF."""
+    if symbol_name(kind) == "FILE" and parent.default_component_class is not None:
+        kind = parent.default_component_class
+    places = [PACKAGE.value, find_package("ASDF")] if isinstance(kind, Keyword) else [kind.package]
+    symbols = [place.lookup(symbol_name(kind))[0] for place in places if place is not None]
+    known = [cls for symbol in symbols if isinstance(symbol, Symbol) and issubclass(cls := find_class(symbol, None) or object, Component)]
+    return known[0] if known else _KINDS.get(symbol_name(kind), StaticFile)
+
+
+def _made(cls, *parts):
+    """The component of the class ``cls``; one of the program's own is made as ``make-instance`` makes it."""
+    ours = next(base for base in cls.__mro__ if base.__module__ == __name__)
+    if cls is ours:
+        return cls(*parts)
+    made = sym("MAKE-INSTANCE").function(cls, keyword("NAME"), parts[0])
+    ours.__init__(made, *parts)
     return made
 
 

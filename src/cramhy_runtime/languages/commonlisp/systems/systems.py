@@ -52,6 +52,10 @@ chosen: dict = per_image({})
 """Name of a system that cramhy contains, too → the ``.asd`` file that the user has loaded, or has put into the central registry."""
 NOT_TO_BE_HAD = {
     "sb-bsd-sockets": "it is part of SBCL; Python's socket module does its work",
+    "sb-rt": "it is part of SBCL; Debian's rt is the same library, apart from its name",
+    "sb-concurrency": "it is part of SBCL; cram-utilities has queues, and waiting on a fluent does the work of a mailbox",
+    "sb-cltl2": "it is part of SBCL and asks its compiler, which is another here",
+    "uffi": "it calls functions of C, which cramhy cannot; Python's ctypes does its work",
     "usocket": "it opens sockets by functions of the system; Python's socket module does its work",
     "osicat": "it calls functions of C, which cramhy cannot; Python's os module does its work",
     "gsll": "it calls the GNU Scientific Library; cram-math, and numpy by (py:import numpy), do its work",
@@ -136,7 +140,7 @@ def _ask_registry(name):
         path = _find_below(f"{name}.asd", True)
     if path is not None:
         load_asd(path)
-        choose_file(path.absolute())
+        choose_file(really_at(path))
 
 
 def central_registry():
@@ -301,7 +305,7 @@ def known_systems():
 
 def load_asd(path, force=False):
     """Read a ``.asd`` file unless that was done and it has not changed: define its systems, evaluate its other forms."""
-    path = Path(path).absolute()
+    path = really_at(path)
     state = file_state(path)
     if path in _reading or not force and unchanged(path, _read.get(path)):
         return
@@ -311,6 +315,13 @@ def load_asd(path, force=False):
     finally:
         _reading.remove(path)
     _read[path] = state
+
+
+def really_at(path):
+    """The file ``path`` from the root on; of a link that is called as its target, the target: the files of the system lie beside it."""
+    path = Path(path).absolute()
+    target = Path(os.path.realpath(path)) if path.is_symlink() else path
+    return target if target.name == path.name else path
 
 
 def _read_definitions(path):
@@ -328,7 +339,11 @@ def _read_definitions(path):
 
 def asdf_user():
     """The package ASDF-USER, in which ``.asd`` files are read."""
-    return find_package("ASDF-USER") or register(Package("ASDF-USER", (), [find_package(name) for name in ("COMMON-LISP", "ASDF", "UIOP")]))
+    known = find_package("ASDF-USER")
+    if known is not None:
+        return known
+    find_package("UIOP").complete()
+    return register(Package("ASDF-USER", (), [find_package(name) for name in ("COMMON-LISP", "ASDF", "UIOP")]))
 
 
 # ----------------------------------------------------------------------------------------------------------------- loading
@@ -339,6 +354,8 @@ def find_system(name, required_by=None):
     if is_provided(name):
         return systems.setdefault(name, System(name, Path(__file__).parents[3]))
     path = find_asd(name)
+    if path is None and "." in name and name not in systems:
+        path = find_asd(name.rpartition(".")[0])  # cl-json.test stands in cl-json.asd
     if path is not None:
         load_asd(path)
     system = systems.get(name)
@@ -355,7 +372,7 @@ def _why_missing(name, path, required_by):
     near = near_names(name, known_systems())
     hint = f" Did you mean {' or '.join(near)}?" if near else ""
     if path is not None:
-        there = ", ".join(sorted(system.name for system in systems.values() if system.file == path)) or "no system"
+        there = ", ".join(sorted(system.name for system in systems.values() if system.file == really_at(path))) or "no system"
         return f"{path} defines {there}.{hint}"
     if name in NOT_TO_BE_HAD:
         return f"{name} cannot be had in cramhy: {NOT_TO_BE_HAD[name]}."
@@ -504,6 +521,8 @@ def _ordered(module):
             )
         active.append(component.name)
         for other in component.depends_on:
+            if other not in by_name and other in module.without:
+                continue
             if other not in by_name:
                 error(
                     CompileError(

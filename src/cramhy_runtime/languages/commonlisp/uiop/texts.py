@@ -1,21 +1,18 @@
-"""The package UIOP: the portable functions that ``.asd`` files and scripts call (UIOP's manual); those of the operating system's
-files and strings that plans use.
-"""
+"""The names of UIOP that ``.asd`` files use all the time: of symbols, the environment, files that are there, texts and versions."""
 
 from __future__ import annotations
 
 import os
 import sys
-from pathlib import Path
 
 from cramhy_runtime.ground import packages
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, FreshString, list_from, truth
+from cramhy_runtime.ground.data import Cons, FreshString, MultipleValues, list_from, one, truth
 from ..evaluation.evaluator import PACKAGE
+from ..pathnames.pathname_objects import Pathname
 from ..packages.face_definition import define_face
-from ..files.files import lisp_path
-from cramhy_runtime.ground.packages import find_package, is_symbol, string_designator, sym
-from ..reader.reader_functions import read_from_string
+from ..files.files import absolute, lisp_path, path_of, physical
+from cramhy_runtime.ground.packages import find_package, is_symbol, keyword, string_designator, sym
 
 
 def find_package_(designator, errorp=True):
@@ -24,17 +21,17 @@ def find_package_(designator, errorp=True):
 
 
 def find_symbol_(name, package=None, error_p=True):
-    """``uiop:find-symbol*``: the symbol of that name in the package; when there is none nil or, with ``error_p``, an error."""
+    """``uiop:find-symbol*``: two values, the symbol of that name and its status; without one nil or, with ``error_p``, an error."""
     home = packages.find_package_or_error(PACKAGE.value if package is None else package) if truth(error_p) else find_package(package)
     symbol, status = home.lookup(string_designator(name)) if home is not None else (None, None)
     if status is None and truth(error_p):
         return error("There is no symbol ~S in package ~S", string_designator(name), home.name)
-    return symbol
+    return MultipleValues((symbol, status and keyword(status.upper())))
 
 
 def symbol_call(package, name, *arguments):
     """``uiop:symbol-call``: call the function of a symbol that need not be there when the call is read."""
-    return find_symbol_(name, package).function(*arguments)
+    return one(find_symbol_(name, package)).function(*arguments)
 
 
 def getenv(name):
@@ -49,48 +46,22 @@ def getenvp(name):
 
 def file_exists_p(path):
     """``uiop:file-exists-p``: the pathname of the file, or nil."""
-    return lisp_path(path) if path is not None and os.path.isfile(path) else None
+    return lisp_path(path) if path is not None and os.path.isfile(path_of(path)) else None
 
 
 def directory_exists_p(path):
-    return lisp_path(path) if path is not None and os.path.isdir(path) else None
+    """``uiop:directory-exists-p``: the pathname of the folder, or nil."""
+    return lisp_path(path) if path is not None and os.path.isdir(path_of(path)) else None
 
 
 def probe_file(path, **options):
-    return lisp_path(path) if path is not None and os.path.exists(path) else None
-
-
-def read_file_string(path, **options):
-    """``uiop:read-file-string``: the text of a file."""
-    return FreshString(Path(path).read_text(encoding="utf-8"))
-
-
-def read_file_lines(path, **options):
-    return list_from([FreshString(line) for line in read_file_string(path).splitlines()])
-
-
-def read_file_line(path, **options):
-    return next((FreshString(line) for line in read_file_string(path).splitlines()), None)
-
-
-def read_file_form(path, **options):
-    return read_from_string(read_file_string(path))
-
-
-def subpathname(pathname, name, *, type=None):
-    """``uiop:subpathname``: a path below that of a folder or of a file's folder."""
-    base = Path(pathname)
-    folder = base if os.path.isdir(base) or str(pathname).endswith("/") else base.parent
-    return lisp_path(folder / str(name) if type is None else folder / f"{name}.{type}")
-
-
-def pathname_directory_pathname(pathname):
-    """``uiop:pathname-directory-pathname``: the folder."""
-    return lisp_path(os.path.dirname(os.fspath(pathname)) + "/")
+    """``uiop:probe-file*``: the pathname from the root on if there is such a file, else nil."""
+    return absolute(physical(path)) if path is not None and os.path.exists(path_of(path)) else None
 
 
 def getcwd():
-    return lisp_path(os.getcwd())
+    """``uiop:getcwd``: the folder that relative names mean."""
+    return absolute(physical(Pathname()))
 
 
 def split_string(string, *, max=None, separator=" \t"):
@@ -146,7 +117,7 @@ def command_line_arguments():
 
 
 def define_faces():
-    """Make the package UIOP."""
+    """Make the package UIOP, of which the greater part comes late."""
     define_face(
         "UIOP",
         functions={
@@ -158,13 +129,6 @@ def define_faces():
             "file-exists-p": file_exists_p,
             "directory-exists-p": directory_exists_p,
             "probe-file*": probe_file,
-            "read-file-string": read_file_string,
-            "read-file-lines": read_file_lines,
-            "read-file-line": read_file_line,
-            "read-file-form": read_file_form,
-            "subpathname": subpathname,
-            "subpathname*": subpathname,
-            "pathname-directory-pathname": pathname_directory_pathname,
             "getcwd": getcwd,
             "split-string": split_string,
             "strcat": strcat,
