@@ -13,13 +13,14 @@ import math
 from array import array
 
 from cramhy_runtime.ground.data import DoubleFloat, Symbol
-from cramhy_runtime.ground.packages import intern
-from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, overload
 
 from .definition_text import INTEGERS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from typing import SupportsIndex
 
 OCTETS = ("uint8", "char")
 """The base types whose arrays are `Octets`."""
@@ -28,9 +29,9 @@ _INTS, _BOOLS = frozenset({int}), frozenset({bool})
 
 
 POSITIVE_INFINITY, NEGATIVE_INFINITY, NOT_A_NUMBER = NONFINITE = [
-    intern(name, "KEYWORD") for name in ("POSITIVE-INFINITY", "NEGATIVE-INFINITY", "NOT-A-NUMBER")
+    keyword(name) for name in ("POSITIVE-INFINITY", "NEGATIVE-INFINITY", "NOT-A-NUMBER")
 ]
-_FLOATS = {POSITIVE_INFINITY: math.inf, NEGATIVE_INFINITY: -math.inf, NOT_A_NUMBER: math.nan}
+_FLOATS: dict[Symbol, float] = {POSITIVE_INFINITY: math.inf, NEGATIVE_INFINITY: -math.inf, NOT_A_NUMBER: math.nan}
 
 
 def as_float(value: float | Symbol) -> float:
@@ -59,14 +60,18 @@ class Octets(bytearray):
 
     __slots__ = ()
 
-    def __eq__(self, other: object) -> Any:
+    def __eq__(self, other: object) -> bool:
         if isinstance(other, (list, tuple)):
             return len(other) == len(self) and list(self) == list(other)
-        return bytearray.__eq__(self, other)  # type: ignore[operator]
+        return bytearray.__eq__(self, other)
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__ = None
 
-    def __getitem__(self, index: Any) -> Any:
+    @overload
+    def __getitem__(self, index: SupportsIndex, /) -> int: ...
+    @overload
+    def __getitem__(self, index: slice[SupportsIndex | None], /) -> Octets: ...
+    def __getitem__(self, index: Any, /) -> Any:
         found = bytearray.__getitem__(self, index)
         return Octets(found) if index.__class__ is slice else found
 
@@ -75,27 +80,30 @@ class Octets(bytearray):
         return list(self)
 
 
-def octets(values: Any) -> Octets | None:
+def octets(values: object) -> Octets | None:
     """``values`` as `Octets` if they are bytes, or an array or buffer of one dimension whose elements are; ``None`` for other values."""
-    if isinstance(values, (bytes, bytearray)):
-        return Octets(values)
-    shape = getattr(values, "shape", None)
-    dtype = getattr(values, "dtype", None)
-    if shape is not None and len(shape) == 1 and (getattr(dtype, "char", None) or getattr(values, "format", None)) == "B":
-        return Octets(values)
-    return Octets(values) if getattr(values, "typecode", None) == "B" else None
+    given: Any = values
+    if isinstance(given, (bytes, bytearray)):
+        return Octets(given)
+    shape = getattr(given, "shape", None)
+    dtype = getattr(given, "dtype", None)
+    if shape is not None and len(shape) == 1 and (getattr(dtype, "char", None) or getattr(given, "format", None)) == "B":
+        return Octets(given)
+    return Octets(given) if getattr(given, "typecode", None) == "B" else None
 
 
-def float64s(values: Sequence[Any]) -> list[Any] | None:
+def float64s(values: Sequence[object]) -> list[DoubleFloat | Symbol] | None:
     """The numbers in the form that receivers get (`lisp_float`); ``None`` if there are others than integers and floats."""
     if not _REALS.issuperset(map(type, values)):
         return None
-    return list(map(DoubleFloat, values)) if all(map(math.isfinite, values)) else [lisp_float(float(value)) for value in values]
+    numbers: Sequence[Any] = values
+    return list(map(DoubleFloat, numbers)) if all(map(math.isfinite, numbers)) else [lisp_float(float(number)) for number in numbers]
 
 
-def float32s(values: Sequence[Any]) -> list[Any] | None:
+def float32s(values: Sequence[object]) -> list[DoubleFloat | Symbol] | None:
     """As `float64s`, each number rounded to 24 bits."""
-    return float64s(array("f", values).tolist()) if _REALS.issuperset(map(type, values)) else None
+    numbers: Sequence[Any] = values
+    return float64s(array("f", numbers).tolist()) if _REALS.issuperset(map(type, numbers)) else None
 
 
 def _integers(bits: int, signed: bool) -> Callable[[Sequence[Any]], list[int] | None]:
@@ -115,7 +123,7 @@ def _bools(values: Sequence[Any]) -> list[bool] | None:
     return list(values) if _BOOLS.issuperset(map(type, values)) else None
 
 
-QUICK: dict[str, Callable[[Sequence[Any]], Any]] = {
+QUICK: dict[str, Callable[[Sequence[object]], Sequence[object] | None]] = {
     "float64": float64s,
     "float32": float32s,
     "bool": _bools,

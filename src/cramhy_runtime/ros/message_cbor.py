@@ -33,24 +33,23 @@ TAGS = {
 """Base type → the tag of its typed arrays, and the letter of `struct` for an element."""
 
 
-def to_cbor_data(message: RosMessage) -> dict[str, Any]:
+def to_cbor_data(message: RosMessage) -> dict[str, object]:
     """The data of ``message`` for ``cbor2.dumps``. A value that CBOR cannot have so raises `MessageJsonError`.
 
     It imports cbor2, which the extra ``web`` has.
     """
     encode = _forms[0].encoders.get(message.__class__) if _forms else None
     try:
-        found: dict[str, Any] = (encode or encoder(message.__class__, _form()))(message)
-        return found
+        return (encode or encoder(message.__class__, _form()))(message)
     except (TypeError, ValueError, AttributeError, OverflowError, struct.error) as problem:
         to_json(message)  # it says which field it is
         raise MessageJsonError(f"{message.ros_type}: {problem}") from None
 
 
-_forms: list[Form] = []
+_forms: list[Form[dict[str, Any]]] = []
 
 
-def _form() -> Form:
+def _form() -> Form[dict[str, Any]]:
     if not _forms:
         scope = {**DATA_FORM.scope, "octets": _bytes, "number": as_float, **{f"array_{base}": _typed_array(base) for base in TAGS}}
         _forms.append(

@@ -27,7 +27,7 @@ from . import messages
 from .arrays import NONFINITE, QUICK, Octets, as_float, lisp_float
 from .definition_text import INTEGERS
 from .messages import RosMessage
-from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NamedTuple, Self, TypeVar
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Generic, NamedTuple, Self, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 M = TypeVar("M", bound="RosMessage")
 T = TypeVar("T")
+Written = TypeVar("Written")
 
 text_of: Callable[[object], str] = json.JSONEncoder(separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode
 """The text of plain data, without spaces. A number that is not finite is a ValueError."""
@@ -87,7 +88,7 @@ class MessageJsonError(ValueError):
 
 def to_json(message: RosMessage) -> dict[str, Any]:
     """``message`` as plain data for ``json.dumps``: a dict by field name. A value without JSON raises `MessageJsonError`."""
-    encode: Callable[[RosMessage], dict[str, Any]] = DATA_FORM.encoders.get(message.__class__) or encoder(message.__class__, DATA_FORM)
+    encode = DATA_FORM.encoders.get(message.__class__) or encoder(message.__class__, DATA_FORM)
     try:
         return encode(message)
     except (TypeError, ValueError, AttributeError, OverflowError):  # infinities as symbols, and what nobody has checked yet
@@ -101,7 +102,7 @@ def to_json(message: RosMessage) -> dict[str, Any]:
 def to_json_text(message: RosMessage) -> str:
     """The text of ``message``: what `text_of` makes of `to_json`, but faster. A value without JSON raises `MessageJsonError`."""
     try:
-        encode: Callable[[RosMessage], str] = _as_text.encoders.get(message.__class__) or encoder(message.__class__, _as_text)
+        encode = _as_text.encoders.get(message.__class__) or encoder(message.__class__, _as_text)
         return encode(message)
     except (TypeError, ValueError, AttributeError, OverflowError):
         return text_of(to_json(message))
@@ -110,7 +111,7 @@ def to_json_text(message: RosMessage) -> str:
 def to_record_text(message: RosMessage) -> str:
     """As `to_json_text`, but an infinity is written as ``1e999``, which readers of JSON take for one: a recording keeps it."""
     try:
-        encode: Callable[[RosMessage], str] = _as_text.encoders.get(message.__class__) or encoder(message.__class__, _as_text)
+        encode = _as_text.encoders.get(message.__class__) or encoder(message.__class__, _as_text)
         return encode(message)
     except (TypeError, ValueError, AttributeError, OverflowError):
         try:
@@ -327,7 +328,7 @@ def _write_floats(values):
     return [float(value) if math.isfinite(value) else None for value in values]
 
 
-class Form(NamedTuple):
+class Form(NamedTuple, Generic[Written]):
     """A form of messages: plain data, or the text of those data. Its encoders are generated, one for each type of message.
 
     ``values``: the expression for a value, ``{0}``, of each base type. ``integer``: for those of the other base types. ``row``: for a
@@ -342,15 +343,15 @@ class Form(NamedTuple):
     octets: str
     arrays: dict[str, str]
     message: Callable[[list[tuple[str, str]]], list[str]]
-    scope: dict[str, Any]
-    encoders: dict[type, Callable[[Any], Any]]
+    scope: dict[str, object]
+    encoders: dict[type[RosMessage], Callable[[RosMessage], Written]]
 
 
 _FINITE = "if isfinite(value := {0}) else"
 _TRUE = "(value := {0}) is True or truth(value)"
 _TEXT = "value if (value := {0}).__class__ is str and value.isascii() else string(value)"
 
-DATA_FORM = Form(
+DATA_FORM: Form[dict[str, Any]] = Form(
     values={
         **dict.fromkeys(("float32", "float64"), f"float(value) {_FINITE} None"),
         "bool": _TRUE,
@@ -372,7 +373,7 @@ DATA_FORM = Form(
     },
     encoders={},
 )
-_as_text = Form(
+_as_text: Form[str] = Form(
     values={
         **dict.fromkeys(("float32", "float64"), f"numbers[value] {_FINITE} 'null'"),
         "bool": f"'true' if {_TRUE} else 'false'",
@@ -393,7 +394,7 @@ _as_text = Form(
 )
 
 
-def _record_number(value):
+def _record_number(value: Any) -> str:
     number = as_float(value)
     return float_texts[number] if math.isfinite(number) else "null" if number != number else "1e999" if number > 0 else "-1e999"
 
@@ -407,7 +408,7 @@ _as_record = _as_text._replace(
 """As `_as_text`, for messages with floats that are not finite."""
 
 
-def encoder(cls, form):
+def encoder(cls: type[RosMessage], form: Form[Written]) -> Callable[[RosMessage], Written]:
     """Generate, compile and keep the function that turns a message of class ``cls`` into ``form``."""
     if not (isinstance(cls, type) and issubclass(cls, RosMessage)):
         raise MessageJsonError(f"Only a message can be sent, not an object of class {getattr(cls, '__name__', cls)}.")

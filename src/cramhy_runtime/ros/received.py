@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 M = TypeVar("M", bound="RosMessage")
-Receiver = TypeVar("Receiver", bound="Callable[[Any], Any]")
+T = TypeVar("T")
 
 _FLOATS = ("float32", "float64")
 _finite: dict[type, Callable[[Any], bool] | None] = {}
@@ -49,14 +49,14 @@ def for_lisp(message: M) -> M:
     return _changed(fresh(message), OCTETS, list) if has_octets(message.__class__) else message
 
 
-def python_receiver(cls: type[RosMessage], callback: Receiver) -> Receiver | Callable[[Any], Any]:
+def python_receiver(cls: type[M], callback: Callable[[M], T]) -> Callable[[M], T]:
     """The function of a message of ``cls`` from the graph that calls ``callback`` with it in Python's form."""
     if (_finite[cls] if cls in _finite else _finiteness(cls)) is None:
         return callback
     return lambda message: callback(for_python(message))
 
 
-def lisp_receiver(cls: type[RosMessage], callback: Receiver) -> Receiver | Callable[[Any], Any]:
+def lisp_receiver(cls: type[M], callback: Callable[[M], T]) -> Callable[[M], T]:
     """The function of a message of ``cls`` from the graph that calls ``callback`` with it in Lisp's form."""
     return (lambda message: callback(for_lisp(message))) if has_octets(cls) else callback
 

@@ -43,12 +43,12 @@ _LENGTH = struct.Struct("<I")
 
 def serialize(message: RosMessage) -> bytes:
     """The bytes of MESSAGE, as the graph delivers it. Raises ValueError with the field that ROS 1 cannot write."""
-    parts: list[bytes] = []
+    parts: list[bytes | bytearray] = []
     _write(message, parts.append)
     return b"".join(parts)
 
 
-def _write(message: RosMessage, put: Callable[[bytes], object]) -> None:
+def _write(message: RosMessage, put: Callable[[bytes | bytearray], object]) -> None:
     for field in message.fields:
         value = getattr(message, field.attribute)
         try:
@@ -59,7 +59,7 @@ def _write(message: RosMessage, put: Callable[[bytes], object]) -> None:
             ) from None
 
 
-def _write_field(field: Field, value: Any, put: Callable[[bytes], object]) -> None:
+def _write_field(field: Field, value: Any, put: Callable[[bytes | bytearray], object]) -> None:
     if not field.is_array:
         _write_one(field.base, value, put)
         return
@@ -80,7 +80,7 @@ def _write_field(field: Field, value: Any, put: Callable[[bytes], object]) -> No
             _write_one(field.base, each, put)
 
 
-def _write_one(base: str, value: Any, put: Callable[[bytes], object]) -> None:
+def _write_one(base: str, value: Any, put: Callable[[bytes | bytearray], object]) -> None:
     form = _FORMATS.get(base)
     if form is not None:
         put(struct.pack("<" + form, _number(base, value)))

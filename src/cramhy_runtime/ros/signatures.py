@@ -25,6 +25,8 @@ Parameter = str | int | float | bool | list["Parameter"] | dict[str, "Parameter"
 ParameterValue = str | int | float | bool | Sequence["ParameterValue"] | Mapping[str, "ParameterValue"]
 """A value for setting a parameter."""
 
+Callback = Callable[..., object]
+"""The callback of a subscription: a function that takes the message."""
 Handler = Callable[..., RosMessage]
 """The handler of a service: a function that takes the request and returns the response."""
 Answers = Callable[[RosMessage], RosMessage | dict[str, object]]

@@ -35,7 +35,7 @@ from .definition_text import INTEGERS
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from .definition_text import Field
     from .messages import RosMessage
 
@@ -176,11 +176,12 @@ def _elements(value: Any) -> Any:
     return list(value)
 
 
-def _array(field, convert):
-    quick, narrow = QUICK.get(field.base), field.base in OCTETS
+def _array(field: Field, convert: Callable[[Any], Any]) -> Callable[[Any], Sequence[Any]]:
+    quick: Callable[[Any], Sequence[Any] | None] | None = QUICK.get(field.base)
+    narrow = field.base in OCTETS
 
-    def convert_all(value):
-        result = octets(value) if narrow else None
+    def convert_all(value: Any) -> Sequence[Any]:
+        result: Sequence[Any] | None = octets(value) if narrow else None
         if result is None:
             if value.__class__ is not list and value.__class__ is not tuple:
                 value = _elements(value)

@@ -133,14 +133,14 @@ def component(index: int) -> Component:
 class Fixed(property):
     """A part of a vector or a pose. Python cannot assign it in our own classes, which compare by value; Lisp's `slot-value` can."""
 
-    def __set__(self, obj: Any, value: object) -> None:
+    def __set__(self, obj: object, value: object) -> None:
         if type(obj).__module__.startswith("cramhy_runtime.t"):  # transforms and tf; classes of users are theirs
             kind = type(obj).__name__
-            copied = _COPIES.get(kind, _COPIES["Vector3"])
-            raise AttributeError(f"A {kind} is not changed after it was made. Make a new one: {kind}(...), or {copied}.")
+            copied = f", or {_COPIES[kind]}" if kind in _COPIES else ""
+            raise AttributeError(f"A {kind} is not changed after it was made. Make a new one: {kind}(...){copied}.")
         self.set_by_lisp(obj, value)
 
-    def set_by_lisp(self, obj: Any, value: object) -> None:
+    def set_by_lisp(self, obj: object, value: object) -> None:
         """Change the part, as ``(setf (slot-value v 'x) 5)`` does."""
         raise NotImplementedError
 
@@ -159,7 +159,7 @@ _COPIES = {
 class FixedComponent(Fixed):
     """The property of one component."""
 
-    def __init__(self, get: Callable[[Any], float], index: int) -> None:
+    def __init__(self, get: Callable[[object], float], index: int) -> None:
         super().__init__(get, doc="A component, as the float that Lisp sees.")
         self.index = index
 
@@ -176,7 +176,7 @@ class FixedPart(Fixed):
         super().__init__(attrgetter(f"_{name}"), doc=doc)
         self.attribute = f"_{name}"
 
-    def set_by_lisp(self, obj: Any, value: object) -> None:
+    def set_by_lisp(self, obj: object, value: object) -> None:
         setattr(obj, self.attribute, value)
 
 

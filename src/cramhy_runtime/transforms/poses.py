@@ -75,6 +75,8 @@ class Wrench(ByValue):
     lisp_name = "CL-TRANSFORMS::WRENCH"
     initargs = Twist.initargs
     translation, rotation = Twist.translation, Twist.rotation
+    _translation: Vector3
+    _rotation: Vector3
     __init__ = Twist.__init__
 
 

@@ -212,7 +212,9 @@ def checked_call_service(service: ServiceClient | Text, *rest_args: object) -> R
     return None if response is None else for_python(response)
 
 
-def _call_service(service: Any, rest_args: tuple[Any, ...], check_request: Callable[[RosMessage], None] | None = None) -> RosMessage | None:
+def _call_service(
+    service: ServiceClient | Text, rest_args: tuple[Any, ...], check_request: Callable[[RosMessage], None] | None = None
+) -> RosMessage | None:
     here = node.require_node()
     if isinstance(service, ServiceClient):
         name, service_type, arguments = service.name, service.type, rest_args
@@ -273,10 +275,7 @@ def register_service_fn(service_name: Text, function: Handler | Symbol, service_
 
 
 def offered(
-    service_name: Text,
-    function: Handler | Symbol,
-    service_type: ServiceName,
-    receiver: Callable[[MessageType, Callable[[Any], Any]], Callable[[Any], Any]],
+    service_name: Text, function: Handler | Symbol, service_type: ServiceName, receiver: Callable[[MessageType, Handler], Handler]
 ) -> int:
     """`register_service_fn` for any language: ``receiver(class, function)`` is the function that is called with the graph's requests."""
     here = node.require_node()

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from cramhy_runtime.ground.data import MultipleValues
     from ..graph import Node
-    from ..signatures import MessageType, Text, TypeName
+    from ..signatures import Callback, MessageType, Text, TypeName
 
 
 DELIVERY = ("ROSLISP", "DESERIALIZATION-THREAD")
@@ -257,11 +257,7 @@ def subscribe(
 
 
 def subscribed(
-    topic: Text,
-    topic_type: TypeName,
-    callback: Callable[[Any], object],
-    max_queue_length: object,
-    receiver: Callable[[MessageType, Callable[[Any], object]], Callable[[Any], object]],
+    topic: Text, topic_type: TypeName, callback: Callback, max_queue_length: object, receiver: Callable[[MessageType, Callback], Callback]
 ) -> Subscriber | None:
     """`subscribe` for any language: ``receiver(class, callback)`` is the function that is called with the graph's messages."""
     topic = _topic_name(topic)
