@@ -341,3 +341,14 @@ def test_a_system_may_have_a_dot_in_its_name(write, run, name):
     write("net.example.dotted.asd", '(defsystem "net.example.dotted" :components ((:file "dotted-x")))')
     write("dotted-x.lisp", logging(":dotted"))
     assert run(f"(asdf:load-system {name!r}) *log*".replace("'", '"')) == "(:DOTTED)"
+
+
+def test_a_system_that_knows_no_other_lisp_is_read_as_for_sbcl(write, run, monkeypatch):
+    """The others, before and behind it, are not."""
+    monkeypatch.setattr(systems, "READ_AS_SBCL", {"for-sbcl"})
+    write("for-all.asd", '(defsystem "for-all" :depends-on ("for-sbcl") :components ((:file "for-all-x")))')
+    write("for-sbcl.asd", '(defsystem "for-sbcl" :depends-on ("for-first") :components ((:file "for-sbcl-x")))')
+    write("for-first.asd", '(defsystem "for-first" :components ((:file "for-first-x")))')
+    for name in ("all", "sbcl", "first"):
+        write(f"for-{name}-x.lisp", f"#+sbcl {logging(f':{name}-as-sbcl')} #-sbcl {logging(f':{name}')}")
+    assert run("(asdf:load-system :for-all) (reverse *log*)") == "(:FIRST :SBCL-AS-SBCL :ALL)"

@@ -66,9 +66,7 @@ class Listener:
     def _take(self, part: RosMessage, stamp: float | None) -> None:
         transform = from_msg(part)
         if stamp is not None:
-            transform = TransformStamped(
-                transform.frame_id, transform.child_frame_id, stamp, transform.translation, transform.rotation
-            )
+            transform = TransformStamped(transform.frame_id, transform.child_frame_id, stamp, transform.translation, transform.rotation)
         try:
             self.buffer.store(transform)
         except ValueError as problem:

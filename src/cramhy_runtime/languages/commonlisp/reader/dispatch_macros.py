@@ -57,9 +57,14 @@ IMPLIED_FEATURES = {"SBCL": ("SBCL", "SB-THREAD", "SB-UNICODE")}
 
 def add_features(names):
     """Add features to ``*features*``: ``names`` are their names in upper case, such as "SBCL"."""
+    FEATURES.value = with_features(names)
+
+
+def with_features(names):
+    """The value of ``*features*`` with these features and what they bring along."""
     present = list(FEATURES.value or ())
     wanted = [keyword(each) for name in names for each in IMPLIED_FEATURES.get(name, (name,))]
-    FEATURES.value = list_from([*(feature for feature in dict.fromkeys(wanted) if feature not in present), *present])
+    return list_from([*(feature for feature in dict.fromkeys(wanted) if feature not in present), *present])
 
 
 _MAX_ARGUMENT = 1 << 24

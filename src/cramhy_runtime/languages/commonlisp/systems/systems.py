@@ -22,6 +22,7 @@ from ..compiler.compilation_unit import compilation_unit
 from ..evaluation.definitions import RedefinitionWarning
 from ..evaluation.evaluator import PACKAGE, evaluate
 from ..files.files import lisp_path
+from ..reader.dispatch_macros import FEATURES, with_features
 from ..streams.streams import ERROR_OUTPUT, output_stream
 from cramhy_runtime.ground.packages import Package, find_package, near_names, register, string_designator, sym
 from . import loader, missing_messages
@@ -126,6 +127,9 @@ def choose_file(path):
             stream.flush()
 
 
+READ_AS_SBCL = {"cl-fad", "metatilities-base"}
+"""Systems whose files know a few Lisps by name and none of the others: they are read with the feature SBCL, as ``--features sbcl`` says of
+all. Other systems ask for more of SBCL, when they see that feature, than there is here."""
 OF_ALL_LISPS = {"alexandria", "cl-utilities", "split-sequence"}
 """Libraries that know nothing of CRAM, of which cramhy contains a rewritten form: a real one on ROS_PACKAGE_PATH comes first. All others
 depend on how cramhy is made; `prefer` takes them from there."""
@@ -430,8 +434,9 @@ def _load_system(name, force=False, required_by=None, version=None):
 def _load_components(system, chain, force):
     if _is_replaced(system):
         return chain
-    for component in files_of(system):
-        chain = _load_component(component.pathname, chain, force)
+    with binding(FEATURES, with_features(("SBCL",)) if system.name in READ_AS_SBCL else FEATURES.value):
+        for component in files_of(system):
+            chain = _load_component(component.pathname, chain, force)
     return chain
 
 
