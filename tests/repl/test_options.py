@@ -67,7 +67,7 @@ def test_the_simulator_alone_lives_in_that_time_too(private, monkeypatch, option
     if variable is not None:
         monkeypatch.setenv("CRAMHY_TIME", variable)
     seen = []
-    monkeypatch.setattr(programs, "_wait", lambda nodes: seen.append((kernel.active().clock.virtual, kernel.pace().speed)) or "ended")
+    monkeypatch.setattr(programs, "_wait", lambda nodes, *_: seen.append((kernel.active().clock.virtual, kernel.pace().speed)) or "ended")
     assert cli.main(["turtlesim", *(["--time", option] if option else [])]) == 0
     assert seen == [found]
 
