@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import Error, ProgramError, SimpleWarning
 from cramhy_runtime.ground.conditions import error, handler_case
-from cramhy_runtime.ground.data import Symbol, lisp_list
+from cramhy_runtime.ground.data import Keyword, Symbol, lisp_list
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
@@ -34,8 +34,8 @@ class CompiledProgramError(ProgramError):
 
 
 def is_of_user(name: Any, env: Any) -> bool:
-    """Whether ``name`` is a macro of the user's, global or local."""
-    if not isinstance(name, Symbol):
+    """Whether ``name`` is a macro of the user's, global or local. Keywords name macros of ours, such as ``:tag``."""
+    if not isinstance(name, Symbol) or isinstance(name, Keyword):
         return False
     return env.function(name) is not None or name.macro is not None and not (name.package is not None and name.package.built_in)
 
