@@ -47,7 +47,7 @@ EXPANSION = [
   It is written (cond (test form...) (test form...)...).""",
     ),
     (
-        "(defmacro twice-of (a b)\n  `(list ,a ,b))\n(defun f (x)\n  (twice-of x))",
+        "(defmacro twice-of (a b)\n  `(list ,a ,b))\n(print\n  (twice-of x))",
         """\
   Error while parsing arguments to DEFMACRO TWICE-OF:
     too few elements in
@@ -60,7 +60,7 @@ EXPANSION = [
       ^""",
     ),
     (
-        "(defmacro broken-one (a)\n  `(list ,a ,(car 5)))\n(defun f (x)\n  (broken-one x))",
+        "(defmacro broken-one (a)\n  `(list ,a ,(car 5)))\n(print\n  (broken-one x))",
         """\
   The value
     5

@@ -6,6 +6,8 @@ reached at once, the error itself is signalled, and so is one of a form of Commo
 
 from __future__ import annotations
 
+from textwrap import indent
+
 from cramhy_runtime.ground.condition_types import Error, ProgramError, SimpleWarning
 from cramhy_runtime.ground.conditions import error, handler_case
 from cramhy_runtime.ground.data import Keyword, Symbol, lisp_list
@@ -30,7 +32,9 @@ class CompiledProgramError(ProgramError):
         self.form, self.cause = form, cause
 
     def report(self) -> str:
-        return f"Execution of a form compiled with errors.\nForm:\n  {self.form}\nCompile-time error:\n  {self.cause}"
+        return (
+            f"Execution of a form compiled with errors.\nForm:\n{indent(self.form, '  ')}\nCompile-time error:\n{indent(self.cause, '  ')}"
+        )
 
 
 def is_of_user(name: Any, env: Any) -> bool:
@@ -45,7 +49,7 @@ def expanded_or_failing(unit: Any, expand: Callable[[], tuple[Any, bool]], form:
 
     def fails(problem: Error) -> tuple[Any, bool]:
         text, cause = prin1_to_string(form), problem.report()
-        unit.tell(SimpleWarning, "The macro call ~A fails, and will be an error when it is reached:~%  ~A", text, cause)
+        unit.tell(SimpleWarning, "The macro call ~A fails, and will be an error when it is reached:~%~A", text, indent(cause, "  "))
         trace = current()
         if trace is not None:
             trace.refuse("a macro that it calls failed")
