@@ -146,19 +146,24 @@ _new = object.__new__
 
 
 def _made(cls: Any, description: Cons | None = None) -> Any:
-    """A designator of the class ``cls``, or an object with its slots."""
+    """A designator of the class ``cls``."""
     made: Any = _new(_Slots)
+    _begin(made, description)
+    made.__class__ = cls
+    return made
+
+
+def _begin(made: Any, description: Cons | None) -> None:
+    """Give the slots of a new designator their first values, and note that it lives."""
     made.description = description
     made.parent = made.successor = made.effective = made.timestamp = made.data = None
     made.quantifier = A
     made.solutions = UNBOUND
     made.current_solution = made._object_id = made.callbacks = made.resolver = made._attached = None
-    made.__class__ = cls
     living_ones = _live.value
     living_ones.append(ref(made))
     if len(living_ones) > living_ones.limit:
         living_ones.shorten()
-    return made
 
 
 class Designator(_Slots):
@@ -180,11 +185,8 @@ class Designator(_Slots):
     }
 
     def __init__(self, description: Cons | None = None, parent: Designator | None = None):
-        filled = _made(_Slots, description)
-        for name in _Slots.__slots__[:-1]:
-            setattr(self, name, getattr(filled, name))
+        _begin(self, description)
         self.parent = parent
-        _live.value.append(ref(self))
 
     @property
     def object_id(self) -> object:

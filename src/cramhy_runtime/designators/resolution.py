@@ -105,10 +105,8 @@ def _reference(designator=UNSUPPLIED, role=UNSUPPLIED, *more):
         await_resolver(designator, me)
     set_resolver(designator, me)
     try:
-        if isinstance(designator, LocationDesignator):
-            result = _place(designator, DEFAULT_ROLE.value if role is UNSUPPLIED else role)
-        else:
-            result = resolve_designator(designator, DEFAULT_ROLE.value if role is UNSUPPLIED else role)
+        resolve_one = _place if isinstance(designator, LocationDesignator) else resolve_designator
+        result = resolve_one(designator, DEFAULT_ROLE.value if role is UNSUPPLIED else role)
         set_effective(designator, True)
         if designator.timestamp is None:
             set_timestamp(designator, current_timestamp())
