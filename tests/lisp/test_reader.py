@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
 from cramhy_runtime.ground.conditions import Condition, Warning_, handler_bind, muffle_warning
-from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Symbol, lisp_list, list_from
+from cramhy_runtime.ground.data import Character, Cons, Symbol, lisp_list, list_from
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import find_package, intern, keyword, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
@@ -51,7 +51,7 @@ def test_nil_and_the_empty_list_are_none_and_t_is_true():
 
 def test_a_single_float_is_a_python_float_and_d0_makes_a_double():
     assert first("1.5").__class__ is float
-    assert first("1.5d0").__class__ is DoubleFloat
+    assert first("1.5d0").__class__ is float
 
 
 def test_a_literal_single_keeps_all_its_digits():
@@ -233,7 +233,7 @@ atoms = st.one_of(
     st.fractions().map(lambda f: f.numerator if f.denominator == 1 else f),
     st.none(),
     st.just(True),
-    st.floats(allow_nan=False, allow_infinity=False).map(DoubleFloat),
+    st.floats(allow_nan=False, allow_infinity=False).map(float),
     st.integers(-1000, 1000).map(lambda n: n / 8),
     st.text(max_size=8),
     st.characters(codec="utf-8").map(Character),

@@ -71,20 +71,6 @@ def _base_characters(question: str, theirs: str, ours: str) -> bool:
 
 
 CHARACTERS = (r"#\\{1,2}([\w-]+|\\\"|\\{1,2}|.)", "#")
-NUMBER = re.compile(r"-?\d+\.\d+(?:[esdf][+-]?\d+)?")
-
-
-def _precision(question: str, theirs: str, ours: str) -> bool:
-    """The same but for floats, which are nearly equal; or a quotient of floats is compared with what is read of its rounded text."""
-    if re.search(r"\(/ \d+\.\d+ \d+\)", question) and "(read-from-string (prin1-to-string" in question:
-        return theirs == "=> T" and ours == "=> NIL"
-    if NUMBER.sub("*", theirs) != NUMBER.sub("*", ours):
-        return False
-    pairs = zip(NUMBER.findall(theirs), NUMBER.findall(ours), strict=True)
-    pairs = [[float(re.sub("[sdf]", "e", text)) for text in pair] for pair in pairs]
-    return all(abs(one - other) <= 1e-6 * abs(one) for one, other in pairs)
-
-
 DECLARATION = re.compile(r"\((?:the|declare \((?:type)?) ?")
 ELEMENT_TYPE = re.compile(r"\((?:simple-)?(?:array|vector) |element-type ")
 
@@ -153,8 +139,6 @@ NAMED = [
         "hash tables are not printed readably",
         lambda question, theirs, ours: "MAKE-HASH-TABLE" in theirs.upper() and ours.startswith("!! PRINT-NOT"),
     ),
-    Named("overflows where doubles do", lambda question, theirs, ours: "FLOATING-POINT-OVERFLOW" in _types(theirs) and not _types(ours)),
-    Named("Single-floats are kept at double precision", _precision),
     Named("literals of the same characters may be `eq`", lambda question, theirs, ours: bool(re.search(r'#\d=\\?"', ours))),
     Named("All strings are of characters, none of base characters", _base_characters),
     Named(

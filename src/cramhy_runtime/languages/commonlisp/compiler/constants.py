@@ -13,7 +13,8 @@ from operator import attrgetter
 from cramhy_runtime.ground.arrays import SimpleArray, TypedVector
 from cramhy_runtime.ground.catching import Case
 from cramhy_runtime.ground.keyword_calls import KeywordCalls
-from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Symbol
+from cramhy_runtime.ground.data import Character, Cons, Symbol
+from cramhy_runtime.ground.floats import SingleFloat
 from ..format.format_pieces import Piece
 from ..numbers.complex_numbers import parts
 from ..objects.makers import Maker
@@ -121,8 +122,8 @@ class Constants:
             return obj
         if kind is float:
             return float_model(obj)
-        if kind is DoubleFloat:
-            return expression(word("Ldouble"), float_model(float(obj)))
+        if kind is SingleFloat:
+            return expression(word("Lsingle"), float_model(float(obj)))
         if kind is Fraction:
             return expression(word("Lratio"), obj.numerator, obj.denominator)
         if isinstance(obj, complex):
