@@ -11,7 +11,7 @@
 
 (in-package #:cram-designator-specification)
 
-(def-fact-group any-property (property)
+(def-fact-group all-designator-specs (property)
 
   (<- (property ?designator (?key ?value))
     (assert-type ?designator desig:designator "PROPERTY-MEMBER")
