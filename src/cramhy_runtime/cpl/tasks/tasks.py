@@ -80,42 +80,16 @@ class AbstractTask(Generic[T]):
     """
 
     __slots__ = (
-        "_name",
-        "body",
-        "parent",
-        "children",
-        "status",
-        "_status_fluent",
-        "result",
-        "path",
-        "tree",
-        "node",
-        "code",
-        "kernel_task",
-        "constraints",
-        "ended",
-        "started_at",
-        "ended_at",
-        "observers",
-        "held",
-        "unschedulable",
-        "suspension_handlers",
-        "retry_level",
-        "depth",
-        "__weakref__",
-        "__dict__",
-    )
+        "_name", "body", "parent", "children", "status", "_status_fluent", "result", "path", "tree", "node", "code", "kernel_task",
+        "constraints", "ended", "started_at", "ended_at", "observers", "held", "unschedulable", "suspension_handlers", "retry_level",
+        "depth", "__weakref__", "__dict__",
+    )  # fmt: skip
     __class_getitem__ = subscripted
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::ABSTRACT-TASK"
     lisp_slots = {
-        "NAME": "name",
-        "THREAD": "thread",
-        "PARENT-TASK": "parent",
-        "STATUS": "status_fluent",
-        "THREAD-FUN": "body",
-        "PATH": "path",
+        "NAME": "name", "THREAD": "thread", "PARENT-TASK": "parent", "STATUS": "status_fluent", "THREAD-FUN": "body", "PATH": "path",
         "CODE": "code",
-    }
+    }  # fmt: skip
     threads: tuple[kernel.Task[object], ...] | list[kernel.Task[object]] = ()
     """The kernel's tasks that its body started with ``cut:spawn-thread``."""
     predecessors: tuple[AbstractTask[object], ...] | list[AbstractTask[object]] = ()

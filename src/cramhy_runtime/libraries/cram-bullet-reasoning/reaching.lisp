@@ -62,7 +62,7 @@ is no posture."
     (object-grasp ?world ?object ?grasp ?sides))
 
   (<- (valid-grasp ?world ?object ?grasp (?side))
-    (not (object-grasp ?world ?object ? ?))
+    (not (object-grasp ?world ?object ?_ ?_))
     (robot ?robot)
     (grasp ?robot ?grasp)
     (side ?robot ?side))

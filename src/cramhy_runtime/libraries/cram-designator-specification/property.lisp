@@ -21,7 +21,7 @@
 
 (defmacro define-properties (class &body types)
   "Say which entries designators of CLASS, such as MOTION, have: each of TYPES is (TYPE KEY...)."
-  (let ((group (intern (format nil "~A-PROPERTIES" class)))
+  (let ((group (intern (format nil "~A-DESIGNATOR-SPECS" class)))
         (test (find-symbol (ecase class ((motion action) (format nil "~A-DESIG?" class)) (location "LOC-DESIG?") (object "OBJ-DESIG?"))
                            :desig))
         (tag (format nil "~A SPEC:PROPERTY" class)))
