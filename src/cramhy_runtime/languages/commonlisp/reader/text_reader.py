@@ -163,7 +163,14 @@ class Reader(InputStream):
 
     def skip_blank(self):
         """Go past white space and comments that begin with ``;``."""
-        self.offset = READTABLE.value.scanner.match(self.text, self.offset).start(1)
+        self.offset = self._end_of_blank(READTABLE.value.scanner.match(self.text, self.offset).start(1))
+
+    def _end_of_blank(self, end):
+        """``end``, where white space and comments end; or, if the text ends there in a comment that may go on, where that one begins."""
+        if end == len(self.text):
+            comment = self.text.find(";", max(self.offset, self.text.rfind("\n") + 1))
+            return end if comment < 0 else comment
+        return end
 
     def next_object(self, frame=None):
         """The next object, or NOTHING at the end of the text.
@@ -209,9 +216,10 @@ class Reader(InputStream):
                     continue
                 found = self._token(word, start, table)
             elif end == len(text):
-                self.offset = end
+                self.offset = self._end_of_blank(end)
                 if self.grow():
                     continue
+                self.offset = end
                 if len(frames) > base:
                     return self.ended()
                 return NOTHING

@@ -31,6 +31,8 @@ class Stream:
     is_interactive = False
     closed = False
     pathname = None
+    reserved_attributes = frozenset("source sink label given symbol file target streams read_byte write_byte".split())
+    """What the runtime asks some streams for, beside the methods here: no slot of a user's class is kept under one of these names."""
 
     def close(self, abort=False):
         self.closed = True
