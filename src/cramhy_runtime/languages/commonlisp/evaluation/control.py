@@ -11,6 +11,7 @@ from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import COMMON_LISP
 from ..reader.reader import read_from_string
 from .symbols import place_of, symbol_function
+from . import compiled_operators  # noqa: F401  it defines macros
 from . import setf_places as places
 from .evaluator import PACKAGE, evaluate
 from cramhy_runtime.ground.restarts import Restart

@@ -163,14 +163,7 @@ class Reader(InputStream):
 
     def skip_blank(self):
         """Go past white space and comments that begin with ``;``."""
-        self.offset = self._end_of_blank(READTABLE.value.scanner.match(self.text, self.offset).start(1))
-
-    def _end_of_blank(self, end):
-        """``end``, where white space and comments end; or, if the text ends there in a comment that may go on, where that one begins."""
-        if end == len(self.text):
-            comment = self.text.find(";", max(self.offset, self.text.rfind("\n") + 1))
-            return end if comment < 0 else comment
-        return end
+        self.offset = READTABLE.value.end_of_blank(self.text, self.offset)
 
     def next_object(self, frame=None):
         """The next object, or NOTHING at the end of the text.
@@ -216,7 +209,7 @@ class Reader(InputStream):
                     continue
                 found = self._token(word, start, table)
             elif end == len(text):
-                self.offset = self._end_of_blank(end)
+                self.offset = table.end_of_blank(text, self.offset)
                 if self.grow():
                     continue
                 self.offset = end
