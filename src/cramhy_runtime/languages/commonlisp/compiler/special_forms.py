@@ -19,7 +19,6 @@ from .net_tests import look_at_tests
 from .nodes import (
     BlockNode,
     Call,
-    CallLocal,
     CallSetf,
     CallSpread,
     CallValue,
