@@ -11,7 +11,7 @@ Law: what is no sequence is a ``type-error`` with SBCL's text, and bounds outsid
 from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import SimpleTypeError, TypeError_, formatted
-from cramhy_runtime.ground.conditions import error, type_error
+from cramhy_runtime.ground.conditions import error, program_error, type_error
 from cramhy_runtime.ground.data import CHARACTERS, WRITABLE_STRINGS, Character, Cons, FreshString, LispString, Symbol, list_from
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.ports import PORTS
@@ -30,7 +30,7 @@ class BoundingIndicesBad(TypeError_):
     lisp_name = "SB-KERNEL::BOUNDING-INDICES-BAD-ERROR"
 
     def __init__(self, start=None, end=None, length=None, **slots):
-        super().__init__((start, end), f"(CONS (INTEGER 0 {length}) (INTEGER 0 {length}))", **slots)
+        super().__init__(Cons(start, end), f"(CONS (INTEGER 0 {length}) (INTEGER 0 {length}))", **slots)
         self.start, self.end, self.length = start, end, length
 
     def report(self):
@@ -258,7 +258,7 @@ class SequenceType:
                     length,
                     self.specifier,
                     datum=length,
-                    expected_type=self.length,
+                    expected_type="(INTEGER 1)" if self.length is None else f"(EQL {self.length})",
                 )
             )
 
@@ -278,10 +278,16 @@ def sequence_type(specifier):
     found = _read_type(specifier, specifier)
     if found is None:
         named = PORTS.types.expand(specifier)
-        return error(SimpleTypeError("~S is a bad type specifier for sequences.", named, datum=named, expected_type=sym("SEQUENCE")))
+        expected = "(SATISFIES SB-IMPL::IS-A-VALID-SEQUENCE-TYPE-SPECIFIER-P)"
+        return error(SimpleTypeError("~S is a bad type specifier for sequences.", named, datum=named, expected_type=expected))
     if isinstance(specifier, Symbol) and specifier.package is sym("LIST").package:
         _known_types[specifier] = found
     return found
+
+
+def is_sequence_type(specifier):
+    """Whether sequences of the type can be made."""
+    return isinstance(specifier, (Cons, Symbol, type)) and _read_type(specifier, specifier) is not None
 
 
 def _read_type(specifier, original):
@@ -315,6 +321,8 @@ def _read_type(specifier, original):
             found = [_read_type(parameter, original) for parameter in parameters]
             if kind == "OR" and len({None if one is None else one.element_type is None for one in found}) > 1:
                 return None  # lists and vectors: it does not say which to make
+            if kind == "OR" and len({one.element_type for one in found if one is not None and one.element_type is not None}) > 1:
+                return program_error("~S is too hairy for sequence functions.", original)
             return next((one for one in found if one is not None), None)
     expansion = PORTS.types.expand(specifier)
     return None if expansion is specifier else _read_type(expansion, expansion)

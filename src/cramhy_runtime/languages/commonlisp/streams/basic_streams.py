@@ -56,7 +56,10 @@ class Stream:
 
 def misused(stream, what):
     """The type-error that ``stream`` is no stream of the kind ``what``, such as ``"character input"``."""
-    return error(SimpleTypeError("~S is not a ~A stream.", stream, what, datum=stream, expected_type=f"(SATISFIES {what})"))
+    element, direction = what.split()
+    is_other = not (stream.is_input if direction == "input" else stream.is_output)
+    predicate = f"{direction.upper()}-STREAM-P" if is_other else f"SB-IMPL::{element.upper()}-{direction.upper()}-STREAM-P"
+    return error(SimpleTypeError("~S is not a ~A stream.", stream, what, datum=stream, expected_type=f"(SATISFIES {predicate})"))
 
 
 class OutputStream(Stream):

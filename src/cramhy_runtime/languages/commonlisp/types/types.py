@@ -391,6 +391,12 @@ def define_type(symbol, expander, documentation=None, lambda_list=None):
     return symbol
 
 
+def define_own_type(symbol, predicate):
+    """Make ``symbol`` a type of the runtime's own, of the objects for which the Python function ``predicate`` holds."""
+    if symbol not in _BUILT_IN:
+        _BUILT_IN[symbol] = _predicates[symbol] = predicate
+
+
 def type_expander(symbol):
     """The function that ``deftype`` gave ``symbol``, with its documentation and lambda list; ``None`` when there is none."""
     return _expanders.get(symbol)
