@@ -434,8 +434,9 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 (defoperator with-output-to-string [spec #* body]
   (setv #(stream #* options) (elements spec))
   (setv target (if (or (not options) (isinstance (get options 0) Keyword)) None (get options 0)))
+  (setv keywords (if (or (not options) (isinstance (get options 0) Keyword)) options (cut options 1 None)))
   (if (is target None)
-      `(let [[~stream (make-string-output-stream)]] ~@body (get-output-stream-string ~stream))
+      `(let [[~stream (make-string-output-stream ~@keywords)]] ~@body (get-output-stream-string ~stream))
       `(let [[~stream (%make-fill-pointer-output-stream ~target)]] ~@body)))
 
 (defoperator with-input-from-string [spec #* body]

@@ -12,13 +12,13 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import SimpleTypeError, TypeError_, formatted
 from cramhy_runtime.ground.conditions import error, program_error, type_error
-from cramhy_runtime.ground.data import CHARACTERS, WRITABLE_STRINGS, Character, Cons, FreshString, LispString, Symbol, list_from
+from cramhy_runtime.ground.data import CHARACTERS, WRITABLE_STRINGS, Character, Cons, FreshString, KindString, LispString, Symbol, list_from
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.kernel.active import checkpoint
 from .element_types import check_element, upgraded_element_type
 from .lists import items_of
-from cramhy_runtime.ground.arrays import BIT, CHARACTER, LispArray, TypedVector, Vector, array_type, is_simple
+from cramhy_runtime.ground.arrays import BASE_CHAR, BIT, CHARACTER, STRING_KINDS, LispArray, TypedVector, Vector, array_type, is_simple
 
 DIMENSION_LIMIT = 4611686018427387901
 INDEX_TYPE = f"(MOD {DIMENSION_LIMIT})"
@@ -129,12 +129,26 @@ def text(items):
         return FreshString("".join([char_of(item) for item in items]))
 
 
+def string_of_kind(items, kind):
+    """A simple string of the characters ``items``, of the element type ``kind``: BASE-CHAR, or ``None`` for nil."""
+    if kind is BASE_CHAR:
+        for item in items:
+            check_element(item, BASE_CHAR)
+    return KindString(text(items), kind)
+
+
+def string_like(string, text):
+    """A new string of the characters of ``text``, of the element type of ``string``."""
+    kind = getattr(string, "kind", False)
+    return FreshString(text) if kind is False else KindString(text, kind)
+
+
 def same_kind(sequence, items):
     """A new sequence of ``items`` of the kind of ``sequence``: list, vector with its element type, or string."""
     if sequence is None or isinstance(sequence, Cons):
         return list_from(items)
     if is_string(sequence):
-        return text(items)
+        return text(items) if getattr(sequence, "kind", False) is False else string_of_kind(items, sequence.kind)
     if isinstance(sequence, (TypedVector, Vector)) and sequence.element_type is not True:
         return typed_vector(items, sequence.element_type)
     return list(items)
@@ -146,6 +160,8 @@ def typed_vector(items, element_type):
         return list(items)
     if element_type is CHARACTER:
         return text(items)
+    if element_type in STRING_KINDS:
+        return string_of_kind(items, element_type)
     for item in items:
         check_element(item, element_type)
     return TypedVector(items, element_type)
@@ -305,13 +321,15 @@ def _read_type(specifier, original):
         if kind in _LISTS and (kind == "CONS" or not isinstance(specifier, Cons)):
             return SequenceType(original, None, _length_of_list(specifier), kind == "CONS")
         if kind in _STRINGS:
-            return SequenceType(original, CHARACTER, given[0], simple=simple)
+            return SequenceType(original, BASE_CHAR if "BASE" in kind else CHARACTER, given[0], simple=simple)
         if kind in _BITS:
             return SequenceType(original, BIT, given[0], simple=simple)
         if kind == "SIMPLE-VECTOR":
             return SequenceType(original, True, given[0], simple=simple)
         if kind in _GENERAL:
             element_type = True if given[0] is None else upgraded_element_type(given[0])
+            if element_type is None:  # NIL; here it would mean lists
+                element_type = True
             if given[1].__class__ is int and kind in ("ARRAY", "SIMPLE-ARRAY"):  # a rank
                 return SequenceType(original, element_type, simple=simple) if given[1] == 1 else None
             if kind in ("ARRAY", "SIMPLE-ARRAY") and not (isinstance(given[1], Cons) and given[1].cdr is None):
@@ -353,8 +371,11 @@ def to_sequence_type(sequence, specifier):
             return sequence
     elif wanted.simple and not is_simple(sequence):
         return wanted.make(items)
+    elif wanted.element_type is BASE_CHAR and is_string(sequence) and getattr(sequence, "kind", None) is BASE_CHAR:
+        wanted.check_length(len(items))
+        return sequence
     elif wanted.element_type is CHARACTER:
-        if is_string(sequence):
+        if is_string(sequence) and getattr(sequence, "kind", False) is False:
             wanted.check_length(len(items))
             return sequence
     elif (

@@ -122,6 +122,7 @@ class StringOutputStream(OutputStream, StringStream):
 
     lisp_name = "SB-IMPL::STRING-OUTPUT-STREAM"
     behind = ""
+    kind = None  # the element type of its strings, if the program gave one
 
     def __init__(self, target=None):
         self.parts = []
@@ -160,9 +161,11 @@ class StringOutputStream(OutputStream, StringStream):
             return
         target = self.target
         if target.fill_pointer is None:
-            target.chars.extend(text)
+            target.chars += text
         else:
             end = target.fill_pointer + len(text)
+            if end > len(target.chars) and target.chars.__class__ is not list:
+                target.chars = list(target.chars)  # it is not displaced any longer
             target.chars[target.fill_pointer : end] = text
             target.fill_pointer = end
 

@@ -7,10 +7,22 @@ border is here. Source: ANSI chapter 21; error texts are SBCL's.
 
 from __future__ import annotations
 
+from ..collections.element_types import upgraded_element_type
 from ..collections.sequence_types import INDEX_TYPE, bounds, elements, part
+from cramhy_runtime.ground.arrays import BASE_CHAR, CHARACTER
 from cramhy_runtime.ground.conditions import EndOfFile, error, type_error
-from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, Cons, FreshString, LispString, MultipleValues, boolean, list_from
-from cramhy_runtime.ground.packages import is_symbol, sym
+from cramhy_runtime.ground.data import (
+    WRITABLE_STRINGS,
+    Character,
+    Cons,
+    FreshString,
+    KindString,
+    LispString,
+    MultipleValues,
+    boolean,
+    list_from,
+)
+from cramhy_runtime.ground.packages import is_symbol
 from cramhy_runtime.ground.ports import PORTS
 from . import streams
 from .streams import (
@@ -118,8 +130,6 @@ def clear_output(stream=None):
     if hasattr(stream, "clear_output"):
         stream.clear_output()
 
-
-CHARACTER = sym("CHARACTER")
 
 # ---------------------------------------------------------------------------------------------------------------- input
 
@@ -230,13 +240,20 @@ def clear_input(stream=None):
 # ------------------------------------------------------------------------------------------------------- making streams
 
 
-def make_string_output_stream(*, element_type=None):
-    return StringOutputStream()
+def make_string_output_stream(*, element_type=CHARACTER):
+    """``make-string-output-stream``: with the element type BASE-CHAR it gives base strings."""
+    stream = StringOutputStream()
+    if element_type is not CHARACTER:
+        stream.kind = upgraded_element_type(element_type)
+    return stream
 
 
 def get_output_stream_string(stream):
     """``get-output-stream-string``: what was written to ``stream`` since the last time this was asked."""
-    return FreshString(stream.take()) if isinstance(stream, StringOutputStream) else type_error(stream, "SB-IMPL::STRING-OUTPUT-STREAM")
+    if not isinstance(stream, StringOutputStream):
+        return type_error(stream, "SB-IMPL::STRING-OUTPUT-STREAM")
+    text = stream.take()
+    return KindString(text, BASE_CHAR) if stream.kind is BASE_CHAR and text.isascii() else FreshString(text)
 
 
 def make_string_input_stream(string, start=0, end=None):
