@@ -71,10 +71,12 @@ class OperatorGenerator(ArrayGenerator, NumberGenerator):
         if operand.raw:
             slow = self.unwrapped(slow, 0)
             classes = [FLOAT_CLASS if each is SINGLE_CLASS else each for each in classes if each is not FLOAT_CLASS]
-        if classes:
-            noted, again = self.noted_class(operand.first)
-            tests = [expression(IS, again if index else noted, each) for index, each in enumerate(classes)]
-            test = tests[0] if len(tests) == 1 else expression(OR, *tests)
+        if not classes:  # it is of another kind for sure
+            self.settle([operand])
+            return self.finish(slow, node, destination, raw=operand.raw)
+        noted, again = self.noted_class(operand.first)
+        tests = [expression(IS, again if index else noted, each) for index, each in enumerate(classes)]
+        test = tests[0] if len(tests) == 1 else expression(OR, *tests)
         if not fits:
             test = expression(AND, test, fixnum_test(operand.later))
         if destination.kind == "effect":

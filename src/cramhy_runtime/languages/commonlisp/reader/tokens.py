@@ -13,12 +13,13 @@ from ..collections.sequence_types import TURN, BoundingIndicesBad, in_turns
 from cramhy_runtime.ground.condition_types import SimpleParseError
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.conditions import type_error
+import math
 import re
 import unicodedata
 from fractions import Fraction
 
 from cramhy_runtime.ground.data import LispString, MultipleValues
-from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.ground.floats import SingleFloat, to_float32
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.kernel.active import checkpoint
@@ -125,10 +126,9 @@ def _float(token, mantissa, marker, exponent):
             f"failed to build float from {token}",
             "The largest single-float is about 3.4e38; write the exponent with d for a double-float: 1d39.",
         )
-    near = SingleFloat(value)
-    if not value or (2 * near - value) - value:  # the digits do not say the middle of two singles, which doubles would round twice
-        return near
-    return SingleFloat(Fraction(mantissa) * Fraction(10) ** int(exponent or 0))
+    if to_float32(math.nextafter(value, -math.inf)) == to_float32(math.nextafter(value, math.inf)):
+        return SingleFloat(value)
+    return SingleFloat(Fraction(mantissa) * Fraction(10) ** int(exponent or 0))  # near the middle of two singles: else rounded twice
 
 
 # -------------------------------------------------------------------------------------------------------------------- names

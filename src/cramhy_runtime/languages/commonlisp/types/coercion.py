@@ -73,7 +73,7 @@ def _to_complex(obj, specifier):
         return _cannot(obj, specifier)
     if part is not sym("*") and part not in (sym("REAL"), sym("RATIONAL"), sym("INTEGER")):
         return complex_(*(coerce(each, part) for each in (parts(obj) if isinstance(obj, complex) else (obj, 0))))
-    return complex_(obj, 0.0) if isinstance(obj, float) else obj
+    return complex_(obj, obj.__class__(0.0)) if isinstance(obj, float) else obj
 
 
 def _to_function(obj):
