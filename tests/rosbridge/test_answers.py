@@ -80,7 +80,7 @@ def test_with_real_sockets_neither_the_connection_nor_the_output_suffers(serve, 
             server.post(lambda: publication.send(kind()))
             told = raw.until(op="status")
             assert told["msg"] == (
-                "A message of /bad could not be sent to you as cbor-raw: std_msgs/Time: the field data holds 1e+300d0, "
+                "A message of /bad could not be sent to you as cbor-raw: std_msgs/Time: the field data holds 1e+300, "
                 "which ROS 1 cannot write as time."
             )
             assert isinstance(raw.receive(), bytes)

@@ -13,6 +13,7 @@ import math
 from cramhy_runtime.ground.floats import SingleFloat, to_float32
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.ground.printing import NUMBERS_OF_PYTHON
 
 READ_DEFAULT_FLOAT_FORMAT = special("*READ-DEFAULT-FLOAT-FORMAT*", sym("SINGLE-FLOAT"))
 _DOUBLE_NAMES = (sym("DOUBLE-FLOAT"), sym("LONG-FLOAT"))
@@ -99,6 +100,8 @@ def digits(x, position=None, relative=False):
 
 def marker(x):
     """The exponent marker that ``x`` needs to be read back: ``e`` when it is of the default format."""
+    if READ_DEFAULT_FLOAT_FORMAT.value is NUMBERS_OF_PYTHON:
+        return "e"
     double = x.__class__ is not SingleFloat
     if (READ_DEFAULT_FLOAT_FORMAT.value in _DOUBLE_NAMES) == double:
         return "e"
@@ -107,6 +110,8 @@ def marker(x):
 
 def float_text(x):
     """``x`` as ``prin1`` prints it: ``3.6666667``, ``1.0e7``, ``5.0d0``."""
+    if READ_DEFAULT_FLOAT_FORMAT.value is NUMBERS_OF_PYTHON:
+        return repr(x)
     if x != x or x in (math.inf, -math.inf):
         return _special_text(x)
     sign = "-" if math.copysign(1.0, x) < 0 else ""
