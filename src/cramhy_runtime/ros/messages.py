@@ -359,10 +359,10 @@ def _initializer(cls: MessageType, fields: Sequence[Field]) -> Callable[..., Non
     return initializer
 
 
-_makers: dict[type, Callable[..., Any]] = {}
+_makers: dict[type, Callable[..., RosMessage]] = {}
 
 
-def maker(cls: MessageType) -> Callable[..., Any]:
+def maker(cls: MessageType) -> Callable[..., RosMessage]:
     """The function that makes messages of ``cls`` as roslisp does: a float that is not given is the 0.0 of Lisp's literals."""
     found = _makers.get(cls)
     if found is None:
