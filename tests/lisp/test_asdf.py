@@ -343,12 +343,83 @@ def test_a_system_may_have_a_dot_in_its_name(write, run, name):
     assert run(f"(asdf:load-system {name!r}) *log*".replace("'", '"')) == "(:DOTTED)"
 
 
-def test_a_system_that_knows_no_other_lisp_is_read_as_for_sbcl(write, run, monkeypatch):
-    """The others, before and behind it, are not."""
-    monkeypatch.setattr(systems, "READ_AS_SBCL", {"for-sbcl"})
-    write("for-all.asd", '(defsystem "for-all" :depends-on ("for-sbcl") :components ((:file "for-all-x")))')
-    write("for-sbcl.asd", '(defsystem "for-sbcl" :depends-on ("for-first") :components ((:file "for-sbcl-x")))')
+AS_ASKED = "#+sbcl (push :as-sbcl cl-user::*log*) #-sbcl (push :as-another cl-user::*log*)"
+
+
+@pytest.mark.parametrize(
+    ("text", "read"),
+    [
+        ("#+sbcl (sb-ext:gc)", ":AS-SBCL"),
+        ("#+sbcl (defun of-kernel () (sb-kernel:no-such-thing))", ":AS-ANOTHER"),
+        ("#+sbcl (defun of-kernel () (sb-ext::no-such-thing))", ":AS-ANOTHER"),
+        ("#-sbcl (defun of-kernel () (sb-kernel:no-such-thing))", ":AS-SBCL"),
+        ("#+(and sbcl no-such) (sb-kernel:no-such-thing)", ":AS-SBCL"),
+        ("#+sbcl (defpackage :of-sbcl-1 (:use :cl #+sbcl #:sb-gray))", ":AS-SBCL"),
+        ("#+sbcl (defpackage :of-sbcl-2 (:use :cl #+sbcl #:sb-no-such))", ":AS-ANOTHER"),
+        ('#+sbcl (defpackage :of-sbcl-3 (:use "CL") (:import-from :sb-ext #:no-such-thing))', ":AS-ANOTHER"),
+        ("#+sbcl (defpackage :of-sbcl-4 (:use :cl) (:import-from #:sb-ext #:gc))", ":AS-SBCL"),
+        ('#| sb-kernel:no-such |# ; sb-kernel:no-such\n (list "sb-kernel:no-such" \'#.(+ 1 2) #p"x" #xff #c(1 2) \'|sb-x:y|)', ":AS-SBCL"),
+        ("#+no-such #~what #+sbcl (defun of-kernel () (sb-kernel:no-such-thing))", ":AS-ANOTHER"),
+    ],
+    ids=lambda value: None,
+)
+def test_a_system_is_read_for_sbcl_if_it_then_names_only_what_is_here(write, run, text, read):
+    """It does so for each system by itself: those before and behind it say nothing of SBCL here, and see no feature."""
+    write("for-all.asd", '(defsystem "for-all" :depends-on ("for-one") :components ((:file "for-all-x")))')
+    write("for-one.asd", '(defsystem "for-one" :depends-on ("for-first") :components ((:file "for-one-x") (:file "for-one-y")))')
     write("for-first.asd", '(defsystem "for-first" :components ((:file "for-first-x")))')
-    for name in ("all", "sbcl", "first"):
-        write(f"for-{name}-x.lisp", f"#+sbcl {logging(f':{name}-as-sbcl')} #-sbcl {logging(f':{name}')}")
-    assert run("(asdf:load-system :for-all) (reverse *log*)") == "(:FIRST :SBCL-AS-SBCL :ALL)"
+    write("for-one-x.lisp", text)
+    write("for-one-y.lisp", AS_ASKED)
+    for name in ("all", "first"):
+        write(
+            f"for-{name}-x.lisp",
+            f'(push (if (find (format nil "SB~a" :cl) *features* :test #\'string=) :{name}-too :{name}) cl-user::*log*)',
+        )
+    assert run("(asdf:load-system :for-all) (reverse *log*)") == f"(:FIRST {read} :ALL)"
+
+
+DEFINITIONS = {
+    "components": ('(:file "of-d") #+sbcl (:file "of-a") #-sbcl (:file "of-b")', "", "(:D :A)"),
+    "feature of a component": ('(:file "of-d") (:file "of-a" :if-feature :sbcl) (:file "of-b" :if-feature (:not :sbcl))', "", "(:D :A)"),
+    "what is not had": ('(:file "of-d") #+sbcl (:file "of-c") #-sbcl (:file "of-b")', "", "(:D :B)"),
+    "part that is not had": ('(:file "of-d") #+sbcl (:file "of-a") #-sbcl (:file "of-b")', "#+sbcl :sb-no-such", "(:D :B)"),
+    "part that is not had, as a feature": ('(:file "of-d")', "(:feature :sbcl (:require :sb-no-such))", "(:D)"),
+}
+
+
+@pytest.mark.parametrize("case", DEFINITIONS)
+def test_the_definition_of_a_system_is_read_as_its_files_are(write, run, case):
+    components, needed, expected = DEFINITIONS[case]
+    write("of-sbcl.asd", f'(defsystem "of-sbcl" :depends-on ({needed}) :components ({components}))')
+    for name in "abd":
+        write(f"of-{name}.lisp", logging(f":{name}"))
+    write("of-c.lisp", "(sb-kernel:no-such-thing)")
+    assert run("(asdf:load-system :of-sbcl) (reverse *log*)") == expected
+
+
+def test_a_system_that_is_only_for_lisps_that_it_knows_is_read_for_sbcl(write, run):
+    write("only-known.asd", '#+(or sbcl cmu) (defsystem "only-known" :components ((:file "known-x")))')
+    write("known-x.lisp", f"{AS_ASKED} (defun never () #+sbcl (when nil (sb-ext::no-such-thing)))")
+    assert run("(asdf:load-system :only-known) *log*") == "(:AS-ANOTHER)"
+
+
+def test_an_asd_file_may_refuse_lisps_that_it_does_not_know(write, run):
+    write("refuses.asd", '#-(or allegro sbcl) (error "Another Lisp, please.") (defsystem "refuses" :components ((:file "refuses-x")))')
+    write("refuses-x.lisp", AS_ASKED)
+    assert run("(asdf:load-system :refuses) *log*") == "(:AS-SBCL)"
+
+
+def test_features_that_a_system_read_for_sbcl_adds_stay(write, run):
+    write("adds.asd", '(defsystem "adds" :components ((:file "adds-x")))')
+    write("adds-x.lisp", "#+sbcl (sb-ext:gc) (pushnew :added-by-adds *features*)")
+    assert run("(let ((before *features*)) (asdf:load-system :adds) (equal *features* (cons :added-by-adds before)))") == "T"
+    run("(setf *features* (remove :added-by-adds *features*))")
+
+
+def test_who_asks_for_sbcl_is_told_which_systems_are_read_without_it(write, run, capsys):
+    write("without.asd", '(defsystem "without" :components ((:file "without-x")))')
+    write("without-x.lisp", f"#+sbcl (list 'sb-kernel::a 'sb-kernel::b 'sb-kernel::c 'sb-kernel::d 'sb-ext:gc) {AS_ASKED}")
+    assert run("(let ((*features* (cons :sbcl *features*))) (asdf:load-system :without)) *log*") == "(:AS-ANOTHER)"
+    assert capsys.readouterr().err == (
+        "; The system without is read without the feature SBCL: it would name SB-KERNEL:A, SB-KERNEL:B, SB-KERNEL:C and 1 more, not had here.\n"
+    )

@@ -335,6 +335,7 @@ def _python_attributes(cls):
     for base in cls.__mro__:
         if base is object or lisp_defined and issubclass(base, lisp_defined) and base not in lisp_defined:
             continue
+        taken.update(vars(base).get("reserved_attributes", ()))
         for name, value in vars(base).items():
             if isinstance(value, (ClassSlot, InstanceSlot)):
                 continue

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import functools
 import os
+from contextlib import nullcontext
 from pathlib import Path
 
 from cramhy_runtime.kernel.images import per_image
@@ -22,16 +23,16 @@ from ..compiler.compilation_unit import compilation_unit
 from ..evaluation.definitions import RedefinitionWarning
 from ..evaluation.evaluator import PACKAGE, evaluate
 from ..files.files import lisp_path
-from ..reader.dispatch_macros import FEATURES, with_features
 from ..streams.streams import ERROR_OUTPUT, output_stream
-from cramhy_runtime.ground.packages import Package, find_package, near_names, register, string_designator, sym
+from cramhy_runtime.ground.packages import Package, find_package, keyword, near_names, register, string_designator, sym
 from . import loader, missing_messages
+from .for_sbcl import lacking, read_for_sbcl, speaks_of_sbcl
 from cramhy_runtime.storage.dependencies import file_state, unchanged
 from cramhy_runtime.storage.dependency_tracing import is_library
 from cramhy_runtime.ros import search_folders
 from cramhy_runtime.ros.definition_files import package_name
 from cramhy_runtime.ros.search_folders import crawls, look_again, crawling_once
-from .system_definitions import Module, SourceFile, System, define_system, systems
+from .system_definitions import Module, SourceFile, System, define_system, holds, systems
 
 
 class MissingComponent(SimpleError):
@@ -127,9 +128,6 @@ def choose_file(path):
             stream.flush()
 
 
-READ_AS_SBCL = {"cl-fad", "metatilities-base"}
-"""Systems whose files know a few Lisps by name and none of the others: they are read with the feature SBCL, as ``--features sbcl`` says of
-all. Other systems ask for more of SBCL, when they see that feature, than there is here."""
 OF_ALL_LISPS = {"alexandria", "cl-utilities", "split-sequence"}
 """Libraries that know nothing of CRAM, of which cramhy contains a rewritten form: a real one on ROS_PACKAGE_PATH comes first. All others
 depend on how cramhy is made; `prefer` takes them from there."""
@@ -329,10 +327,38 @@ def really_at(path):
 
 
 def _read_definitions(path):
+    """Evaluate the forms of an ``.asd`` file: for SBCL, if what it then defines can be had here, else as a Lisp that it does not know."""
+    text = path.read_text(encoding="utf-8")
+    if not speaks_of_sbcl(text) or is_library(str(path)):
+        return _evaluate_definitions(path, text)
+    with read_for_sbcl(True):
+        _evaluate_definitions(path, text)
+    made = [system for system in systems.values() if system.file == path]
+    main = systems.get(path.stem)
+    if main not in made or not (_not_had(main) or lacking(component.pathname for component in files_of(main))):
+        return None
+    for system in made:
+        system.file = None
+    with read_for_sbcl(False):
+        _evaluate_definitions(path, text)
+    for system in made:
+        if system.file is None and system is not main:
+            forget_system(system.name)
+    if main.file is None:  # it is there for Lisps that it knows
+        with read_for_sbcl(True):
+            _evaluate_definitions(path, text)
+    return None
+
+
+def _not_had(system):
+    """Names of parts of SBCL that a system depends on, and that cannot be had."""
+    return [name for name, _ in system.depends_on if name.startswith("sb-") and not is_provided(name) and find_asd(name) is None]
+
+
+def _evaluate_definitions(path, text):
     from ..reader.reader import Reader
 
-    reader = Reader(path.read_text(encoding="utf-8"), filename=str(path))
-    end = object()
+    reader, end = Reader(text, filename=str(path)), object()
     with binding(PACKAGE, asdf_user(), loader.LOAD_PATHNAME, lisp_path(path), loader.LOAD_TRUENAME, lisp_path(os.path.realpath(path))):
         while (form := reader.read(eof_error=False, eof_value=end)) is not end:
             if isinstance(form, Cons) and isinstance(form.car, Symbol) and form.car.name == "DEFSYSTEM":
@@ -434,10 +460,27 @@ def _load_system(name, force=False, required_by=None, version=None):
 def _load_components(system, chain, force):
     if _is_replaced(system):
         return chain
-    with binding(FEATURES, with_features(("SBCL",)) if system.name in READ_AS_SBCL else FEATURES.value):
-        for component in files_of(system):
-            chain = _load_component(component.pathname, chain, force)
+    files = [component.pathname for component in files_of(system)]
+    with _features_for(system, files):
+        for path in files:
+            chain = _load_component(path, chain, force)
     return chain
+
+
+def _features_for(system, files):
+    """A context in which ``*features*`` has SBCL or not, as the ``files`` of a system need it. Who asked for the feature is told."""
+    lacks = None if is_library(str(system.file)) else lacking(files)
+    if lacks is None:
+        return nullcontext()
+    if lacks and holds(keyword("SBCL")) and system.name not in loaded:
+        stream = output_stream(ERROR_OUTPUT.value)
+        more = f" and {len(lacks) - 3} more" if len(lacks) > 3 else ""
+        stream.fresh_line()
+        stream.write(
+            f"; The system {system.name} is read without the feature SBCL: it would name {', '.join(lacks[:3])}{more}, not had here.\n"
+        )
+        stream.flush()
+    return read_for_sbcl(not lacks)
 
 
 def _is_replaced(system):
