@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import Character, Cons, list_from
 from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import KEYWORD, find_package
+from cramhy_runtime.ground.packages import KEYWORD, named_package
 from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from cramhy_runtime.storage.dependencies import file_state, unchanged
@@ -130,7 +130,7 @@ def _elements(lst: Value) -> Iterator[Value]:
 def is_here(name: str) -> bool:
     """Whether a name as those of `names_of_sbcl` means something here."""
     package_name, _, symbol_name = name.partition(":")
-    package = find_package(package_name)
+    package = named_package(package_name)
     return package is not None and (not symbol_name or package.lookup(symbol_name)[1] is not None)
 
 

@@ -56,8 +56,6 @@ preferred: set = per_image(set())
 chosen: dict = per_image({})
 """Name of a system that cramhy contains, too → the ``.asd`` file that the user has loaded, or has put into the central registry."""
 NOT_TO_BE_HAD = {
-    "sb-bsd-sockets": "it is part of SBCL; Python's socket module does its work",
-    "sb-rt": "it is part of SBCL; Debian's rt is the same library, apart from its name",
     "sb-concurrency": "it is part of SBCL; cram-utilities has queues, and waiting on a fluent does the work of a mailbox",
     "sb-cltl2": "it is part of SBCL and asks its compiler, which is another here",
     "uffi": "it calls functions of C, which cramhy cannot; Python's ctypes does its work",
@@ -193,6 +191,10 @@ LIBRARY_PACKAGES = {
     "CRAM-PR2-ENVIRONMENT-MANIPULATION": "cram-pr2-environment-manipulation",
     "PR2-EM": "cram-pr2-environment-manipulation",
     "PR2-ENV-MAN": "cram-pr2-environment-manipulation",
+    "SB-BSD-SOCKETS": "sb-bsd-sockets",
+    "SB-BSD-SOCKETS-INTERNAL": "sb-bsd-sockets",
+    "SB-RT": "sb-rt",
+    "SB-ROTATE-BYTE": "sb-rotate-byte",
     "FIVEAM": "fiveam",
     "5AM": "fiveam",
     "IT.BESE.FIVEAM": "fiveam",
