@@ -46,7 +46,7 @@
 
 (defn accessors-of [slot]
   "The names of the functions that a slot of `define-condition` gets."
-  (setv options (options-of (if (listp slot) slot.cdr [])))
+  (setv options (options-of (if (listp slot) (or slot.cdr []) [])))
   (setv names (lfor #(key name) options :if (and (in key ["READER" "WRITER" "ACCESSOR"]) (is-symbol name)) name))
   [#* names #* (lfor #(key name) options :if (and (= key "ACCESSOR") (is-symbol name)) #("setf" name))])
 

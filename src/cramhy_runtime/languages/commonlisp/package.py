@@ -52,7 +52,7 @@ HELPERS = {
     "ground.source_places": "source-position",
     "evaluation.setf_places": "define-modifier define-setf-function define-setf-form define-expander",
     "evaluation.expansion_support": """next-values check-shape key-table key-given-p key-value case-failure ask-for-value check-type-failed
-        handler-case restart-report restart-case restart-bind with-simple-restart
+        handler-bind handler-case restart-report restart-case restart-bind with-simple-restart
         signal-with-restarts with-condition-restarts hash-table-iterator
         remove-property next-method-exists""",
     "packages.package_definition": "define-package set-package package-symbols all-symbols package-iterator call-unlocked",

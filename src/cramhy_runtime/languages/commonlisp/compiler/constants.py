@@ -23,6 +23,10 @@ from .core import List, expression, word
 from .several_values import ValuesCalls
 
 
+_WITH_PARTS = (Cons, list, SimpleArray)
+_MANY = 10_000  # parts: more than most constants have, fewer than one would wait for
+
+
 class NotStorable(Exception):
     """An object that no code can rebuild."""
 
@@ -154,7 +158,7 @@ class Constants:
 
 def is_circular(obj):
     """Whether the conses and arrays of a constant come back to themselves."""
-    if not isinstance(obj, (Cons, list, SimpleArray)):
+    if not isinstance(obj, _WITH_PARTS) or _ends(obj):
         return False
     active, done, stack = set(), set(), [(obj, False)]
     while stack:
@@ -162,14 +166,28 @@ def is_circular(obj):
         if leaving:
             active.discard(id(item))
             done.add(id(item))
-        elif isinstance(item, (Cons, list, SimpleArray)) and id(item) not in done:
+        elif isinstance(item, _WITH_PARTS) and id(item) not in done:
             if id(item) in active:
                 return True
             active.add(id(item))
             stack.append((item, True))
-            parts = (item.car, item.cdr) if isinstance(item, Cons) else item.storage if isinstance(item, SimpleArray) else item
-            stack += [(part, False) for part in parts]
+            stack += [(part, False) for part in _parts(item)]
     return False
+
+
+def _ends(obj):
+    """Whether a walk through the constant ends after a few thousand parts: then it is not circular."""
+    rest, steps = [obj], _MANY
+    while rest and steps:
+        steps -= 1
+        item = rest.pop()
+        if isinstance(item, _WITH_PARTS):
+            rest += _parts(item)
+    return not rest
+
+
+def _parts(item):
+    return (item.car, item.cdr) if isinstance(item, Cons) else item.storage if isinstance(item, SimpleArray) else item
 
 
 def float_model(value):

@@ -14,7 +14,7 @@ from ..collections.sequence_types import bounds
 from cramhy_runtime.ground.conditions import SimpleTypeError, error, type_error
 from cramhy_runtime.ground.data import UNSUPPLIED, FreshString, LispString, MultipleValues, python_list
 from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.ground.packages import keyword
 from ..streams.streams import Stream
 from .namestrings import (
     NamestringParseError,
@@ -107,7 +107,8 @@ def logical_host(designator):
         return type_error(designator, "(OR STRING SB-KERNEL:LOGICAL-HOST)")
     found = logical_hosts.get(str(designator).upper())
     if found is None:
-        return error(SimpleTypeError("logical host not yet defined: ~S", designator, datum=designator, expected_type=sym("STRING")))
+        expected = "(AND STRING (SATISFIES SB-IMPL::LOGICAL-HOST-NAME-P))"
+        return error(SimpleTypeError("logical host not yet defined: ~S", designator, datum=designator, expected_type=expected))
     return found
 
 

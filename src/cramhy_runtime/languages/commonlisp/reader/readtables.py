@@ -102,6 +102,15 @@ class Readtable:
         self._scanner = re.compile(f"(?:{skip})*((?:{begin}{within}*)?)({escape}?)")
         return self._scanner
 
+    def end_of_blank(self, text, offset):
+        """Where white space and comments that begin at ``offset`` end. If the text ends in a comment, which may go on when more of the text
+        arrives, it is where that comment begins."""
+        end = self.scanner.match(text, offset).start(1)
+        if end < len(text):
+            return end
+        comment = text.find(";", max(offset, text.rfind("\n") + 1))
+        return end if comment < 0 else comment
+
     def set_macro(self, char, function, non_terminating=False):
         self.forget(char)
         self.macros[char] = function

@@ -163,7 +163,7 @@ class Reader(InputStream):
 
     def skip_blank(self):
         """Go past white space and comments that begin with ``;``."""
-        self.offset = READTABLE.value.scanner.match(self.text, self.offset).start(1)
+        self.offset = READTABLE.value.end_of_blank(self.text, self.offset)
 
     def next_object(self, frame=None):
         """The next object, or NOTHING at the end of the text.
@@ -209,9 +209,10 @@ class Reader(InputStream):
                     continue
                 found = self._token(word, start, table)
             elif end == len(text):
-                self.offset = end
+                self.offset = table.end_of_blank(text, self.offset)
                 if self.grow():
                     continue
+                self.offset = end
                 if len(frames) > base:
                     return self.ended()
                 return NOTHING

@@ -293,7 +293,7 @@ class SynonymStream(_Delegate):
 
     @property
     def stream(self):
-        value = self.symbol.value
+        value = getattr(self.symbol, "value", self.symbol)  # NIL and T are their own values
         if not isinstance(value, Stream):
             return type_error(value, "STREAM") if value is not UNBOUND else error(UnboundVariable(self.symbol))
         return value

@@ -14,7 +14,17 @@ from fractions import Fraction
 from pathlib import PurePath
 
 from ..collections.element_types import upgraded_element_type
-from cramhy_runtime.ground.arrays import LispArray, Vector, array_type, dimensions, element_type, is_bit_vector, is_simple
+from cramhy_runtime.ground.arrays import (
+    BASE_CHAR,
+    STRING_KINDS,
+    LispArray,
+    Vector,
+    array_type,
+    dimensions,
+    element_type,
+    is_bit_vector,
+    is_simple,
+)
 from cramhy_runtime.ground.conditions import SimpleError, error
 from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol, UndefinedFunction, lisp_list, one, truth
 from cramhy_runtime.ground.equality import eql, equal
@@ -45,7 +55,11 @@ def _is_function(obj):
 
 
 def _is_string(obj):
-    return isinstance(obj, (str, LispString)) or (obj.__class__ is Vector and getattr(obj.element_type, "name", "") == "CHARACTER")
+    return isinstance(obj, (str, LispString)) or (obj.__class__ is Vector and obj.element_type in STRING_KINDS)
+
+
+def _is_base_string(obj):
+    return _is_string(obj) and element_type(obj) is BASE_CHAR
 
 
 def _is_vector(obj):
@@ -70,8 +84,8 @@ _ATOMIC = {
     "VECTOR": _is_vector,
     "STRING": _is_string,
     "SIMPLE-STRING": lambda obj: _is_string(obj) and _is_simple(obj),
-    "BASE-STRING": lambda obj: False,
-    "SIMPLE-BASE-STRING": lambda obj: False,
+    "BASE-STRING": _is_base_string,
+    "SIMPLE-BASE-STRING": lambda obj: _is_base_string(obj) and _is_simple(obj),
     "BIT-VECTOR": is_bit_vector,
     "SIMPLE-BIT-VECTOR": lambda obj: is_bit_vector(obj) and _is_simple(obj),
     "SIMPLE-VECTOR": lambda obj: obj.__class__ is list,
@@ -389,6 +403,12 @@ def define_type(symbol, expander, documentation=None, lambda_list=None):
     _expanders[symbol] = expander
     forget_predicates()
     return symbol
+
+
+def define_own_type(symbol, predicate):
+    """Make ``symbol`` a type of the runtime's own, of the objects for which the Python function ``predicate`` holds."""
+    if symbol not in _BUILT_IN:
+        _BUILT_IN[symbol] = _predicates[symbol] = predicate
 
 
 def type_expander(symbol):
