@@ -33,6 +33,7 @@ _TYPES = {
     "SB-KERNEL::LOGICAL-HOST": lambda obj: isinstance(obj, LogicalHost),
     "SB-PRETTY::PPRINT-DISPATCH-TABLE": lambda obj: getattr(obj, "lisp_name", None) == "SB-PRETTY:PPRINT-DISPATCH-TABLE",
 }
+define_own_type(sym("SB-PRETTY:PPRINT-DISPATCH-TABLE"), _TYPES["SB-PRETTY::PPRINT-DISPATCH-TABLE"])
 _PREDICATES = {
     "SB-IMPL::IS-A-VALID-SEQUENCE-TYPE-SPECIFIER-P": is_sequence_type,
     "SB-IMPL::LOGICAL-HOST-NAME-P": lambda obj: str(obj).upper() in logical_hosts,

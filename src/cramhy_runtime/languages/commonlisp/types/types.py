@@ -42,6 +42,7 @@ from cramhy_runtime.ground.packages import Package, is_symbol, sym
 from cramhy_runtime.storage.dependency_tracing import run
 from cramhy_runtime.ground.ports import PORTS
 from ..packages.package_errors import check_symbol
+from ..syntax.declaration_names import check_type_name
 from .specifier_shapes import bad_operator, bad_specifier, check_specifier, is_operator
 
 LISP_NAMES = "typep type-of upgraded-complex-part-type"
@@ -195,8 +196,15 @@ def _symbol_predicate(symbol):
         if cls is None:
             return bad_operator(symbol) if is_operator(symbol) else unknown_type(symbol)
         predicate = _class_predicate(cls)
+        if symbol.package is not None and symbol.package.name.startswith("SB-"):
+            predicate = _named_predicate(symbol, predicate)
     _predicates[symbol] = predicate
     return predicate
+
+
+def _named_predicate(symbol, predicate):
+    """Several of our classes have one name of SBCL's, such as SB-SYS:FD-STREAM: the type is all of them."""
+    return lambda obj: predicate(obj) or class_name(class_of(obj)) is symbol
 
 
 def unknown_type(specifier):
@@ -397,6 +405,7 @@ def define_type(symbol, expander, documentation=None, lambda_list=None):
     are; it returns the specifier that is meant. Optional arguments default to ``*`` (ANSI 3.4.8), which the macro sees to.
     """
     check_symbol(symbol, "defining ~S as a type specifier", symbol)
+    check_type_name(symbol)
     if symbol in _BUILT_IN:
         return error(SimpleError("~S is a type of Common Lisp and cannot be defined again. Choose another name.", symbol))
     expander.__doc__, expander.__lisp_lambda_list__ = documentation, lambda_list
