@@ -13,6 +13,7 @@ from fractions import Fraction
 
 from cramhy_runtime.kernel.late_patterns import late_pattern
 from ..collections.characters import name_char
+from ..collections.arrays import CONSTANTS
 from cramhy_runtime.ground.arrays import bit_vector
 from cramhy_runtime.ground.python_exceptions import condition_for
 from cramhy_runtime.ground.conditions import Condition, Error, style_warn
@@ -417,7 +418,7 @@ def sharp_a(stream, sub, argument):
             "SBCL-specific form #A(dimensions element-type . contents).",
             hint="A matrix is written #2A((1 2) (3 4)).",
         )
-    if argument > 100:
+    if argument >= CONSTANTS["ARRAY-RANK-LIMIT"]:
         return fail(reader, start, "The rank ~D is too large.", argument)
     dimensions, level = [], contents
     for axis in range(argument):

@@ -185,6 +185,8 @@ def _class_predicate(cls):
         return lambda obj: True
     if isinstance(cls, BuiltInClass):
         return lambda obj: cls in lisp_mro(obj.__class__)
+    if cls is class_of(object):  # the class of the class T, which is Python's own
+        return lambda obj: isinstance(obj, cls) or obj is object
     return lambda obj: isinstance(obj, cls) or cls in lisp_mro(obj.__class__)
 
 
@@ -196,15 +198,8 @@ def _symbol_predicate(symbol):
         if cls is None:
             return bad_operator(symbol) if is_operator(symbol) else unknown_type(symbol)
         predicate = _class_predicate(cls)
-        if symbol.package is not None and symbol.package.name.startswith("SB-"):
-            predicate = _named_predicate(symbol, predicate)
     _predicates[symbol] = predicate
     return predicate
-
-
-def _named_predicate(symbol, predicate):
-    """Several of our classes have one name of SBCL's, such as SB-SYS:FD-STREAM: the type is all of them."""
-    return lambda obj: predicate(obj) or class_name(class_of(obj)) is symbol
 
 
 def unknown_type(specifier):
