@@ -19,7 +19,7 @@ from . import reader_errors, tokens
 from ..syntax.backquote import QUASIQUOTE, Comma
 from .form_places import FormPlaces, LineIndex
 from .reader_errors import fail
-from .readtables import READTABLE, SUPPRESS, UPCASE, DispatchTable, call
+from .readtables import INVALID, READTABLE, SUPPRESS, UPCASE, DispatchTable, call
 from .unmatched_closes import left_out, unmatched_closes
 
 PACKAGE = special("*PACKAGE*", COMMON_LISP_USER)
@@ -458,6 +458,8 @@ class Reader(InputStream, FdStream):
                     index += 1
             elif table.terminates(char):
                 break
+            elif char in INVALID:
+                return fail(self, index, "illegal character ~S", Character(char), hint="Write \\ before it.")
             elif char == ":":
                 name_so_far()
                 parts.append([])
