@@ -158,7 +158,13 @@ class ConcatenatedStream(InputStream):
         return ""
 
     def listen(self):
-        return super().listen() or any(stream.listen() for stream in self.streams[:1])
+        while not super().listen() and self.streams:
+            if self.streams[0].listen():
+                return True
+            if self.streams[0].is_interactive or self.streams[0].peek_char():
+                return False
+            self.streams.pop(0)
+        return super().listen()
 
     def read_byte(self):
         while self.streams:

@@ -35,6 +35,7 @@ _TYPES = {
 }
 define_own_type(sym("SB-PRETTY:PPRINT-DISPATCH-TABLE"), _TYPES["SB-PRETTY::PPRINT-DISPATCH-TABLE"])
 _PREDICATES = {
+    "SB-IMPL::STREAM-FILE-STREAM": lambda obj: getattr(obj, "pathname", None) is not None,
     "SB-IMPL::IS-A-VALID-SEQUENCE-TYPE-SPECIFIER-P": is_sequence_type,
     "SB-IMPL::LOGICAL-HOST-NAME-P": lambda obj: str(obj).upper() in logical_hosts,
     "SB-KERNEL::LITERAL": lambda obj: obj.__class__ is str,
