@@ -65,7 +65,7 @@ def exists(name):
 
 @pytest.mark.parametrize("name", SECTIONS)
 def test_each_name_in_a_row_is_there(session, name):
-    session.evaluate_text("(list 'actionlib:call-goal 'actionlib-lisp:state)")  # which makes their packages
+    session.evaluate_text("(list 'actionlib:call-goal 'actionlib-lisp:state 'cl-tf:transformer)")  # which makes their packages
     assert [operator for row in section(name)[1] for operator in row.operators if not exists(operator)] == []
 
 

@@ -431,6 +431,9 @@ def _escape_upward(directive, state):
         directive.complain("Attempt to use ~:^ outside a ~:{...~} construct")
     first, second, third = parameters(directive, state, None, None, None)
     if third is not None:
+        for missing in (first, second):
+            if missing is None:
+                type_error(missing, "REAL")
         leave = first <= second <= third
     elif second is not None:
         leave = first == second

@@ -110,11 +110,25 @@ def with_clause(loop):
             tokens.take()
             bindings.append((pattern, tokens.form()))
         else:
-            bindings += [(variable, zero(declared)) for variable in pattern_variables(loop, pattern)]
+            bindings += zeros(loop, pattern, declared)
         if not tokens.next_is("AND"):
             break
         tokens.take()
     bind_patterns(loop, bindings)
+
+
+def zeros(loop, pattern, declared):
+    """Pairs of a variable of ``pattern`` and its first value. The type ``declared`` is one for all, or a tree of types like the pattern."""
+    if isinstance(pattern, Cons) and isinstance(declared, Cons) and not _is_compound_type(declared):
+        return [*zeros(loop, pattern.car, declared.car), *zeros(loop, pattern.cdr, declared.cdr)]
+    return [(variable, zero(declared)) for variable in pattern_variables(loop, pattern)]
+
+
+def _is_compound_type(specifier):
+    return is_symbol(specifier.car) and symbol_name(specifier.car) in COMPOUND_TYPES
+
+
+COMPOUND_TYPES = "AND OR NOT MEMBER EQL SATISFIES INTEGER MOD UNSIGNED-BYTE SIGNED-BYTE RATIONAL REAL CONS ARRAY VECTOR STRING".split()
 
 
 def repeat_clause(loop):

@@ -13,12 +13,13 @@ from contextlib import contextmanager
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import Character, Cons, list_from
 from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import KEYWORD, find_package
+from cramhy_runtime.ground.packages import KEYWORD, named_package
 from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from cramhy_runtime.storage.dependencies import file_state, unchanged
 
 from ..reader.dispatch_macros import FEATURES, IMPLIED_FEATURES, with_features
+from ..reader.reader_errors import QuietFailure
 from ..reader.readtables import READTABLE, Readtable, copy_readtable, set_dispatch_macro_character
 from ..reader.text_reader import PACKAGE, SUPPRESS, Reader
 
@@ -63,7 +64,7 @@ def _read_over(stream: NamesReader, sub: Value, argument: Value) -> str:
     return "#"
 
 
-def _readtable() -> Readtable:
+def readtable_of_names() -> Readtable:
     """The standard one, in which nothing behind ``#`` is evaluated or made."""
     table = copy_readtable(None)
     for char in ".SPCA":
@@ -92,10 +93,10 @@ def _names_in(path: Path, text: str) -> frozenset[str] | None:
         return None
     reader, end = NamesReader(text, str(path)), object()
     try:
-        with binding(READTABLE, _readtable(), FEATURES, with_features(("SBCL",))):
+        with binding(READTABLE, readtable_of_names(), FEATURES, with_features(("SBCL",))):
             while (form := reader.read(False, end)) is not end:
                 reader.names.update(_taken_by_package(form))
-    except Condition:
+    except (Condition, QuietFailure):
         return frozenset(name.upper().replace("::", ":") for name in _NAMES.findall(text))
     return frozenset(reader.names)
 
@@ -129,7 +130,7 @@ def _elements(lst: Value) -> Iterator[Value]:
 def is_here(name: str) -> bool:
     """Whether a name as those of `names_of_sbcl` means something here."""
     package_name, _, symbol_name = name.partition(":")
-    package = find_package(package_name)
+    package = named_package(package_name)
     return package is not None and (not symbol_name or package.lookup(symbol_name)[1] is not None)
 
 
@@ -156,4 +157,4 @@ def read_for_sbcl(wanted: bool) -> Iterator[None]:
         FEATURES.value = list_from([*(each for each in after if each not in inside), *(each for each in before if each not in gone)])
 
 
-__all__ = ["is_here", "lacking", "names_of_sbcl", "read_for_sbcl", "speaks_of_sbcl"]
+__all__ = ["NamesReader", "is_here", "lacking", "names_of_sbcl", "read_for_sbcl", "readtable_of_names", "speaks_of_sbcl"]

@@ -42,6 +42,7 @@ from cramhy_runtime.ground.packages import Package, is_symbol, sym
 from cramhy_runtime.storage.dependency_tracing import run
 from cramhy_runtime.ground.ports import PORTS
 from ..packages.package_errors import check_symbol
+from ..syntax.declaration_names import check_type_name
 from .specifier_shapes import bad_operator, bad_specifier, check_specifier, is_operator
 
 LISP_NAMES = "typep type-of upgraded-complex-part-type"
@@ -184,6 +185,8 @@ def _class_predicate(cls):
         return lambda obj: True
     if isinstance(cls, BuiltInClass):
         return lambda obj: cls in lisp_mro(obj.__class__)
+    if cls is class_of(object):  # the class of the class T, which is Python's own
+        return lambda obj: isinstance(obj, cls) or obj is object
     return lambda obj: isinstance(obj, cls) or cls in lisp_mro(obj.__class__)
 
 
@@ -397,6 +400,7 @@ def define_type(symbol, expander, documentation=None, lambda_list=None):
     are; it returns the specifier that is meant. Optional arguments default to ``*`` (ANSI 3.4.8), which the macro sees to.
     """
     check_symbol(symbol, "defining ~S as a type specifier", symbol)
+    check_type_name(symbol)
     if symbol in _BUILT_IN:
         return error(SimpleError("~S is a type of Common Lisp and cannot be defined again. Choose another name.", symbol))
     expander.__doc__, expander.__lisp_lambda_list__ = documentation, lambda_list
