@@ -26,7 +26,7 @@ from ...transforms.poses import Transform
 from ...transforms.quaternions import Quaternion
 from ...transforms.vectors import make_3d_vector
 from .frames import Sender
-from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from ...ros.messages import RosMessage
     from ...ros.signatures import Echo, Words
 
+T = TypeVar("T")
 PARAMETER = "robot_description"
 MOST_RATE = 1000.0
 
@@ -172,21 +173,21 @@ class JointStatePublisher(Program):
         super().__init__(name, namespace, arguments, echo=echo)
         self.robot = Robot(self)
         self.header, self.type = message_class("std_msgs/Header"), message_class("sensor_msgs/JointState")
-        zeros = self._parameter("~zeros", {})
+        zeros = self._parameter("~zeros", dict, "names of joints with numbers")
         self.places = {joint.name: self._zero(joint, zeros) for joint in self.robot.moving if joint.name not in self.robot.followers}
-        for topic in self._parameter("~source_list", []):
+        for topic in self._parameter("~source_list", list, "a list of topics"):
             self.node.subscribe(str(topic), self.type, self._hear)
         self.publication = self.node.advertise("joint_states", self.type)
         self.node.on_shutdown.append(kernel.call_every(1 / _rate(self, "~rate", 10.0), self._send).cancel)
 
-    def _parameter(self, name: str, default: dict[str, object] | list[object]) -> dict[str, object] | list[object]:
+    def _parameter(self, name: str, kind: type[T], told: str) -> T:
+        """The value of a parameter, or an empty one of this ``kind`` if it is not set, or is not ``told``, of which the log tells."""
         parameter = self.node.resolve(name)
-        value = self.graph.parameters.get(parameter) if self.graph.parameters.has(parameter) else default
-        if isinstance(value, type(default)):
+        value = self.graph.parameters.get(parameter) if self.graph.parameters.has(parameter) else kind()
+        if isinstance(value, kind):
             return value
-        kind = "names of joints with numbers" if isinstance(default, dict) else "a list of topics"
-        self.log(rosout.WARN, f"The parameter {parameter} is not {kind}, so it does not count.")
-        return default
+        self.log(rosout.WARN, f"The parameter {parameter} is not {told}, so it does not count.")
+        return kind()
 
     def _zero(self, joint: Joint, zeros: Mapping[str, object]) -> float:
         wanted = zeros.get(joint.name)
