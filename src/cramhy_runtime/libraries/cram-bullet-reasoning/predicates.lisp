@@ -30,7 +30,7 @@
     (let ((up (- (z (origin pose)) (z (origin (bottom-pose object))))))
       (setf (pose object) (copy-pose pose :origin (v+ (origin pose) (make-3d-vector 0 0 up)))))))
 
-(def-fact-group bullet-worlds (bullet-world clear-bullet-world simulate simulate-realtime step debug-window debug-costmap)
+(def-fact-group bullet-world-facts (bullet-world clear-bullet-world simulate simulate-realtime step debug-window debug-costmap)
   (<- (bullet-world ?world)
     (not (bound ?world))
     (lisp-fun get-current-world ?world))
@@ -45,6 +45,10 @@
 
   (<- (clear-bullet-world)
     (lisp-fun clear-world ?))
+
+  (<- (clear-bullet-world ?world)
+    (not (bound ?world))
+    (lisp-fun robot-world:make-world ?world))
 
   (<- (simulate ?world ?seconds)
     (bullet-world ?world)
@@ -197,7 +201,7 @@
     (and (< (v-dist (origin pose) (origin other-pose)) 0.005)
          (< (angle-between-quaternions (orientation pose) (orientation other-pose)) 0.15))))
 
-(def-fact-group bullet-contacts (contact object-not-in-collision stable stable-items above below supported-by supporting)
+(def-fact-group force-dynamic-states (contact object-not-in-collision stable stable-items above below supported-by supporting)
   (<- (contact ?world ?name ?other-name)
     (%object ?world ?name ?object)
     (lisp-fun find-objects-in-contact ?world ?object ?others)
@@ -329,7 +333,7 @@
           unless (member (var-value '?link solution) holding :test #'equal)
             collect (var-value '?arm solution))))
 
-(def-fact-group bullet-robots (link link-pose joint-state attached available-arms)
+(def-fact-group robot-model (link link-pose joint-state attached available-arms)
   (<- (available-arms ?object ?arms)
     (lisp-fun free-arms ?arms)
     (lisp-pred identity ?arms))
@@ -381,7 +385,7 @@
               when pose collect pose)
         (and (not (symbolp robot-or-pose)) (list (ensure-pose robot-or-pose))))))
 
-(def-fact-group bullet-vision (visible visible-from occluding-objects occluding-object)
+(def-fact-group visibility (visible visible-from occluding-objects occluding-object)
   (<- (visible ?world ?robot ?name)
     (%object ?world ?robot ?machine)
     (lisp-type ?machine robot-object)

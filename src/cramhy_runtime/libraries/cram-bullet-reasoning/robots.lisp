@@ -157,7 +157,8 @@
   (declare (ignore new-value))
   (let ((reader (and (eq operation 'slot-value)
                      (cdr (assoc slot-name '((name . name) (world . robot-world:thing-world) (types . item-types) (urdf . urdf)
-                                             (links . links) (joint-states . joint-states) (attached-objects . attached-objects)))))))
+                                             (links . links) (joint-states . joint-states) (attached-objects . attached-objects)
+                                             (rigid-bodies . rigid-bodies)))))))
     (if reader
         (funcall reader object)
         (call-next-method))))

@@ -245,7 +245,7 @@ def _choice(value, default, choices):
     return value.name
 
 
-def _element(specifier):
+def element_of(specifier):
     """(element type, its size in bytes, whether it is signed); the type is ``None`` for both characters and bytes."""
     if specifier is UNSUPPLIED or is_symbol(specifier) and subtypep(specifier, CHARACTER)[0] and specifier is not None:
         return CHARACTER, 1, False
@@ -294,7 +294,7 @@ def open_(
     if_exists = _choice(if_exists, "ERROR", _IF_EXISTS)
     usual = None if direction == "PROBE" else "CREATE" if writes and if_exists not in ("APPEND", "OVERWRITE") else "ERROR"
     missing = _choice(if_does_not_exist, usual, _IF_MISSING)
-    kind, size, signed = _element(element_type)
+    kind, size, signed = element_of(element_type)
     format_ = _format(external_format) if kind is CHARACTER or kind is None else _format(sym(":LATIN-1"))
     return _open(filespec, direction, reads, writes, if_exists, missing, kind, size, signed, format_)
 

@@ -130,7 +130,11 @@ def define_system() -> None:
     """SB-SYS."""
     define_face(
         "SB-SYS",
-        functions={deadlines: "defer-deadline cancel-deadline signal-deadline", "beep": extensions.no_effect},
+        functions={
+            deadlines: "defer-deadline cancel-deadline signal-deadline",
+            "wait-until-fd-usable": extensions.wait_until_usable,
+            "beep": extensions.no_effect,
+        },
         variables={"*stdin*": streams.CONSOLE_INPUT, "*stdout*": streams.CONSOLE_OUTPUT, "*stderr*": streams.CONSOLE_ERROR},
         export="deadline-timeout io-timeout interactive-interrupt",
     )
@@ -139,7 +143,7 @@ def define_system() -> None:
 
 def define_posix() -> None:
     """SB-POSIX."""
-    define_face("SB-POSIX", functions={posix: posix.NAMES}, variables=posix.CONSTANTS, export="syscall-error")
+    define_face("SB-POSIX", functions={posix: posix.NAMES, **posix.OF_FILES}, variables=posix.CONSTANTS, export="syscall-error")
     for name in posix.CONSTANTS:
         sym(f"SB-POSIX::{name}").constant = True
 
@@ -155,7 +159,7 @@ def define_debug() -> None:
 
 def define_internals() -> None:
     """What programs use of SB-INT."""
-    define_face("SB-INT", functions={extensions: "constant-form-value"}, export="compiled-program-error")
+    define_face("SB-INT", functions={extensions: "constant-form-value fixnump"}, export="compiled-program-error")
     _macros("SB-INT")
 
 
