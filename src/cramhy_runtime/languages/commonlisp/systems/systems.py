@@ -22,6 +22,7 @@ from ..compiler.compilation_unit import compilation_unit
 from ..evaluation.definitions import RedefinitionWarning
 from ..evaluation.evaluator import PACKAGE, evaluate
 from ..files.files import lisp_path
+from ..reader.dispatch_macros import FEATURES
 from ..streams.streams import ERROR_OUTPUT, output_stream
 from cramhy_runtime.ground.packages import Package, find_package, near_names, register, string_designator, sym
 from . import loader, missing_messages, package_inferred, performing
@@ -336,6 +337,7 @@ def _read_definitions(path):
     text = path.read_text(encoding="utf-8")
     if not speaks_of_sbcl(text) or is_library(str(path)):
         return _evaluate_definitions(path, text)
+    features = FEATURES.value
     with read_for_sbcl(True):
         _evaluate_definitions(path, text)
     made = [system for system in systems.values() if system.file == path]
@@ -344,6 +346,7 @@ def _read_definitions(path):
         return None
     for system in made:
         system.file = None
+    FEATURES.value = features  # without those that the first reading has added
     with read_for_sbcl(False):
         _evaluate_definitions(path, text)
     for system in made:
