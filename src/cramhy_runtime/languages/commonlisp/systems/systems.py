@@ -59,7 +59,6 @@ chosen: dict = per_image({})
 NOT_TO_BE_HAD = {
     "sb-concurrency": "it is part of SBCL; cram-utilities has queues, and waiting on a fluent does the work of a mailbox",
     "sb-cltl2": "it is part of SBCL and asks its compiler, which is another here",
-    "uffi": "it calls functions of C, which cramhy cannot; Python's ctypes does its work",
     "usocket": "it opens sockets by functions of the system; Python's socket module does its work",
     "osicat": "it calls functions of C, which cramhy cannot; Python's os module does its work",
     "gsll": "it calls the GNU Scientific Library; cram-math, and numpy by (py:import numpy), do its work",
@@ -213,6 +212,7 @@ LIBRARY_PACKAGES = {
     "CLOSER-COMMON-LISP-USER": "closer-mop",
     "C2CL-USER": "closer-mop",
     "CFFI": "cffi",
+    "UFFI": "uffi",
     "CFFI-ROS-UTILS": "cffi-ros-utils",
     "CRAM-COMMON-FAILURES": "cram-common-failures",
     "COMMON-FAIL": "cram-common-failures",
