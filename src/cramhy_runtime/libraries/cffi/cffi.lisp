@@ -1,5 +1,5 @@
 ;;;; CFFI: cramhy calls no functions of C. A file that declares some loads, with its types, libraries and functions; a declared function
-;;;; that is called is an error that names it, and so is all that touches foreign memory.
+;;;; that is called is an error that names it, and so is all that touches foreign memory, apart from strings.
 
 (defpackage #:cffi
   (:use #:common-lisp)
@@ -202,10 +202,36 @@
 
 ;;; ------------------------------------------------------------------------------------------------------------ memory
 
-(defun pointerp (object)
-  "Nothing is a foreign pointer."
-  (declare (ignore object))
+(defstruct (foreign-pointer (:constructor pointer-to (octets)) (:predicate pointerp) (:copier nil))
+  "A pointer to a string in memory that functions of C could read, or the null pointer. OCTETS: its bytes with the zero at their end."
+  (octets nil))
+
+(defmethod print-object ((pointer foreign-pointer) stream)
+  (print-unreadable-object (pointer stream :type t)
+    (format stream "~:[null~;to ~:*~D octet~:P~]" (length (foreign-pointer-octets pointer)))))
+
+(defvar *null-pointer* (pointer-to nil))
+
+(defun null-pointer () *null-pointer*)
+(defun null-pointer-p (pointer) (null (foreign-pointer-octets pointer)))
+(defun pointer-eq (one other) (eq one other))
+
+(defun foreign-string-alloc (string &key (encoding *default-foreign-encoding*) (null-terminated-p t) (start 0) end)
+  "A pointer to the octets of STRING."
+  (let ((octets (sb-ext:string-to-octets string :external-format encoding :start start :end end)))
+    (pointer-to (if null-terminated-p (concatenate '(vector (unsigned-byte 8)) octets #(0)) octets))))
+
+(defun foreign-string-free (pointer)
+  (setf (foreign-pointer-octets pointer) (vector 0))
   nil)
+
+(defun foreign-string-to-lisp (pointer &key (offset 0) count max-chars (encoding *default-foreign-encoding*))
+  "The string at POINTER, up to its zero, and the number of octets that it takes; nil for the null pointer."
+  (let ((octets (foreign-pointer-octets pointer)))
+    (when octets
+      (let* ((end (if count (+ offset count) (or (position 0 octets :start offset) (length octets))))
+             (text (sb-ext:octets-to-string (coerce (subseq octets offset end) '(vector (unsigned-byte 8))) :external-format encoding)))
+        (values (if max-chars (subseq text 0 (min max-chars (length text))) text) (- end offset))))))
 
 (macrolet ((refused (&rest names)
              `(progn ,@(loop for name in names
@@ -214,10 +240,9 @@
                                         (declare (ignore arguments))
                                         (refuse ',name))))))
   (refused convert-from-foreign convert-to-foreign free-converted-object foreign-alloc foreign-free foreign-slot-names
-           foreign-slot-offset foreign-slot-pointer foreign-slot-value foreign-string-alloc foreign-string-free
-           foreign-string-to-lisp foreign-symbol-pointer foreign-type-alignment foreign-type-size get-callback get-var-pointer
-           inc-pointer lisp-string-to-foreign make-pointer make-shareable-byte-vector mem-aptr mem-aref mem-ref null-pointer
-           null-pointer-p pointer-address pointer-eq))
+           foreign-slot-offset foreign-slot-pointer foreign-slot-value foreign-symbol-pointer foreign-type-alignment foreign-type-size get-callback get-var-pointer
+           inc-pointer lisp-string-to-foreign make-pointer make-shareable-byte-vector mem-aptr mem-aref mem-ref
+           pointer-address))
 
 (defun refused-body (operator variables body)
   "A form that refuses OPERATOR, and in which the compiler sees the BODY and its VARIABLES."

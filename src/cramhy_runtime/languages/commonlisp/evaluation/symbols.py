@@ -185,8 +185,8 @@ def gentemp(prefix="T", package=None):
         return type_error(prefix, "STRING", "\nwhen binding SB-IMPL::PREFIX")
     home = PACKAGE.value if package is None else find_package_or_error(package)
     while True:
-        name = f"{prefix}{_GENTEMP_COUNTER.value}"
         _GENTEMP_COUNTER.value += 1
+        name = f"{prefix}{_GENTEMP_COUNTER.value}"
         if not home.lookup(name)[1]:
             return home.intern(name)
 

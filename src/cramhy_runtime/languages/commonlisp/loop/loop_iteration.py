@@ -258,8 +258,12 @@ def _for_on(loop, pattern, declared, word):
 
 
 def _for_across(loop, pattern, declared, word):
+    return _across(pattern, loop.tokens.form())
+
+
+def _across(pattern, form):
     vector, index = gensym("VECTOR"), gensym("INDEX")
-    bindings = [(vector, lisp_list(LOOP_VECTOR, loop.tokens.form())), (index, 0)]
+    bindings = [(vector, lisp_list(LOOP_VECTOR, form)), (index, 0)]
     return Iteration(
         bindings,
         Turn(
@@ -328,6 +332,9 @@ def _for_being(loop, pattern, declared, word):
         tokens.take()
     kind = tokens.keyword("iteration path name")
     kind += "" if kind.endswith("S") else "S"
+    if kind == "ELEMENTS" and tokens.next_is("OF", "IN"):  # of a sequence, as in SBCL
+        tokens.take()
+        return _across(pattern, lisp_list(sym("COERCE"), tokens.form(), lisp_list(sym("QUOTE"), sym("VECTOR"))))
     if kind not in ("HASH-KEYS", "HASH-VALUES", "SYMBOLS", "PRESENT-SYMBOLS", "EXTERNAL-SYMBOLS"):
         tokens.fail(
             "~A is not the name of a LOOP iteration path.",

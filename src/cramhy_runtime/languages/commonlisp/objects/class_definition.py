@@ -156,7 +156,12 @@ def _make_or_change(name, bases, slots):
         if slot.allocation == "CLASS":
             slot.cell = ClassSlot(slot.name)
     old = registered_class(name)
-    if old is None or "lisp_direct_slots" not in vars(old) or issubclass(old, Condition) != issubclass(bases[0], Condition):
+    if (
+        old is None
+        or class_name(old) is not name
+        or "lisp_direct_slots" not in vars(old)
+        or issubclass(old, Condition) != issubclass(bases[0], Condition)
+    ):
         return register_class(name, _new_class(name, bases, slots))
     return _change(name, old, bases, slots)
 

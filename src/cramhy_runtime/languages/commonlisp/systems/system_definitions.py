@@ -13,6 +13,7 @@ from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.ground.conditions import CompileError, error, style_warn
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from, lisp_list
 from ..evaluation.evaluator import PACKAGE, evaluate
+from ..objects.class_definition import default_initargs
 from ..objects.classes import find_class
 from cramhy_runtime.ground.dispatch.generic_functions import EqlSpecializer, add_method, generic, remove_method
 from cramhy_runtime.ground.packages import (
@@ -25,6 +26,7 @@ from cramhy_runtime.ground.packages import (
     sym,
     symbol_name,
 )
+from ..files.files import lisp_path
 from ..printer.printer import define_printer
 from ..reader.dispatch_macros import FEATURES
 
@@ -73,6 +75,7 @@ class Component:
     """
 
     lisp_name = "ASDF::COMPONENT"
+    lisp_slots = {"RELATIVE-PATHNAME": "relative_pathname"}
 
     def __init__(self, name, parent=None, depends_on=(), path=None):
         self.name, self.parent, self.depends_on, self.path = name, parent, list(depends_on), path
@@ -82,6 +85,11 @@ class Component:
     def pathname(self):
         """The file or folder."""
         return self.parent.pathname / (self.name if self.path is None else self.path)
+
+    @property
+    def relative_pathname(self):
+        """The slot that older libraries read: what its definition says of where it lies."""
+        return self.name if self.path is None else lisp_path(self.path)
 
     @property
     def system(self):
@@ -205,7 +213,9 @@ def define_system(form, folder, file=None, positions=None, load=None):
     for other in _listed(name, "DEFSYSTEM-DEPENDS-ON", table.get("DEFSYSTEM-DEPENDS-ON")):
         if load is not None and (needed := _dependency(name, other)):
             load(needed[0])
-    made = _made(_class_named(table["CLASS"], PackageInferredSystem) if table.get("CLASS") else System, name, folder)
+    cls = _class_named(table["CLASS"], PackageInferredSystem) if table.get("CLASS") else System
+    table = {**{symbol_name(key): thunk() for key, thunk in default_initargs(cls).items()}, **table}
+    made = _made(cls, name, folder)
     made.file = file
     made.path = _path(table.get("PATHNAME"))
     made.options = {key: value for key, value in table.items() if key in _TEXT_OPTIONS}
@@ -392,7 +402,7 @@ def _made(cls, *parts):
     ours = _own_class(cls)
     if cls is ours:
         return cls(*parts)
-    made = sym("MAKE-INSTANCE").function(cls, keyword("NAME"), parts[0])
+    made = sym("MAKE-INSTANCE").function(cls, keyword("NAME"), parts[0], keyword("ALLOW-OTHER-KEYS"), True)
     ours.__init__(made, *parts)
     return made
 

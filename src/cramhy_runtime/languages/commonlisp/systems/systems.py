@@ -22,6 +22,7 @@ from ..compiler.compilation_unit import compilation_unit
 from ..evaluation.definitions import RedefinitionWarning
 from ..evaluation.evaluator import PACKAGE, evaluate
 from ..files.files import lisp_path
+from ..reader.dispatch_macros import FEATURES
 from ..streams.streams import ERROR_OUTPUT, output_stream
 from cramhy_runtime.ground.packages import Package, find_package, near_names, register, string_designator, sym
 from . import loader, missing_messages, package_inferred, performing
@@ -58,7 +59,6 @@ chosen: dict = per_image({})
 NOT_TO_BE_HAD = {
     "sb-concurrency": "it is part of SBCL; cram-utilities has queues, and waiting on a fluent does the work of a mailbox",
     "sb-cltl2": "it is part of SBCL and asks its compiler, which is another here",
-    "uffi": "it calls functions of C, which cramhy cannot; Python's ctypes does its work",
     "usocket": "it opens sockets by functions of the system; Python's socket module does its work",
     "osicat": "it calls functions of C, which cramhy cannot; Python's os module does its work",
     "gsll": "it calls the GNU Scientific Library; cram-math, and numpy by (py:import numpy), do its work",
@@ -212,6 +212,7 @@ LIBRARY_PACKAGES = {
     "CLOSER-COMMON-LISP-USER": "closer-mop",
     "C2CL-USER": "closer-mop",
     "CFFI": "cffi",
+    "UFFI": "uffi",
     "CFFI-ROS-UTILS": "cffi-ros-utils",
     "CRAM-COMMON-FAILURES": "cram-common-failures",
     "COMMON-FAIL": "cram-common-failures",
@@ -336,6 +337,7 @@ def _read_definitions(path):
     text = path.read_text(encoding="utf-8")
     if not speaks_of_sbcl(text) or is_library(str(path)):
         return _evaluate_definitions(path, text)
+    features = FEATURES.value
     with read_for_sbcl(True):
         _evaluate_definitions(path, text)
     made = [system for system in systems.values() if system.file == path]
@@ -344,6 +346,7 @@ def _read_definitions(path):
         return None
     for system in made:
         system.file = None
+    FEATURES.value = features  # without those that the first reading has added
     with read_for_sbcl(False):
         _evaluate_definitions(path, text)
     for system in made:

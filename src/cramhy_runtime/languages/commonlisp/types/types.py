@@ -55,6 +55,11 @@ def _is_function(obj):
     return callable(obj) and not isinstance(obj, (type, Symbol)) and obj.__class__ is not UndefinedFunction
 
 
+def _is_generic_function(obj):
+    """Also of a function that becomes one when a program defines a method on it."""
+    return isinstance(obj, GenericFunction) or hasattr(obj.__class__, "acts_as_generic") or getattr(obj, "opening", None) is not None
+
+
 def _is_string(obj):
     return isinstance(obj, (str, LispString)) or (obj.__class__ is Vector and obj.element_type in STRING_KINDS)
 
@@ -116,8 +121,8 @@ _ATOMIC = {
     "SIGNED-BYTE": is_integer,
     "FUNCTION": _is_function,
     "COMPILED-FUNCTION": _is_function,
-    "GENERIC-FUNCTION": lambda obj: isinstance(obj, GenericFunction) or hasattr(obj.__class__, "acts_as_generic"),
-    "STANDARD-GENERIC-FUNCTION": lambda obj: isinstance(obj, GenericFunction) or hasattr(obj.__class__, "acts_as_generic"),
+    "GENERIC-FUNCTION": _is_generic_function,
+    "STANDARD-GENERIC-FUNCTION": _is_generic_function,
     "PACKAGE": lambda obj: isinstance(obj, Package),
     "PATHNAME": lambda obj: isinstance(obj, (Pathname, PurePath)),
     "CLASS": lambda obj: isinstance(obj, type),
@@ -470,7 +475,9 @@ def type_of(object):
         return array_type(object)
     if isinstance(object, FunctionType | BuiltinFunctionType):
         return sym("COMPILED-FUNCTION")
-    return class_name(class_of(object))
+    cls = class_of(object)
+    name = class_name(cls)
+    return name if not isinstance(cls, StandardClass) or symbol_class(name) is cls else cls  # it may have lost its name
 
 
 def _part_type(number):
