@@ -248,8 +248,8 @@ class World:
     def simulate(self, seconds: float, without: Hashable | None = None) -> float:
         """Let free items fall for so long, or until all are at rest; the seconds that it took.
 
-        An item that is inside of something that stands is lifted out of it first. One that cannot be, as in a wall, stays where it is;
-        `stuck` tells of it.
+        An item that is inside of something that stands is lifted out of it first, and of two that are inside of each other the later one is
+        put aside. One that cannot be lifted, as in a wall, stays where it is; `stuck` tells of it.
 
         without: the name of a machine that touches nothing meanwhile, as the fingers of a hand that has just let go.
         """

@@ -185,7 +185,7 @@ NAMED = [
             "class-of" in question and ("SB-KERNEL:" in theirs or "SIMPLE-CHARACTER-STRING" in theirs or "COMPLEX-" in theirs)
         ),
     ),
-    Named("are structures in SBCL", _are_structures),
+    Named("are not of the type `structure-object`", _are_structures),
     Named(
         "`defmethod` without a lambda list",
         lambda question, theirs, ours: bool(re.search(r"\(defmethod \S+( [^\s()]+)*\)", question)) and "PROGRAM-ERROR" in _types(ours),
@@ -200,7 +200,10 @@ NAMED = [
         "A form that is a dotted list",
         lambda question, theirs, ours: " . " in question and "TYPE-ERROR" in _types(theirs) and _types(ours) == {"PROGRAM-ERROR", "ERROR"},
     ),
-    Named("A vector of the element type nil is a string", lambda question, theirs, ours: not _types(theirs) and _has_empty_type(question, ELEMENT_TYPE)),
+    Named(
+        "A vector of the element type nil is a string",
+        lambda question, theirs, ours: not _types(theirs) and _has_empty_type(question, ELEMENT_TYPE),
+    ),
     Named("A start behind the end is always an error", _bounds_pass),
     Named("An index behind the end of a list is always an error for `elt` and `subseq`", _behind_the_end),
     Named("`map` to a type of lists is an error", _map_to_lists),

@@ -24,7 +24,7 @@ from ..pathnames.pathnames import pathname
 from cramhy_runtime.ground.packages import is_symbol, sym
 from ..types.type_relations import subtypep
 from ..types.types import expand_type
-from ..streams.basic_streams import InputStream, OutputStream, complain_closed, misused
+from ..streams.basic_streams import FdStream, InputStream, OutputStream, complain_closed, misused
 from ..streams.external_formats import ATTEMPT_RESYNC, FORCE_END_OF_FILE, INPUT_REPLACEMENT, StreamDecodingError, external_format
 
 CHARACTER = sym("CHARACTER")
@@ -53,10 +53,8 @@ class SimpleStreamError(StreamError, FileError):
         return f"couldn't {self.doing} {prin1_to_string(self.stream)}:\n  {why}"
 
 
-class FileStream(FileStreamClass):
+class FileStream(FdStream, FileStreamClass):
     """A file that was opened. ``size`` is the number of bytes of an element, 1 for characters."""
-
-    lisp_name = "SB-SYS::FD-STREAM"
 
     def __init__(self, file, pathname, label, reads, writes, kind=CHARACTER, size=1, signed=False, format_=None):
         InputStream.__init__(self)

@@ -197,10 +197,14 @@ class StringOutputStream(OutputStream, StringStream):
         return True
 
 
-class FileOutput(OutputStream):
-    """Writes to a Python text file (anything with ``write``)."""
+class FdStream(Stream):
+    """What SBCL's FD-STREAM means: text or bytes of the world outside. It gives its name to several classes."""
 
     lisp_name = "SB-SYS::FD-STREAM"
+
+
+class FileOutput(OutputStream, FdStream):
+    """Writes to a Python text file (anything with ``write``)."""
 
     def __init__(self, file, label=None):
         self._file = file
