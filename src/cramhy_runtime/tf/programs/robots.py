@@ -50,7 +50,7 @@ class Robot:
             mimics = urdf_parts.read_text(text, parameter).mimics
         except KeyError:
             self._refuse(program, f"There is no parameter {parameter}, which has to hold the text of a URDF file.")
-        except DescriptionError as problem:
+        except (DescriptionError, ImportError) as problem:  # MJCF takes MuJoCo, which is an extra
             self._refuse(program, f"The robot cannot be read: {problem}")
         self.followers = {name: (other, times, plus) for name, other, times, plus in mimics}
         self.moving = [joint for joint in self.description.joints.values() if joint.moves]
