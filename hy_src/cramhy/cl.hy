@@ -442,7 +442,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   (setv keywords (if (or (not options) (isinstance (get options 0) Keyword)) options (cut options 1 None)))
   (if (is target None)
       `(let [[~stream (make-string-output-stream ~@keywords)]] ~@body (get-output-stream-string ~stream))
-      `(let [[~stream (%make-fill-pointer-output-stream ~target)]] ~@body)))
+      `(let [[~stream (%make-fill-pointer-output-stream ~(if keywords `(prog1 ~target ~@(cut keywords 1 None 2)) target))]] ~@body)))
 
 (defoperator with-input-from-string [spec #* body]
   (setv #(variable string #* options) spec)

@@ -27,11 +27,6 @@ from .format_parser import ARGUMENT_MARK, REMAINING_MARK, FormatError
 # ---------------------------------------------------------------------------------------------------------- any objects
 
 
-def _check_mincol(directive, mincol):
-    if mincol < 0:
-        directive.complain(f"The value of mincol is {mincol}, should be a non-negative integer")
-
-
 def _object(to_string, escape):
     def directive_a_or_s(directive, state):
         if not directive.params:
@@ -45,7 +40,8 @@ def _object(to_string, escape):
         arg = state.next(directive)
         if colinc <= 0:
             directive.complain(f"The value of colinc is {colinc}, should be a positive integer")
-        _check_mincol(directive, mincol)
+        if mincol < 0:
+            directive.complain(f"The value of mincol is {mincol}, should be a non-negative integer")
         text = "()" if directive.colon and arg is None else to_string(arg)
         numbers.pad(state.stream, text, mincol, colinc, minpad, padchar, directive.at)
 
@@ -118,7 +114,6 @@ def _integer(base):
                     write(arg, state.stream, False)
             return
         mincol, padchar, commachar, interval = parameters(directive, state, 0, " ", ",", 3)
-        _check_mincol(directive, mincol)
         numbers.write_integer(
             state.stream, state.next(directive), base, directive.colon, directive.at, mincol, padchar, commachar, interval
         )
@@ -132,7 +127,6 @@ def write_decimal(number, stream):
 
 def _radix(directive, state):
     base, mincol, padchar, commachar, interval = parameters(directive, state, None, 0, " ", ",", 3)
-    _check_mincol(directive, mincol)
     arg = state.next(directive)
     if base is not None:
         if not 2 <= base <= 36:

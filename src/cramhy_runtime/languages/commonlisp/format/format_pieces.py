@@ -45,8 +45,6 @@ def _padded(node, values, texts):
 
 
 def _integer(node, values, texts):
-    if any(value.__class__ is int and value < 0 for value in values):
-        return None
     kinds = [int, str, str, int]
     if len(values) > 4 or any(value is not None and value.__class__ is not kind for value, kind in zip(values, kinds)):  # noqa: B905
         return None

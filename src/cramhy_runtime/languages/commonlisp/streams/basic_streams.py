@@ -122,7 +122,7 @@ class StringOutputStream(OutputStream, StringStream):
 
     lisp_name = "SB-IMPL::STRING-OUTPUT-STREAM"
     behind = ""
-    kind = None  # the element type of its strings, if the program gave one
+    kind = False  # the element type of its strings, if the program gave one
 
     def __init__(self, target=None):
         self.parts = []

@@ -253,7 +253,8 @@ def get_output_stream_string(stream):
     if not isinstance(stream, StringOutputStream):
         return type_error(stream, "SB-IMPL::STRING-OUTPUT-STREAM")
     text = stream.take()
-    return KindString(text, BASE_CHAR) if stream.kind is BASE_CHAR and text.isascii() else FreshString(text)
+    kind = stream.kind
+    return KindString(text, kind) if kind is None or kind is BASE_CHAR and text.isascii() else FreshString(text)
 
 
 def make_string_input_stream(string, start=0, end=None):
