@@ -12,7 +12,7 @@ from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
 from cramhy_runtime.designators import classes, equating, protocol
 from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.data import Cons, DoubleFloat, lisp_list, list_from
+from cramhy_runtime.ground.data import Cons, lisp_list, list_from
 from cramhy_runtime.ground.packages import intern, keyword, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string, princ_to_string
 from cramhy_runtime.prolog.engine.fact_groups import define_fact_group, remove_fact_group
@@ -31,7 +31,7 @@ atoms = st.one_of(
     st.builds(keyword, st.sampled_from(["DRIVING", "MOVING", "x y", ""])),
     st.builds(lambda: intern("?X", "CRAM-USER")),
     st.builds(lambda: intern("WORD", "CRAM-USER")),
-    st.just(DoubleFloat(1.5)),
+    st.just(1.5),
     st.just(len),
 )
 

@@ -203,7 +203,10 @@ class TestPlans:
     def test_messages_and_services_of_its_own(self, barista):
         barista('(reset-world) (roslisp:start-ros-node "barista") (defparameter *trays* (watch-trays)) (start-brewing)')
         barista('(roslisp:publish (roslisp:advertise "/trays" "barista_msgs/Tray") (tray-message (list (find-thing \'cup-1))))')
-        assert barista("(value *trays*)") == '("the house" ("cup-1" 0 2.0d0 (0.08d0 0.08d0 0.2d0) "map"))'
+        assert (
+            barista("(value *trays*)")
+            == '("the house" ("cup-1" 0 2.0d0 (0.07999999821186066d0 0.07999999821186066d0 0.20000000298023224d0) "map"))'
+        )
         assert barista("(list (brew :latte) (multiple-value-list (brew :espresso 10)))") == '(:LATTE (NIL "too strong"))'
         codes = "(mapcar (lambda (name) (roslisp-msg-protocol:symbol-code 'barista_msgs-msg:cup name)) '(:mark :nobody :full))"
         assert barista(codes) == '("# 7 of the set" "" 1)'

@@ -9,7 +9,7 @@ from cramhy_runtime import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.languages.commonlisp.collections import array_making, arrays
 from cramhy_runtime.ground.arrays import LispArray, SimpleArray, TypedVector, Vector, array_type, bit_vector
-from cramhy_runtime.ground.data import Character, DoubleFloat, FreshString, lisp_list, list_from, python_list
+from cramhy_runtime.ground.data import Character, FreshString, lisp_list, list_from, python_list
 from cramhy_runtime.ground.packages import sym
 
 
@@ -78,7 +78,7 @@ def test_a_displaced_array_shares_its_elements():
 
 def test_floats_of_both_kinds_fit_into_float_arrays_and_integers_do_not():
     vector = array_making.make_array(2, element_type=sym("DOUBLE-FLOAT"))
-    assert vector[0].__class__ is DoubleFloat
+    assert vector[0].__class__ is float
     arrays.set_aref(1.5, vector, 0)
     with pytest.raises(conditions.TypeError_):
         arrays.set_aref(1, vector, 0)

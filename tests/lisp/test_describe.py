@@ -319,7 +319,7 @@ def test_python_objects(lisp, session):
     sym("COMMON-LISP-USER::*HAND*").special = True
     shown = lisp("(describe *hand*)")
     assert "  [Python object]\n" in shown
-    assert "Documentation:\n  A hand.\nAttributes:\n  width                          = 0.5\n" in shown
+    assert "Documentation:\n  A hand.\nAttributes:\n  width                          = 0.5d0\n" in shown
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import pytest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.conditions import TypeError_
-from cramhy_runtime.ground.data import DoubleFloat, LispString, lisp_list, python_list
+from cramhy_runtime.ground.data import LispString, lisp_list, python_list
 from cramhy_runtime.languages.commonlisp.format.format import format_, format_to_string, formatter
 from cramhy_runtime.languages.commonlisp.format.format_parser import FormatError
 from cramhy_runtime.ground.packages import COMMON_LISP_USER, keyword, sym
@@ -32,7 +32,7 @@ def test_a_line_of_the_ros_log():
     topic = lisp_list(COMMON_LISP_USER.intern("TURTLE"))
     stream = StringOutputStream()
     stream.write("half a line")
-    format_(stream, "~&[~a ~a] ~,3F: ~a~&", topic, keyword("INFO"), DoubleFloat(1795218762.624), "hello")
+    format_(stream, "~&[~a ~a] ~,3F: ~a~&", topic, keyword("INFO"), 1795218762.624, "hello")
     assert stream.text() == "half a line\n[(TURTLE) INFO] 1795218762.624: hello\n"
 
 

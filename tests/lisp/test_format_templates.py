@@ -79,12 +79,12 @@ def test_variables_of_the_printer_are_looked_at(lisp):
 
 
 def test_digits_behind_the_point_are_those_of_the_long_way():
-    from cramhy_runtime.ground import float_printing
-    from cramhy_runtime.ground.data import DoubleFloat
+    from cramhy_runtime.languages.commonlisp.printer import float_printing
+    from cramhy_runtime.ground.floats import SingleFloat
 
     chosen, quick = random.Random(7), 0
     for _ in range(1500):
-        number = chosen.choice([float, DoubleFloat])(round(chosen.uniform(0, 10 ** chosen.randint(-4, 6)), chosen.randint(0, 8)))
+        number = chosen.choice([float, SingleFloat])(round(chosen.uniform(0, 10 ** chosen.randint(-4, 6)), chosen.randint(0, 8)))
         count = chosen.randint(1, 6)
         text = float_printing._rounded(number, count)
         if text is not None:

@@ -4,9 +4,9 @@ from fractions import Fraction
 
 import pytest
 
+from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.session import boot
 from cramhy_runtime.ground.conditions import DivisionByZero, FloatingPointOverflow, SimpleTypeError, TypeError_
-from cramhy_runtime.ground.data import DoubleFloat
 from cramhy_runtime.languages.commonlisp.numbers import arithmetic, irrational, random_state, rounding
 from cramhy_runtime.ground.packages import sym
 
@@ -40,16 +40,16 @@ def test_ratios_become_integers_when_they_can():
 
 
 @pytest.mark.parametrize("operation", [arithmetic.add2, arithmetic.sub2, arithmetic.mul2, arithmetic.div2])
-@pytest.mark.parametrize("other", [2, 2.0, Fraction(1, 2), DoubleFloat(2)])
+@pytest.mark.parametrize("other", [2, 2.0, Fraction(1, 2), SingleFloat(2.0)])
 def test_a_double_makes_the_result_a_double(operation, other):
-    assert type(operation(DoubleFloat(1), other)) is DoubleFloat
-    assert type(operation(other, DoubleFloat(1))) is DoubleFloat
+    assert type(operation(1.0, other)) is float
+    assert type(operation(other, 1.0)) is float
 
 
 def test_comparisons_answer_true_or_none():
     assert arithmetic.lt2(1, 2) is True
     assert arithmetic.lt2(2, 1) is None
-    assert arithmetic.num_eq2(1, DoubleFloat(1)) is True
+    assert arithmetic.num_eq2(1, 1.0) is True
 
 
 def test_division_by_zero_tells_operation_and_operands():
@@ -67,25 +67,25 @@ def test_a_product_too_large_for_a_float_overflows_instead_of_going_on_with_infi
 
 
 def test_the_quotient_of_singles_is_rounded_to_a_single_before_it_is_cut():
+    assert rounding.floor(SingleFloat(1.0), SingleFloat(0.1))[0] == 10
     assert rounding.floor(1.0, 0.1)[0] == 10
-    assert rounding.floor(DoubleFloat(1.0), DoubleFloat(0.1))[0] == 10
 
 
 def test_functions_of_singles_give_singles_and_of_doubles_doubles():
-    assert type(irrational.sin(1)) is float
-    assert type(irrational.sqrt(DoubleFloat(2))) is DoubleFloat
-    assert type(irrational.atan(1, DoubleFloat(1))) is DoubleFloat
+    assert type(irrational.sin(1)) is SingleFloat
+    assert type(irrational.sqrt(2.0)) is float
+    assert type(irrational.atan(1, 1.0)) is float
 
 
 def test_a_single_that_becomes_a_double_has_the_digits_of_a_single():
-    assert irrational.to_double(0.1) == 0.10000000149011612
+    assert irrational.to_double(SingleFloat(0.1)) == 0.10000000149011612
 
 
 def test_a_fresh_session_throws_the_numbers_that_sbcl_throws():
-    throws = [random_state.random(limit) for limit in (255, 1.0, 10, DoubleFloat(1), 100, 2**40, 7)]
+    throws = [random_state.random(limit) for limit in (255, SingleFloat(1.0), 10, 1.0, 100, 2**40, 7)]
     assert throws[0] == 92 and throws[2] == 9 and throws[4:6] == [5, 969083603898]
     assert throws[1] == pytest.approx(0.2709539, abs=1e-7)
-    assert throws[3] == 0.2539739311864577 and type(throws[3]) is DoubleFloat
+    assert throws[3] == 0.2539739311864577 and type(throws[3]) is float
 
 
 def test_a_seed_gives_the_throws_that_sbcl_gives_for_it():

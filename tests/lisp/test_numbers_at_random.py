@@ -162,7 +162,7 @@ SETUP = """
 (defmacro guarded (form) `(handler-case ,form (error (c) (noted (type-of c)))))
 (defun noted (x) (push x *noted*) x)
 (defun call (f &rest arguments) (apply f (mapcar #'identity arguments)))
-(defun checked (type x) (if (or (typep x type) (and (eq type 'double-float) (floatp x))) x (error 'type-error :datum x :expected-type type)))
+(defun checked (type x) (if (typep x type) x (error 'type-error :datum x :expected-type type)))
 """
 _session = []
 

@@ -4,7 +4,7 @@ import printing_answers
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.data import Cons, DoubleFloat, lisp_list
+from cramhy_runtime.ground.data import Cons, lisp_list
 from cramhy_runtime.ground.packages import COMMON_LISP_USER, sym
 from cramhy_runtime.languages.commonlisp.printer import pprint_dispatch, printing_support
 from cramhy_runtime.languages.commonlisp.printer.pretty import logical_block, pprint_indent, pprint_newline
@@ -82,7 +82,7 @@ define_printer(Fluent, print_fluent)
 
 
 def test_a_message_has_one_line_per_name_and_per_value():
-    assert prin1_to_string(Message(x=DoubleFloat(5.5), y=1)) == "[POSE\n   X:\n     5.5d0\n   Y:\n     1]"
+    assert prin1_to_string(Message(x=5.5, y=1)) == "[POSE\n   X:\n     5.5d0\n   Y:\n     1]"
 
 
 def test_a_message_in_a_list_is_indented_as_a_whole():

@@ -21,12 +21,12 @@ from cramhy_runtime.languages.commonlisp.collections.array_making import make_ar
 from cramhy_runtime.ground.arrays import LispArray, bit_vector
 from cramhy_runtime.ground.condition_types import EndOfFile, ReaderError
 from cramhy_runtime.ground.conditions import Condition, Warning_, handler_bind, muffle_warning
-from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, FreshString, LispString, Symbol, list_from, one
+from cramhy_runtime.ground.data import Character, Cons, FreshString, LispString, Symbol, list_from, one
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.languages.commonlisp.evaluation.evaluator import evaluate
 from cramhy_runtime.languages.commonlisp.pathnames.pathnames import parse_namestring
-from cramhy_runtime.languages.commonlisp.numbers.arithmetic import single
-from cramhy_runtime.languages.commonlisp.numbers.complex_numbers import DoubleComplex, exact
+from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.languages.commonlisp.numbers.complex_numbers import SingleComplex, exact
 from cramhy_runtime.languages.commonlisp.objects.structures import slots_of
 from cramhy_runtime.ground.packages import Package, find_package, intern, keyword, register, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
@@ -82,14 +82,14 @@ symbols = st.one_of(
     st.tuples(names, st.sampled_from(ODD_PACKAGES)).map(lambda pair: intern(*pair)),
     st.sampled_from([None, True]),
 )
-singles = st.floats(allow_nan=False, allow_infinity=False, width=32)
-doubles = st.floats(allow_nan=False, allow_infinity=False).map(DoubleFloat)
+singles = st.floats(allow_nan=False, allow_infinity=False, width=32).map(SingleFloat)
+doubles = st.floats(allow_nan=False, allow_infinity=False)
 integers = st.one_of(st.integers(-100, 100), st.integers(-(2**70), 2**70), st.integers(-(10**400), 10**400))
 ratios = st.fractions().map(lambda ratio: ratio.numerator if ratio.denominator == 1 else ratio)
 complexes = st.one_of(
     st.tuples(st.integers(-9, 9), st.fractions()).map(lambda parts: exact(*parts)),
-    st.tuples(singles, singles).map(lambda p: complex(*p)),
-    st.tuples(st.floats(-1e9, 1e9), st.floats(-1e9, 1e9)).map(lambda parts: DoubleComplex(*parts)),
+    st.tuples(singles, singles).map(lambda p: SingleComplex(*p)),
+    st.tuples(st.floats(-1e9, 1e9), st.floats(-1e9, 1e9)).map(lambda parts: complex(*parts)),
 )
 bits = st.lists(st.integers(0, 1), max_size=9).map(bit_vector)
 pathnames = st.text(st.characters(codec="utf-8", exclude_characters="\0*?[]\\"), max_size=12).map(lambda text: one(parse_namestring(text)))
@@ -187,8 +187,6 @@ def same(a, b, sharing):
         elif a.__class__ is complex:
             todo += [(a.real, b.real), (a.imag, b.imag)]
         elif isinstance(a, float):
-            if a.__class__ is float:  # a single; the digits of its literal are kept
-                a, b = single(a), single(b)
             if a != b or math.copysign(1, a) != math.copysign(1, b):
                 return False
         elif a != b:

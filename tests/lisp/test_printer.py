@@ -7,9 +7,10 @@ from fractions import Fraction
 import printing_answers
 import pytest
 
+from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime import kernel
 from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.data import Cons, DoubleFloat, LispString, Symbol, lisp_list, list_from
+from cramhy_runtime.ground.data import Cons, LispString, Symbol, lisp_list, list_from
 from cramhy_runtime.ground.packages import COMMON_LISP_USER, Package, find_package, keyword, register, sym
 from cramhy_runtime.languages.commonlisp.printer import printer
 from cramhy_runtime.languages.commonlisp.printer.print_controls import (
@@ -42,16 +43,16 @@ def test_recorded_objects_print_as_in_sbcl(name):
     [
         (42, "42"),
         (Fraction(1, 2), "1/2"),
-        (11 / 3, "3.6666667"),
-        (1e7, "1.0e7"),
-        (1e-4, "1.0e-4"),
-        (0.001, "0.001"),
-        (-0.0, "-0.0"),
-        (DoubleFloat(5.0), "5.0d0"),
-        (DoubleFloat(1e7), "1.0d7"),
-        (DoubleFloat(6.123233995736766e-17), "6.123233995736766d-17"),
-        (DoubleFloat(5.544444561004639), "5.544444561004639d0"),
-        (1e300, "1.0e300"),
+        (SingleFloat(11 / 3), "3.6666667"),
+        (SingleFloat(1e7), "1.0e7"),
+        (SingleFloat(1e-4), "1.0e-4"),
+        (SingleFloat(0.001), "0.001"),
+        (SingleFloat(-0.0), "-0.0"),
+        (5.0, "5.0d0"),
+        (1e7, "1.0d7"),
+        (6.123233995736766e-17, "6.123233995736766d-17"),
+        (5.544444561004639, "5.544444561004639d0"),
+        (1e300, "1.0d300"),
         (10**30, "1" + "0" * 30),
     ],
 )
@@ -66,15 +67,15 @@ def test_an_integer_of_many_digits_is_printed_whole():
 
 
 def test_infinities_and_nan_print_as_in_sbcl():
-    assert prin1_to_string(math.inf) == "#.SB-EXT:SINGLE-FLOAT-POSITIVE-INFINITY"
-    assert prin1_to_string(DoubleFloat(-math.inf)) == "#.SB-EXT:DOUBLE-FLOAT-NEGATIVE-INFINITY"
-    assert prin1_to_string(math.nan) == "#<SINGLE-FLOAT quiet NaN>"
+    assert prin1_to_string(SingleFloat(math.inf)) == "#.SB-EXT:SINGLE-FLOAT-POSITIVE-INFINITY"
+    assert prin1_to_string(-math.inf) == "#.SB-EXT:DOUBLE-FLOAT-NEGATIVE-INFINITY"
+    assert prin1_to_string(SingleFloat(math.nan)) == "#<SINGLE-FLOAT quiet NaN>"
 
 
 def test_the_default_float_format_decides_which_floats_bear_a_mark():
     with bound(sym("*READ-DEFAULT-FLOAT-FORMAT*"), sym("DOUBLE-FLOAT")):
-        assert prin1_to_string(1.5) == "1.5f0"
-        assert prin1_to_string(DoubleFloat(1.5)) == "1.5"
+        assert prin1_to_string(SingleFloat(1.5)) == "1.5f0"
+        assert prin1_to_string(1.5) == "1.5"
 
 
 def test_a_symbol_bears_the_package_that_the_current_one_does_not_see():

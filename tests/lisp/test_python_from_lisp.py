@@ -38,15 +38,15 @@ def without_addresses(text):
     ("form", "answer"),
     [
         ("(progn (py:import math) (list (package-name (find-package :math)) (fboundp 'cl-user::no)))", '("MATH" NIL)'),
-        ('(py:call "math.pow" 2 3)', "8.0"),
+        ('(py:call "math.pow" 2 3)', "8.0d0"),
         ('(py:call "int" "ff" :base 16)', "255"),
         ('(py:call (py:object "operator.add") 1 2)', "3"),
-        ('(py:call-blocking "math.sqrt" 4)', "2.0"),
+        ('(py:call-blocking "math.sqrt" 4)', "2.0d0"),
         ('(funcall (function py:len) "abc")', "3"),
         ('(mapcar (function py:int) (list "1" "2"))', "(1 2)"),
         ("(py:len (list 1 2 3))", "3"),
         ("(py:len (make-string 3 :initial-element #\\a))", "3"),
-        ('(py:getattr (py:eval "1j") "imag")', "1.0"),
+        ('(py:getattr (py:eval "1j") "imag")', "1.0d0"),
         ('(py:getattr "abc" \'no-such :default)', ":DEFAULT"),
         ('(list (py:hasattr "abc" \'upper) (py:hasattr "abc" \'uper))', "(T NIL)"),
         ('(py:method "a-b" \'split "-")', '#("a" "b")'),
@@ -76,7 +76,7 @@ def without_addresses(text):
             "(list (kind (collections:OrderedDict)) (kind (py:dict)))",
             "(:ORDERED :OTHER)",
         ),
-        ("(defpackage :uses-math (:use :cl) (:import-from :math #:hypot)) (uses-math::hypot 3 4)", "5.0"),
+        ("(defpackage :uses-math (:use :cl) (:import-from :math #:hypot)) (uses-math::hypot 3 4)", "5.0d0"),
     ],
 )
 def test_calls_and_collections(lisp, form, answer):

@@ -7,10 +7,11 @@ from systems import SOAK
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
 from cramhy_runtime.ground.conditions import Condition, Warning_, handler_bind, muffle_warning
-from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Symbol, lisp_list, list_from
+from cramhy_runtime.ground.data import Character, Cons, Symbol, lisp_list, list_from
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import find_package, intern, keyword, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
@@ -49,13 +50,16 @@ def test_nil_and_the_empty_list_are_none_and_t_is_true():
     assert (first("nil"), first("()"), first("T")) == (None, None, True)
 
 
-def test_a_single_float_is_a_python_float_and_d0_makes_a_double():
-    assert first("1.5").__class__ is float
-    assert first("1.5d0").__class__ is DoubleFloat
+def test_a_literal_is_a_single_float_and_d0_makes_a_python_float():
+    assert first("1.5").__class__ is SingleFloat
+    assert first("1.5d0").__class__ is float
 
 
-def test_a_literal_single_keeps_all_its_digits():
-    assert first("0.1") == 0.1
+def test_a_literal_single_is_rounded_once_from_its_digits():
+    assert first("0.1") == SingleFloat(0.1) == 0.10000000149011612
+    beside_the_middle = "1.000000059604644775390625000000000001"  # a double has the middle, which rounds to the even 1.0
+    assert first(beside_the_middle) == 1 + 2.0**-23
+    assert first(beside_the_middle[:-1]) == 1
 
 
 def test_a_very_long_integer_is_read():
@@ -233,7 +237,7 @@ atoms = st.one_of(
     st.fractions().map(lambda f: f.numerator if f.denominator == 1 else f),
     st.none(),
     st.just(True),
-    st.floats(allow_nan=False, allow_infinity=False).map(DoubleFloat),
+    st.floats(allow_nan=False, allow_infinity=False).map(float),
     st.integers(-1000, 1000).map(lambda n: n / 8),
     st.text(max_size=8),
     st.characters(codec="utf-8").map(Character),

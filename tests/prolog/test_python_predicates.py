@@ -57,7 +57,7 @@ def test_rules_of_lisp_and_of_python_use_it():
         group.rule(P.reachable(V.a, V.b), way(V.a, V.b, V._))
         group.rule(P.reachable(V.a, V.c), way(V.a, V.b, V._), P.reachable(V.b, V.c))
     assert findall(V.x, P.reachable("kitchen", V.x)) == ["hall", "balcony", "door"]
-    assert ask('(and (python-user:way "kitchen" ?to ?m) (python-user:near ?m))') == '(((?TO . "balcony") (?M . 1.5)))'
+    assert ask('(and (python-user:way "kitchen" ?to ?m) (python-user:near ?m))') == '(((?TO . "balcony") (?M . 1.5d0)))'
 
 
 def test_a_solution_is_asked_for_when_it_is_wanted_and_the_generator_is_closed_when_it_is_not():

@@ -3,7 +3,8 @@
 import pytest
 
 from cramhy_runtime.ground.condition_types import Error
-from cramhy_runtime.ground.data import DoubleFloat, python_list
+from cramhy_runtime.ground.data import python_list
+from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ros import messages, wire
@@ -172,14 +173,14 @@ class TestReading:
 
 class TestPrinting:
     def test_a_message_is_a_block(self):
-        assert prin1(make_message("turtlesim/Pose", [(("X",), DoubleFloat(5.5)), (("Y",), 5)])) == POSE
+        assert prin1(make_message("turtlesim/Pose", [(("X",), 5.5), (("Y",), 5)])) == POSE
 
     def test_without_escape_prefixes_and_quotes_go(self):
         assert princ(make_message("turtlesim/Color")) == "[COLOR\n   R:\n     0\n   G:\n     0\n   B:\n     0]"
         assert princ(make_message("std_msgs/String", [(("DATA",), "hello")])) == "[STRING\n   DATA:\n     hello]"
 
     def test_parts_are_lists_and_their_parts_blocks_again(self):
-        assert prin1(make_message("geometry_msgs/Twist", [(("X", "LINEAR"), 1.5), (("Z", "ANGULAR"), 2)])) == TWIST
+        assert prin1(make_message("geometry_msgs/Twist", [(("X", "LINEAR"), SingleFloat(1.5)), (("Z", "ANGULAR"), 2)])) == TWIST
         assert prin1(make_message("geometry_msgs/PoseStamped")) == POSE_STAMPED
 
     def test_an_empty_message(self):
@@ -190,10 +191,13 @@ class TestPrinting:
             assert prin1(make_message("geometry_msgs/Vector3")).startswith("#<GEOMETRY_MSGS-MSG:VECTOR3 {")
 
     def test_a_long_part_is_filled(self):
-        numbers = [DoubleFloat(1.123456789012345), DoubleFloat(-1.123456789012345), 0.0]
+        numbers = [1.123456789012345, -1.123456789012345, 0.0]
         vector = messages.message_class("geometry_msgs/Vector3")(*numbers)
         text = prin1(make_message("geometry_msgs/Twist", [(("LINEAR",), vector)])).splitlines()
-        assert text[2:4] == ["     (GEOMETRY_MSGS-MSG:VECTOR3 (:X . 1.123456789012345d0)", "      (:Y . -1.123456789012345d0) (:Z . 0.0))"]
+        assert text[2:4] == [
+            "     (GEOMETRY_MSGS-MSG:VECTOR3 (:X . 1.123456789012345d0)",
+            "      (:Y . -1.123456789012345d0) (:Z . 0.0d0))",
+        ]
 
 
 class TestListForm:
@@ -235,13 +239,13 @@ class TestTheWire:
         assert self.sent("std_msgs/Int8", data=200).data == -56
         assert self.sent("std_msgs/Byte", data=-1).data == 255
 
-    @pytest.mark.parametrize("value, shown", [(3.0, "3.0"), (True, "T"), (None, "NIL"), ("a", '"a"')])
+    @pytest.mark.parametrize("value, shown", [(3.0, "3.0d0"), (True, "T"), (None, "NIL"), ("a", '"a"')])
     def test_what_is_no_integer_is_a_type_error(self, fails, value, shown):
         assert fails(self.sent, "turtlesim/Color", r=value).report() == f"The value\n  {shown}\nis not of type\n  INTEGER"
 
     def test_reals_arrive_as_doubles(self):
         received = self.sent("geometry_msgs/Vector3", x=1, y=0.5)
-        assert [type(value) for value in received.values()] == [DoubleFloat] * 3
+        assert [type(value) for value in received.values()] == [float] * 3
 
     def test_float32_is_rounded(self):
         assert prin1(self.sent("turtlesim/Pose", x=5.544445).x) == "5.544445037841797d0"
@@ -309,7 +313,7 @@ def test_a_wrong_field_has_those_of_the_type_for_a_hint(make, hint):
 @pytest.mark.parametrize("name, specs, hint", [
     ("geometry_msgs/Twist", [(("X", "LINEAR"), "fast")], 'geometry_msgs/Twist: linear.x holds "fast", which is no float64.'),
     ("geometry_msgs/Twist", [(("LINEAR",), 3)], "geometry_msgs/Twist: linear holds 3, which is no geometry_msgs/Vector3."),
-    ("turtlesim/Color", [(("G",), 1.5)], "turtlesim/Color: g holds 1.5, which is no uint8."),
+    ("turtlesim/Color", [(("G",), 1.5)], "turtlesim/Color: g holds 1.5d0, which is no uint8."),
     ("std_msgs/UInt8MultiArray", [(("DATA",), 3)], "std_msgs/UInt8MultiArray: data holds 3, which is no uint8[]."),
     ("std_msgs/UInt8MultiArray", [(("DATA",), [1, "a"])], 'std_msgs/UInt8MultiArray: data[1] holds "a", which is no uint8.'),
     ("geometry_msgs/PoseWithCovariance", [(("COVARIANCE",), [None])],

@@ -6,7 +6,8 @@ import cramhy_runtime.languages.commonlisp.faces.ros.package  # noqa: F401
 from cramhy_runtime import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import Error, SimpleError
-from cramhy_runtime.ground.data import NO_VALUES, DoubleFloat, MultipleValues, lisp_list, python_list
+from cramhy_runtime.ground.data import NO_VALUES, MultipleValues, lisp_list, python_list
+from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ros import graph, message_building, messages
 from cramhy_runtime.ros.roslisp import clock, node, parameters, services, time, topics
@@ -156,7 +157,7 @@ class TestSubscribing:
         poses = []
         topics.subscribe("turtle1/pose", "turtlesim/Pose", poses.append)
         assert len(poses) == 1
-        assert type(poses[0].x) is DoubleFloat
+        assert type(poses[0].x) is float
 
     def test_subscribing_before_the_simulator_runs_returns_at_once(self, running):
         from cramhy_runtime.turtlesim.node import start_turtlesim
@@ -223,7 +224,7 @@ class TestServices:
     def test_a_value_of_the_wrong_type(self, simulator, fails):
         assert (
             fails(services.call_service, "/turtle1/set_pen", SET_PEN, sym(":R"), 1.5).report()
-            == "The value\n  1.5\nis not of type\n  INTEGER"
+            == "The value\n  1.5d0\nis not of type\n  INTEGER"
         )
 
     def adding(self, request):
@@ -288,8 +289,8 @@ class TestServices:
 
 class TestParameters:
     def test_there_and_back(self, running, fails):
-        assert parameters.set_param("d", DoubleFloat(1.5)) == 0
-        assert parameters.get_param("d") == 1.5 and type(parameters.get_param("d")) is float
+        assert parameters.set_param("d", 1.5) == 0
+        assert parameters.get_param("d") == 1.5 and type(parameters.get_param("d")) is SingleFloat
         assert parameters.has_param("nope") is None
         assert parameters.get_param("nope", 3) == 3
         assert fails(parameters.get_param, "nope").report() == "Param /nope does not exist, and no default supplied"

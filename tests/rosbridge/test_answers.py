@@ -8,7 +8,6 @@ import pytest
 
 from bridge_clients import Wire
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.data import DoubleFloat
 from cramhy_runtime.ros.messages import message_class_exact, service_type_exact
 from cramhy_runtime.rosbridge.rosapi import RosApi
 from cramhy_runtime.ros.wire import NOT_A_NUMBER, POSITIVE_INFINITY
@@ -23,8 +22,8 @@ def made(ros_type, **fields):
 
 
 BAD = {  # type, field, value; the compressions in which it cannot be sent, and the end of the text that says so
-    "a time out of range": ("std_msgs/Time", "data", DoubleFloat(1e300), ["cbor-raw"], "which ROS 1 cannot write as time"),
-    "a time before 1970": ("std_msgs/Time", "data", DoubleFloat(-1.0), ["cbor-raw"], "which ROS 1 cannot write as time"),
+    "a time out of range": ("std_msgs/Time", "data", 1e300, ["cbor-raw"], "which ROS 1 cannot write as time"),
+    "a time before 1970": ("std_msgs/Time", "data", (-1.0), ["cbor-raw"], "which ROS 1 cannot write as time"),
     "a time that is none": ("std_msgs/Time", "data", NOT_A_NUMBER, ["none", "png", "cbor", "cbor-raw"], ""),
     "a time that is infinite": ("std_msgs/Duration", "data", POSITIVE_INFINITY, ["none", "png", "cbor", "cbor-raw"], ""),
     "a lone surrogate": ("std_msgs/String", "data", "a\ud800b", ["cbor"], "surrogates not allowed"),
@@ -76,12 +75,12 @@ def test_with_real_sockets_neither_the_connection_nor_the_output_suffers(serve, 
             for wire, compression in ((raw, "cbor-raw"), (plain, "none")):
                 wire.send(op="subscribe", topic="/bad", compression=compression)
                 assert wire.call("/clear")["result"]
-            kernel_side = made("std_msgs/Time", data=DoubleFloat(1e300))
+            kernel_side = made("std_msgs/Time", data=1e300)
             server.post(lambda: publication.send(kernel_side))
             server.post(lambda: publication.send(kind()))
             told = raw.until(op="status")
             assert told["msg"] == (
-                "A message of /bad could not be sent to you as cbor-raw: std_msgs/Time: the field data holds 1e+300d0, "
+                "A message of /bad could not be sent to you as cbor-raw: std_msgs/Time: the field data holds 1e+300, "
                 "which ROS 1 cannot write as time."
             )
             assert isinstance(raw.receive(), bytes)

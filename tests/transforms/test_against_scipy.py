@@ -7,7 +7,6 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from cramhy_runtime.ground.arrays import LispArray
-from cramhy_runtime.ground.data import DoubleFloat
 from cramhy_runtime.transforms import matrices, poses, quaternions, vectors
 from cramhy_runtime.transforms.poses import Transform
 from cramhy_runtime.transforms.quaternions import Quaternion
@@ -17,7 +16,7 @@ scipy = pytest.importorskip("scipy.spatial.transform")
 Rotation, Slerp = scipy.Rotation, scipy.Slerp
 
 numbers = st.floats(-10, 10, allow_nan=False, allow_subnormal=False)
-doubles = numbers.map(DoubleFloat)
+doubles = numbers.map(float)
 points = st.builds(Vector3, numbers, numbers, numbers)
 units = st.builds(Quaternion, numbers, numbers, numbers, numbers).filter(lambda q: math.hypot(*q) > 0.1).map(quaternions.normalize)
 transforms = st.builds(Transform, points, units)
@@ -76,7 +75,7 @@ def test_roll_pitch_and_yaw(roll, pitch, yaw):
 def test_matrices(q):
     matrix = rotation(q).as_matrix()
     assert near(matrices.quaternion_to_matrix(q).active(), matrix.flatten())
-    assert same(matrices.matrix_to_quaternion(LispArray((3, 3), [DoubleFloat(item) for item in matrix.flatten()])), rotation(q), 1e-7)
+    assert same(matrices.matrix_to_quaternion(LispArray((3, 3), [float(item) for item in matrix.flatten()])), rotation(q), 1e-7)
     assert same(matrices.column_vectors_to_quaternion(*(Vector3(*column) for column in matrix.T)), rotation(q), 1e-7)
 
 
@@ -97,14 +96,14 @@ def test_transforms_are_matrices(a, b, p):
 
 
 @ours
-@given(units, units, st.floats(0, 1).map(DoubleFloat))
+@given(units, units, st.floats(0, 1).map(float))
 def test_spherical_interpolation_takes_the_shorter_way(a, b, ratio):
     assume(1e-4 < (rotation(a).inv() * rotation(b)).magnitude() < math.pi - 1e-3)
     assert same(quaternions.slerp(a, b, ratio), Slerp([0, 1], Rotation.concatenate([rotation(a), rotation(b)]))([ratio])[0], 1e-7)
 
 
 @ours
-@given(points, points, numbers.map(DoubleFloat))
+@given(points, points, numbers.map(float))
 def test_vectors(a, b, ratio):
     import numpy
 

@@ -6,7 +6,8 @@ import pytest
 
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.arrays import LispArray
-from cramhy_runtime.ground.data import DoubleFloat, lisp_list
+from cramhy_runtime.ground.data import lisp_list
+from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import find_package, keyword, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
@@ -16,9 +17,8 @@ from cramhy_runtime.transforms.poses import Pose, Transform
 from cramhy_runtime.transforms.quaternions import Quaternion
 from cramhy_runtime.transforms.vectors import Vector3
 
-D = DoubleFloat
 X, Y, Z = Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1)
-A = Transform(Vector3(1, 2, 3), quaternions.yaw(D(math.pi / 2)))
+A = Transform(Vector3(1, 2, 3), quaternions.yaw(math.pi / 2))
 
 CL_TRANSFORMS = ensure_package("CL-TRANSFORMS")
 
@@ -40,8 +40,8 @@ def near(a, b):
     "obj, text",
     [
         (vectors.make_3d_vector(1, 9, 0), "#<3D-VECTOR (1.0d0 9.0d0 0.0d0)>"),
-        (vectors.make_3d_vector(1.5, 2, D(3)), "#<3D-VECTOR (1.5d0 2.0d0 3.0d0)>"),
-        (vectors.make_3d_vector(0.1, D(0.1), 0), "#<3D-VECTOR (0.10000000149011612d0 0.1d0 0.0d0)>"),
+        (vectors.make_3d_vector(1.5, 2, 3), "#<3D-VECTOR (1.5d0 2.0d0 3.0d0)>"),
+        (vectors.make_3d_vector(SingleFloat(0.1), 0.1, 0), "#<3D-VECTOR (0.10000000149011612d0 0.1d0 0.0d0)>"),
         (quaternions.make_quaternion(0, 0, 0, 1), "#<QUATERNION (0.0d0 0.0d0 0.0d0 1.0d0)>"),
         (quaternions.q_inv(Quaternion()), "#<QUATERNION (-0.0d0 -0.0d0 -0.0d0 1.0d0)>"),
         (quaternions.q_plus(3), "#<QUATERNION (0.0 0.0 0.0 3.0)>"),
@@ -51,9 +51,12 @@ def near(a, b):
             poses.make_twist(X, Z),
             "#<TWIST \n   TRANSLATION #<3D-VECTOR (1.0d0 0.0d0 0.0d0)>\n   ROTATION #<3D-VECTOR (0.0d0 0.0d0 1.0d0)>>",
         ),
-        (quaternions.axis_angle_to_quaternion(Z, D(math.pi)), "#<QUATERNION (0.0d0 0.0d0 1.0d0 6.123233995736766d-17)>"),
-        (quaternions.axis_angle_to_quaternion(Z, 1.0), "#<QUATERNION (0.0d0 0.0d0 0.4794255495071411d0 0.8775825500488281d0)>"),
-        (quaternions.euler_to_quaternion(az=1.0), "#<QUATERNION (0.0d0 0.0d0 0.4794255495071411d0 0.8775825500488281d0)>"),
+        (quaternions.axis_angle_to_quaternion(Z, math.pi), "#<QUATERNION (0.0d0 0.0d0 1.0d0 6.123233995736766d-17)>"),
+        (
+            quaternions.axis_angle_to_quaternion(Z, SingleFloat(1.0)),
+            "#<QUATERNION (0.0d0 0.0d0 0.4794255495071411d0 0.8775825500488281d0)>",
+        ),
+        (quaternions.euler_to_quaternion(az=SingleFloat(1.0)), "#<QUATERNION (0.0d0 0.0d0 0.4794255495071411d0 0.8775825500488281d0)>"),
         (vectors.v_dist(Vector3(), Vector3(3, 4, 0)), "5.0d0"),
         (vectors.x(vectors.make_3d_vector(1, 9, 0)), "1.0d0"),
         (lisp_list(Vector3(1, 9, 0)), "(#<3D-VECTOR (1.0d0 9.0d0 0.0d0)>)"),
@@ -90,7 +93,7 @@ def test_vectors():
     assert vectors.cross_product(X, Y).components == (0, 0, 1) and vectors.cross_product(Y, X).components == (0, 0, -1)
     assert vectors.v_norm(Vector3(3, 4, 0)) == 5 and vectors.dot_product([1, 2, 3], [1, 2, 3]) == 14
     assert vectors.normalize_vector(Vector3(3, 4, 0)).components == (0.6000000000000001, 0.8, 0)
-    assert vectors.interpolate_vector(Vector3(), Vector3(2, 4, 6), D(0.5)).components == (1, 2, 3)
+    assert vectors.interpolate_vector(Vector3(), Vector3(2, 4, 6), 0.5).components == (1, 2, 3)
     assert vectors.interpolate_vector(Vector3(), Vector3(2, 4, 6), 2).components == (4, 8, 12)
     assert vectors.x([1, 2, 3]) == 1 and vectors.x(3) == 0.0 and quaternions.w(3) == 3
     assert vectors.copy_3d_vector(X, y=2).components == (1, 2, 0)
@@ -109,7 +112,10 @@ def test_vectors():
             lambda: vectors.interpolate_vector([0, 0, 0], X, 1),
             "The value of CL-TRANSFORMS::V-0 is #(0 0 0), which is not of type 3D-VECTOR.",
         ),
-        (lambda: quaternions.slerp(1.0, Quaternion(), 0.5), "The value of CL-TRANSFORMS::Q1 is 1.0, which is not of type QUATERNION."),
+        (
+            lambda: quaternions.slerp(SingleFloat(1.0), Quaternion(), 0.5),
+            "The value of CL-TRANSFORMS::Q1 is 1.0, which is not of type QUATERNION.",
+        ),
         (
             lambda: quaternions.normalize(Quaternion(0, 0, 0, 0)),
             "Attempted to normalize quaternion #<QUATERNION (0.0d0 0.0d0 0.0d0 0.0d0)> with norm 0.0d0",
@@ -147,26 +153,22 @@ def test_quaternions():
     assert quaternions.q_eq(Quaternion(), 1) and not quaternions.q_eq(q, quaternions.q_minus(q))
     assert quaternions.q_minus(Quaternion()).components == (0, 0, 0, -1)
     assert quaternions.is_normalized(Quaternion(0, 0, 0, 1.0001)) is None
-    axis, angle = quaternions.quaternion_to_axis_angle(quaternions.axis_angle_to_quaternion(Z, D(1)))
+    axis, angle = quaternions.quaternion_to_axis_angle(quaternions.axis_angle_to_quaternion(Z, 1.0))
     assert near(axis, (0, 0, 0.479425538604203)) and math.isclose(angle, 1)
     assert quaternions.quaternion_to_axis_angle(Quaternion(0, 0, 0, 1.1))[1] == 0
 
 
 def test_euler_angles():
-    q = quaternions.euler_to_quaternion(ax=D(0.1), ay=D(0.2), az=D(0.3))
+    q = quaternions.euler_to_quaternion(ax=0.1, ay=0.2, az=0.3)
     assert near(q, (0.0342707985504821, 0.1060205110617956, 0.1435721750273919, 0.9833474432563558))
     assert near(quaternions.quaternion_to_euler(q, just_values=True), (0.1, 0.2, 0.3))
     assert list(quaternions.quaternion_to_euler(q))[::2] == [keyword("AX"), keyword("AY"), keyword("AZ")]
     for pitch, yaw in ((math.pi / 2, 0.2), (-math.pi / 2, 0.4)):
-        roll, _, heading = quaternions.quaternion_to_euler(
-            quaternions.euler_to_quaternion(ax=D(0.1), ay=D(pitch), az=D(0.3)), just_values=True
-        )
+        roll, _, heading = quaternions.quaternion_to_euler(quaternions.euler_to_quaternion(ax=0.1, ay=pitch, az=0.3), just_values=True)
         assert roll == 0 and isinstance(roll, int) and math.isclose(heading, yaw)
 
 
-@pytest.mark.parametrize(
-    "angle, normal", [(D(4), -2.283185307179586), (D(math.pi), math.pi), (-D(math.pi), -math.pi), (10, -2.5663706143591725)]
-)
+@pytest.mark.parametrize("angle, normal", [(4.0, -2.283185307179586), (math.pi, math.pi), (-math.pi, -math.pi), (10, -2.5663706143591725)])
 def test_angles_are_normalised(angle, normal):
     assert math.isclose(quaternions.normalize_angle(angle), normal)
 
@@ -181,8 +183,8 @@ def test_transforms():
     assert near(poses.transform_star(A, Transform(X)).translation, (1, 3, 3))
     assert near(poses.transform_star(Transform(X), A).translation, (2, 2, 3))
     assert near(poses.transform_inv(A).translation, (-2, 1, -3))
-    assert near(poses.make_2d_pose(1, 2, D(0.5)).orientation, (0, 0, 0.24740395925452294, 0.9689124217106447))
-    turtle = Transform(Vector3(1, 1, 0), quaternions.yaw(D(math.pi / 2)))
+    assert near(poses.make_2d_pose(1, 2, 0.5).orientation, (0, 0, 0.24740395925452294, 0.9689124217106447))
+    turtle = Transform(Vector3(1, 1, 0), quaternions.yaw(math.pi / 2))
     assert near(poses.transform_point(poses.transform_inv(turtle), Vector3(1, 3, 0)), (2, 0, 0))
     assert near(poses.transform_pose(A, Pose(X)).origin, (1, 3, 3)) and near(poses.transform(A, [1, 0, 0]), (1, 3, 3))
     assert poses.copy_pose(Pose(X), origin=Y).origin is Y and poses.reference_transform(A) is A
@@ -221,7 +223,7 @@ def test_matrices():
 
 
 def test_slerp():
-    target = quaternions.yaw(D(2))
+    target = quaternions.yaw(2.0)
     for ratio, angle in ((0, 0), (1, 2), (0.5, 1)):
         assert math.isclose(quaternions.get_yaw(quaternions.slerp(Quaternion(), target, ratio)), angle, abs_tol=1e-9)
-    assert math.isclose(quaternions.q_norm(quaternions.slerp(Quaternion(), quaternions.yaw(D(4)), 0.5)), 1)
+    assert math.isclose(quaternions.q_norm(quaternions.slerp(Quaternion(), quaternions.yaw(4.0), 0.5)), 1)

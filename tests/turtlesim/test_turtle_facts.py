@@ -46,7 +46,7 @@ DIFFERENCES = {
     145: (SENSOR.format(5.0, 0, 63), UNHEARD),
     151: ("  set_pen(9, 0, 0, 5, -1) -> (0, 255, 0) off", CLIENT),
     152: ("  set_pen(300, 0, 0, 5, 0) -> (44, 0, 0) on", CLIENT),
-    153: ("  set_pen(1.5, 0, 0, 5, 0) -> The value\n  1.5\nis not of type\n  INTEGER", CLIENT),
+    153: ("  set_pen(1.5, 0, 0, 5, 0) -> The value\n  1.5d0\nis not of type\n  INTEGER", CLIENT),
 }
 
 

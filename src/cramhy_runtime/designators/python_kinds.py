@@ -27,7 +27,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, anno
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol, lisp_list, list_from
 from cramhy_runtime.ground.packages import near_names
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.ground.printing import text_for_python
 from cramhy_runtime.ground.python_names import lisp_spelling
 from cramhy_runtime.prolog.python.ground import reasoning
 from cramhy_runtime.prolog.python.spelling import lisp_name, python_name
@@ -416,7 +416,7 @@ def _contains(self: Designator, key: str | Symbol) -> bool:
 
 def _representation(self: Designator) -> str:
     with reasoning():
-        text: str = prin1_to_string(self)
+        text: str = text_for_python(self)
     return text
 
 

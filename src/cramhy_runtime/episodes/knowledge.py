@@ -23,7 +23,7 @@ from ..cpl.statuses import DEAD
 from ..cpl.task_variables import define_task_state, inherit
 from cramhy_runtime.cpl.tasks.tasks import AbstractTask
 from cramhy_runtime.ground.conditions import SimpleError, as_name, error, type_error
-from cramhy_runtime.ground.data import UNBOUND, DoubleFloat
+from cramhy_runtime.ground.data import UNBOUND
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import near_names
 from cramhy_runtime.ground.printing import prin1_to_string
@@ -83,7 +83,7 @@ class LiveEpisodeKnowledge(EpisodeKnowledge):
 
 def _timestamp(seconds):
     """``seconds`` of the kernel's clock as a time stamp, to the millisecond."""
-    return DoubleFloat(round(seconds + (current_timestamp() - kernel.now()), 3))
+    return float(round(seconds + (current_timestamp() - kernel.now()), 3))
 
 
 def stamp(task, seconds):

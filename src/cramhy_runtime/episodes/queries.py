@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from cramhy_runtime.cpl.tree.task_tree import goal_task_tree_node_p
 from cramhy_runtime.ground.conditions import warn
-from cramhy_runtime.ground.data import UNSUPPLIED, Cons, DoubleFloat, lisp_list, list_from
+from cramhy_runtime.ground.data import UNSUPPLIED, Cons, lisp_list, list_from
 from cramhy_runtime.ground.packages import near_names
 from cramhy_runtime.ground.printing import prin1_to_string
 from ..utilities.small_functions import current_timestamp
@@ -44,7 +44,7 @@ def episode_knowledge_max_time(episode=UNSUPPLIED):
         times.append(episode.end_time)
     elif episode.running:
         times.append(current_timestamp())
-    return DoubleFloat(round(max(times) + AFTER_THE_LAST, 3)) if times else None
+    return float(round(max(times) + AFTER_THE_LAST, 3)) if times else None
 
 
 def episode_knowledge_task_tree(episode=UNSUPPLIED):

@@ -29,7 +29,7 @@ from cramhy_runtime.cpl.tasks.task_observers import follow
 from cramhy_runtime.cpl.fluents.fluents import living_fluents, tracing_options
 from ..cpl.hooks import on_make_fluent_hook
 from cramhy_runtime.ground.conditions import Condition, warn
-from cramhy_runtime.ground.data import Cons, DoubleFloat, Symbol, list_from, one, truth
+from cramhy_runtime.ground.data import Cons, Symbol, list_from, one, truth
 from cramhy_runtime.ground.dispatch.generic_functions import generic
 from ..utilities.small_functions import current_timestamp
 from . import symbols  # noqa: F401  the package must exist
@@ -74,10 +74,10 @@ def distinct(time, last):
     """The time to be recorded for something at ``time`` when there is a record of ``last`` already: later, and within its millisecond."""
     time = round(time, 3)
     if time > last:
-        return DoubleFloat(time)
+        return float(time)
     end = math.floor(last / MILLISECOND + 1 + 1e-6) * MILLISECOND
     later = last + min(STEP, (end - last) / 10)
-    return DoubleFloat(later if later > last else math.nextafter(last, math.inf))
+    return float(later if later > last else math.nextafter(last, math.inf))
 
 
 class Recorder:

@@ -1,9 +1,8 @@
 """The data of Common Lisp as Python objects.
 
 ``nil`` is ``None``, ``t`` is ``True``, a cons is a `Cons`, a symbol is an interned `Symbol`. Integers, ratios and strings are
-Python's own. A plain ``float`` stands for the single-float, because literals and ordinary arithmetic make singles and should
-run at Python's speed; `DoubleFloat` marks the doubles that ROS messages and ``1.0d0`` give, and keeps its type through
-arithmetic (contagion). A function that returns several values returns one `MultipleValues`; `one` takes the first.
+Python's own. A double-float is Python's ``float``, as messages and poses have it; the other floats of Lisp are
+in ``ground/floats.py``. A function that returns several values returns one `MultipleValues`; `one` takes the first.
 
 What is equal in Python need not be ``eql`` in Lisp (``True == 1 == 1.0``), so nothing here compares by ``==`` on behalf of
 Lisp: see ``ground/equality.py``.
@@ -11,7 +10,6 @@ Lisp: see ``ground/equality.py``.
 
 from __future__ import annotations
 
-import sys
 import warnings
 
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar
@@ -32,6 +30,7 @@ from .conses import (
     new_object as new_object,
     python_list as python_list,
 )
+from .floats import FLOATS as FLOATS, is_ratio as is_ratio
 from .slot_classes import SlotClasses, effective_functions
 from .ports import PORTS
 
@@ -309,52 +308,19 @@ class _Characters(dict):
 CHARACTERS: dict[str, Character] = _Characters()
 """All characters that there are, by their one-character strings."""
 
-TRUE_CLASSES = frozenset({bool, int, float, complex, str, bytes, list, tuple, dict, set, Cons, Symbol, Keyword, Character})
-"""Classes whose objects are true in Lisp, whatever they are, but for ``False``. See `truth`."""
 OWN_ANSWERS: dict[type, bool] = {}
 """What `_answers_for_itself` found out of other classes."""
 
 
-def is_ratio(thing: object) -> bool:
-    """Whether ``thing`` is a ratio, which is a `Fraction` of Python.
-
-    There are ratios only where somebody has imported ``fractions``. The rooms that plans need do not: its import takes a tenth of theirs.
-    `isinstance` would ask the abstract class of `Fraction`, which is slow.
-    """
-    fractions = sys.modules.get("fractions")
-    return fractions is not None and fractions.Fraction in thing.__class__.__mro__
+def __getattr__(name: str) -> Any:
+    if name != "DoubleFloat":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    warnings.warn("A double-float is a Python float now: write float instead of DoubleFloat.", DeprecationWarning, stacklevel=2)
+    return float
 
 
-class DoubleFloat(float):
-    """A double-float: ``5.0d0``. Arithmetic with any real gives a double again; see ANSI 12.1.4.4 (float contagion)."""
-
-    __slots__ = ()
-
-    def __repr__(self):
-        return float.__repr__(self) + "d0"
-
-    def __reduce__(self):
-        return DoubleFloat, (float(self),)
-
-
-def _keep_double(name):
-    operation = getattr(float, name)
-
-    def method(self, other):
-        result = operation(self, other)
-        if result is NotImplemented:
-            return DoubleFloat(operation(self, float(other))) if is_ratio(other) else result
-        return DoubleFloat(result)
-
-    method.__name__ = name
-    return method
-
-
-for _name in ("add", "radd", "sub", "rsub", "mul", "rmul", "truediv", "rtruediv"):
-    setattr(DoubleFloat, f"__{_name}__", _keep_double(f"__{_name}__"))
-DoubleFloat.__neg__ = lambda self: DoubleFloat(float.__neg__(self))
-DoubleFloat.__pos__ = lambda self: self
-DoubleFloat.__abs__ = lambda self: DoubleFloat(float.__abs__(self))
+TRUE_CLASSES = frozenset({bool, int, *FLOATS, complex, str, bytes, list, tuple, dict, set, Cons, Symbol, Keyword, Character})
+"""Classes whose objects are true in Lisp, whatever they are, but for ``False``. See `truth`."""
 
 
 class FreshString(str):

@@ -15,7 +15,7 @@ from math import copysign
 
 from .arrays import LispArray, is_bit_vector
 from cramhy_runtime.kernel.active import checkpoint
-from .data import LONG, WRITABLE_STRINGS, Character, Cons, DoubleFloat, FreshString, Keyword, LispString, Symbol, is_ratio, list_parts
+from .data import FLOATS, LONG, WRITABLE_STRINGS, Character, Cons, FreshString, Keyword, LispString, Symbol, is_ratio, list_parts
 
 from .ports import PORTS
 
@@ -42,7 +42,7 @@ def eql(x, y):
         return True if x == y else None
     if cls in EQUAL_TO_THEMSELVES:
         return None
-    if cls is float or cls is DoubleFloat:
+    if cls in FLOATS:
         if x == y:
             return True if x or copysign(1.0, x) == copysign(1.0, y) else None
         return True if x != x and y != y else None
@@ -150,7 +150,7 @@ def eql_key(x):
         return x
     if cls in EQUAL_TO_THEMSELVES:
         return (id(x), None)
-    if cls is float or cls is DoubleFloat:
+    if cls in FLOATS:
         if x != x:
             return (cls, "nan")
         return (cls, float(x)) if x else (cls, 0.0, copysign(1.0, x))

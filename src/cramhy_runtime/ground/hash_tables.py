@@ -23,6 +23,7 @@ from .arrays import is_bit_vector
 from .conditions import error, type_error
 from .data import UNSUPPLIED, Character, Cons, Keyword, LispString, MultipleValues, Symbol, one, truth
 from .equality import KEYS, OWN_KEYS, eq, eql, equal, equalp, equalp_key, is_number
+from .floats import literal_float
 from .functions import function_of
 from .packages import sym
 
@@ -39,6 +40,9 @@ TURN = 2000
 _TESTS = {eq: "EQ", eql: "EQL", equal: "EQUAL", equalp: "EQUALP"}
 _BY_KEY = ("KEY", "KEY-AND-VALUE", "KEY-OR-VALUE")
 _BY_VALUE = ("VALUE", "KEY-AND-VALUE", "KEY-OR-VALUE")
+
+
+_GROWTH, _FULL = literal_float(1.5), literal_float(1.0)
 
 
 class HashTable:
@@ -66,7 +70,7 @@ class HashTable:
         "__weakref__",
     )
 
-    def __init__(self, test="EQL", weakness=None, size=7, rehash_size=1.5, rehash_threshold=1.0, synchronized=False):
+    def __init__(self, test="EQL", weakness=None, size=7, rehash_size=_GROWTH, rehash_threshold=_FULL, synchronized=False):
         self.test = test
         self.weakness = weakness
         hash_key = KEYS[test] if test.__class__ is str else test.key
@@ -241,7 +245,7 @@ def define_test(name, same, number):
 
 
 def make_hash_table(
-    *, test=UNSUPPLIED, size=7, rehash_size=1.5, rehash_threshold=1.0, synchronized=None, weakness=None, hash_function=None
+    *, test=UNSUPPLIED, size=7, rehash_size=_GROWTH, rehash_threshold=_FULL, synchronized=None, weakness=None, hash_function=None
 ):
     """``make-hash-table``: a new table. ``test`` is one of eq, eql (the default), equal, equalp, as symbol or function, or a test of
     the user's (``sb-ext:define-hash-table-test``). With ``hash_function`` any function may be the test."""

@@ -1,31 +1,19 @@
-"""Which Python objects are numbers for a plan, and singles.
+"""Which Python objects are numbers for a plan.
 
-A plain ``float`` stands for a single-float and is rounded to one where it becomes text or goes onto the wire. ``bool`` is no number,
-though Python says so: ``t`` and ``nil`` are symbols.
+``bool`` is no number, though Python says so: ``t`` and ``nil`` are symbols.
 """
 
 from __future__ import annotations
 
-import math
-import struct
 from fractions import Fraction
 
 from .conditions import FloatingPointOverflow, error, type_error
-from .data import DoubleFloat, lisp_list, one
+from .data import FLOATS, lisp_list, one
 from .packages import sym
 
 FIXNUM_LIMIT = 2**62
 """The first integer that is too large for a fixnum; the smallest fixnum is its negative."""
-_REALS = frozenset((int, float, Fraction, DoubleFloat))
-_pack_single = struct.Struct("<f")
-
-
-def single(value: float) -> float:
-    """``value``, a Python float, rounded to the nearest single-float (a float with 24 bits of precision)."""
-    try:
-        return _pack_single.unpack(_pack_single.pack(value))[0]
-    except OverflowError:
-        return math.copysign(math.inf, value)
+_REALS = FLOATS | {int, Fraction}
 
 
 def is_real(obj):

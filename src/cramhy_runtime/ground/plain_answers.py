@@ -12,8 +12,7 @@ import sys
 from cramhy_runtime.kernel.reports import write_shown
 from cramhy_runtime.kernel.typing_names import Any
 
-from .data import UNBOUND, Character, Cons, DoubleFloat, Keyword, LispString, MultipleValues, Symbol, is_ratio, list_parts, one, python_list
-from .float_printing import float_text
+from .data import UNBOUND, Character, Cons, Keyword, LispString, MultipleValues, Symbol, is_ratio, list_parts, one, python_list
 from .packages import (
     COMMON_LISP,
     COMMON_LISP_USER,
@@ -61,8 +60,8 @@ class PlainPrinter:
             return _in_case(symbol_text(thing) if escape else symbol_name(thing or None))
         if isinstance(thing, (str, LispString)):
             return '"' + str(thing).replace("\\", "\\\\").replace('"', '\\"') + '"' if escape else str(thing)
-        if isinstance(thing, (float, DoubleFloat)):
-            return float_text(thing)
+        if isinstance(thing, float):
+            return repr(thing)
         if isinstance(thing, int) or is_ratio(thing):
             return str(thing)
         if isinstance(thing, Cons):
@@ -270,7 +269,7 @@ class _Format:
 
 def _fixed(number: Any, parameters: str) -> str:
     digits = parameters.partition(",")[2]
-    return f"{float(number):.{digits}f}" if digits.isdigit() else float_text(float(number))
+    return f"{float(number):.{digits}f}" if digits.isdigit() else repr(float(number))
 
 
 # ------------------------------------------------------------------------------------------------------------------ the classes

@@ -62,6 +62,19 @@ def prin1_to_string(thing: Any) -> str:
     return PORTS.printer.prin1(thing)
 
 
+NUMBERS_OF_PYTHON = sym("CRAMHY::NUMBERS-OF-PYTHON")
+"""The value of ``*read-default-float-format*`` while Python prints: floats look as Python writes them, without a mark of their kind."""
+
+
+def text_for_python(thing: Any) -> str:
+    """`prin1_to_string`, with numbers as Python writes them: what ``repr`` of an object of Lisp shows."""
+    with binding(_FLOAT_FORMAT, NUMBERS_OF_PYTHON):
+        return prin1_to_string(thing)
+
+
+_FLOAT_FORMAT = sym("*READ-DEFAULT-FLOAT-FORMAT*")
+
+
 def princ_to_string(thing: Any) -> str:
     """``thing`` as ``princ`` prints it, for people to read."""
     return PORTS.printer.princ(thing)

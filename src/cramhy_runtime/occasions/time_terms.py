@@ -7,7 +7,7 @@ matches, and a warning says so. Source: projection-and-events.md B3.
 from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import SimpleWarning, warn
-from cramhy_runtime.ground.data import Cons, DoubleFloat, lisp_list
+from cramhy_runtime.ground.data import Cons, lisp_list
 from cramhy_runtime.ground.numbers import is_real
 from cramhy_runtime.prolog.builtins.native_predicates import deref, test
 from cramhy_runtime.prolog.terms.terms import Var, resolve
@@ -61,7 +61,7 @@ def times_of(m, term, kind, count):
         time = deref(cell.car)
         if time.__class__ is Var:
             times.append(None)
-        elif time.__class__ is DoubleFloat:
+        elif time.__class__ is float:
             times.append(time)
         else:
             if is_real(time) and not isinstance(time, bool):
@@ -70,7 +70,7 @@ def times_of(m, term, kind, count):
                         "[PROLOG WARNING] The time ~s in ~s is not a double-float, so it fits nothing. Write ~s.",
                         time,
                         resolve(term, m.names),
-                        DoubleFloat(time),
+                        float(time),
                     )
                 )
             return None

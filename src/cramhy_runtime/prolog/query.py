@@ -14,7 +14,7 @@ All solutions are computed on demand, so a query that is dropped costs nothing m
 from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol, python_list
+from cramhy_runtime.ground.data import FLOATS, Cons, Keyword, Symbol, python_list
 
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.hooks import Hook
@@ -29,7 +29,7 @@ from .engine.machine import SOLVED, Machine
 from cramhy_runtime.utilities.patterns import ANONYMOUS, entry, for_lisp, var_value, variables_of
 from .terms.terms import UNSET, Var, import_term, resolve
 
-_PLAIN = frozenset([Symbol, Keyword, int, str, float, DoubleFloat])
+_PLAIN = frozenset([Symbol, Keyword, int, str, *FLOATS])
 
 
 on_prepare_prolog_prove = Hook("CUT::ON-PREPARE-PROLOG-PROVE", "(query binds)")

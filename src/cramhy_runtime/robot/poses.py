@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from math import cos, isfinite, radians, sin
 
-from cramhy_runtime.ground.data import DoubleFloat
 from cramhy_runtime.tf.stamped import PoseStamped, make_pose_stamped
 from cramhy_runtime.transforms.quaternions import make_quaternion
 from cramhy_runtime.transforms.vectors import Vector3, make_3d_vector
@@ -16,10 +15,8 @@ Place = PoseStamped | Vector3 | tuple[float, float, float]
 def at(x: float, y: float, z: float = 0.0, yaw: float = 0.0, frame: str = "map") -> PoseStamped:
     """The pose at (x, y, z) metres, turned about the vertical axis by ``yaw`` degrees, in a frame: the room's is ``"map"``."""
     half = radians(yaw) / 2
-    numbers = map(DoubleFloat, (x, y, z))
-    return make_pose_stamped(
-        frame, 0.0, make_3d_vector(*numbers), make_quaternion(0.0, 0.0, DoubleFloat(sin(half)), DoubleFloat(cos(half)))
-    )
+    numbers = map(float, (x, y, z))
+    return make_pose_stamped(frame, 0.0, make_3d_vector(*numbers), make_quaternion(0.0, 0.0, float(sin(half)), float(cos(half))))
 
 
 def pose_of(place: Place) -> PoseStamped:

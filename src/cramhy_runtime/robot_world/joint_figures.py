@@ -10,7 +10,7 @@ from math import isfinite
 from pathlib import Path
 
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, DoubleFloat, list_from
+from cramhy_runtime.ground.data import Cons, list_from
 from cramhy_runtime.ground.packages import near_names
 
 from . import description_files
@@ -42,6 +42,6 @@ def joint_figures(source: str, name: str) -> Cons:
         near = near_names(str(name), robot.joints)
         return error("The robot ~A has no joint ~S.~@[ Did you mean ~A?~]", robot.name, name, " or ".join(near) or None)
     w, x, y, z = joint.frame.rotation
-    limits = (DoubleFloat(limit) if isfinite(limit) and joint.moves else None for limit in (joint.lower, joint.upper))
-    places = (list_from(map(DoubleFloat, numbers)) for numbers in (joint.axis, joint.frame.position, (x, y, z, w)))
+    limits = (float(limit) if isfinite(limit) and joint.moves else None for limit in (joint.lower, joint.upper))
+    places = (list_from(map(float, numbers)) for numbers in (joint.axis, joint.frame.position, (x, y, z, w)))
     return list_from([joint.kind, *limits, *places, joint.parent, joint.child])

@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cramhy_runtime.ground.data import DoubleFloat
 from cramhy_runtime.transforms.poses import Pose, make_pose
 from cramhy_runtime.transforms.quaternions import make_quaternion
 from cramhy_runtime.transforms.vectors import make_3d_vector
@@ -41,8 +40,8 @@ class Placement(NamedTuple):
 
     def pose(self) -> Pose:
         """The same as a pose of cl-transforms."""
-        w, x, y, z = map(DoubleFloat, self.rotation)
-        return make_pose(make_3d_vector(*map(DoubleFloat, self.position)), make_quaternion(x, y, z, w))
+        w, x, y, z = map(float, self.rotation)
+        return make_pose(make_3d_vector(*map(float, self.position)), make_quaternion(x, y, z, w))
 
     def near(self, other: Placement, metres: float, radians: float) -> bool:
         """Whether the two differ by no more than that."""

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from array import array
 
-from cramhy_runtime.ground.data import DoubleFloat, Symbol
+from cramhy_runtime.ground.data import FLOATS, Symbol
 from cramhy_runtime.ground.packages import keyword
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, overload
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 OCTETS = ("uint8", "char")
 """The base types whose arrays are `Octets`."""
-_REALS = frozenset({float, DoubleFloat, int})
+_REALS = FLOATS | {int}
 _INTS, _BOOLS = frozenset({int}), frozenset({bool})
 
 
@@ -36,17 +36,15 @@ _FLOATS: dict[Symbol, float] = {POSITIVE_INFINITY: math.inf, NEGATIVE_INFINITY: 
 
 def as_float(value: float | Symbol) -> float:
     """A received real as a Python float. The symbols for infinity and not-a-number become floats too."""
-    if value.__class__ is DoubleFloat:
-        return float(value)
     if isinstance(value, Symbol):
         return _FLOATS.get(value, math.nan)
     return float(value)
 
 
-def lisp_float(value: float) -> DoubleFloat | Symbol:
+def lisp_float(value: float) -> float | Symbol:
     """A float in the form that the graph carries: a double-float, or a symbol if it is not finite."""
     if math.isfinite(value):
-        return DoubleFloat(value)
+        return float(value)
     if value != value:
         return NOT_A_NUMBER
     return POSITIVE_INFINITY if value > 0 else NEGATIVE_INFINITY
@@ -92,15 +90,15 @@ def octets(values: object) -> Octets | None:
     return Octets(given) if getattr(given, "typecode", None) == "B" else None
 
 
-def float64s(values: Sequence[object]) -> list[DoubleFloat | Symbol] | None:
+def float64s(values: Sequence[object]) -> list[float | Symbol] | None:
     """The numbers in the form that receivers get (`lisp_float`); ``None`` if there are others than integers and floats."""
     if not _REALS.issuperset(map(type, values)):
         return None
     numbers: Sequence[Any] = values
-    return list(map(DoubleFloat, numbers)) if all(map(math.isfinite, numbers)) else [lisp_float(float(number)) for number in numbers]
+    return list(map(float, numbers)) if all(map(math.isfinite, numbers)) else [lisp_float(float(number)) for number in numbers]
 
 
-def float32s(values: Sequence[object]) -> list[DoubleFloat | Symbol] | None:
+def float32s(values: Sequence[object]) -> list[float | Symbol] | None:
     """As `float64s`, each number rounded to 24 bits."""
     numbers: Sequence[Any] = values
     return float64s(array("f", numbers).tolist()) if _REALS.issuperset(map(type, numbers)) else None

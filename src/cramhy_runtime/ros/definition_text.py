@@ -37,8 +37,8 @@ PRIMITIVES = {*INTEGERS, "float32", "float64", "bool", "string", "time", "durati
 OTHER_NAMES = {"int": "int32", "uint": "uint32", "long": "int64", "float": "float32", "double": "float64", "boolean": "bool",
                "str": "string", "octet": "byte"}  # fmt: skip
 """Names that other languages use for these types, each with the name in ROS; hints suggest it."""
-RESERVED = {"attributes", "constants", "copy", "definition", "field_names", "fields", "initargs", "keywords", "lisp_name", "lisp_symbol",
-            "python_attributes", "ros_type", "values"}  # fmt: skip
+RESERVED = {"attributes", "constants", "copy", "definition", "field_names", "fields", "initargs", "keywords", "lisp_init", "lisp_name",
+            "lisp_symbol", "python_attributes", "ros_type", "values"}  # fmt: skip
 """Attributes of every message class; a field with one of these names gets an underscore after it in Python."""
 
 _LINE = late_pattern(r"(?P<type>[^\s=]+)(?:\s+(?P<name>[^=]*?))?\s*(?P<constant>=\s*(?P<value>.*))?$")

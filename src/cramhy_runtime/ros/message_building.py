@@ -36,13 +36,13 @@ def make_message(designator: TypeName, specs: FieldSpecs = ()) -> RosMessage:
     ``designator``: a class, symbol or string that names the type. ``specs``: a sequence of (field path, value). An unknown field
     is an error. Source: roslisp.md 5.3.
     """
-    message = messages.message_class(designator)()
+    message = messages.maker(messages.message_class(designator))()
     return set_fields(message, specs, fresh=True) if specs else message
 
 
 def make_request(designator: ServiceName, specs: FieldSpecs = ()) -> RosMessage:
     """A new request of the service ``designator`` (symbol, string, or `ServiceType`), with ``specs`` as for `make_message`."""
-    return set_fields(messages.service_type(designator).request(), specs, fresh=True)
+    return set_fields(messages.maker(messages.service_type(designator).request)(), specs, fresh=True)
 
 
 def make_response(service: ServiceName, *initargs: object) -> RosMessage:
@@ -60,7 +60,7 @@ def instance(cls: MessageType, initargs: Sequence[Any]) -> RosMessage:
         keywords.setdefault(attribute, initargs[index + 1])
     if len(initargs) % 2:
         return _bad_initargs(cls, initargs)
-    return cls(**keywords)
+    return messages.maker(cls)(**keywords)
 
 
 def _bad_initargs(cls: MessageType, initargs: Sequence[Any]) -> Any:

@@ -20,8 +20,9 @@ import json
 import math
 import reprlib
 
-from cramhy_runtime.ground.data import DoubleFloat, LispString, truth
-from cramhy_runtime.ground.numbers import is_real, single
+from cramhy_runtime.ground.data import LispString, truth
+from cramhy_runtime.ground.floats import to_float32
+from cramhy_runtime.ground.numbers import is_real
 from cramhy_runtime.utilities.generated_functions import generated_function
 from . import messages
 from .arrays import NONFINITE, QUICK, Octets, as_float, lisp_float
@@ -264,7 +265,7 @@ def _moment(name, signed):
 
     def read(value, now):
         if value == "now" and not signed:
-            return DoubleFloat(now or 0.0)
+            return float(now or 0.0)
         if value.__class__ is not dict:
             raise _wrong(name, value, 'write {"secs": 1, "nsecs": 500000000}')
         second, nanosecond = ("sec", "nanosec") if "sec" in value or "nanosec" in value else ("secs", "nsecs")
@@ -274,7 +275,7 @@ def _moment(name, signed):
         for part in parts:
             if part.__class__ is not int or not least <= part <= most:
                 raise _wrong(name, value, f"{_shown(part)} is no integer from {least} to {most}")
-        return DoubleFloat(parts[0] + parts[1] / 1e9)
+        return float(parts[0] + parts[1] / 1e9)
 
     return read
 
@@ -308,7 +309,7 @@ def _write_bytes(octets):
 
 _readers = {name: _integer(name, *size) for name, size in INTEGERS.items()}
 _readers.update(
-    float64=_floating("float64", lambda value: value), float32=_floating("float32", single), bool=_read_bool, string=_read_string
+    float64=_floating("float64", lambda value: value), float32=_floating("float32", to_float32), bool=_read_bool, string=_read_string
 )
 _moments = {"time": _moment("time", False), "duration": _moment("duration", True)}
 _DEFAULTS = {"bool": "False", "string": '""', "float32": "zero", "float64": "zero", **dict.fromkeys(INTEGERS, "0")}
@@ -503,8 +504,7 @@ def _decoder(cls):
         "cls": cls,
         "new": cls.__new__,
         "missing": _MISSING,
-        "zero": DoubleFloat(0.0),
-        "Double": DoubleFloat,
+        "zero": 0.0,
         "problems": MessageJsonError,
         "no_object": _no_object,
         "unknown_field": _unknown_field,
@@ -539,10 +539,10 @@ def _reading(field, scope, cls):
         scope[reader] = _moments[field.base]
         read, default = f"{reader}(value, now)", "zero"
         if cls.ros_type == "std_msgs/Header" and field.name == "stamp":
-            default = "zero if now is None else Double(now)"
+            default = "zero if now is None else float(now)"
     elif field.base == "float64" and not field.is_array:
         scope[reader] = _readers["float64"]
-        read, default = f"Double(value) if value.__class__ is float and value - value == 0.0 else {reader}(value)", "zero"
+        read, default = f"value if value.__class__ is float and value - value == 0.0 else {reader}(value)", "zero"
     else:
         scope[reader] = _readers[field.base]
         read, default = f"{reader}(value)", _DEFAULTS[field.base]

@@ -14,6 +14,7 @@ from cramhy_runtime.ground import conditions, packages
 from cramhy_runtime.ground.condition_types import CaseFailure, SimpleError
 from cramhy_runtime.ground.data import UNSUPPLIED, LispString, Symbol, lisp_list, truth
 from cramhy_runtime.ground.classes import find_class_or_error
+from cramhy_runtime.ground.floats import literal_float
 from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.packages import Package, delete_package, intern, near_names, ours, registered, string_designator, sym
 from cramhy_runtime.utilities.generated_functions import generated_function
@@ -68,6 +69,11 @@ class RosMessage:
         def __init__(self, *values: object, **fields: object): ...
         def __getattr__(self, name: str) -> Any: ...
         def __setattr__(self, name: str, value: Any) -> None: ...
+
+    def lisp_init(self) -> None:
+        """Fill a message that Lisp makes by ``make-instance`` (see `maker`)."""
+        for name, value in zip(self.field_names, maker(type(self))().values(), strict=True):
+            setattr(self, name, value)
 
     def __repr__(self) -> str:
         inside = ", ".join(f"{name}={getattr(self, name)!r}" for name in self.field_names)
@@ -347,19 +353,39 @@ def _deferred_initializer(cls: Any, fields: Sequence[Field]) -> Callable[..., No
 def _initializer(cls: MessageType, fields: Sequence[Field]) -> Callable[..., None]:
     """An ``__init__`` with one parameter per field, in the order of the definition. It makes messages inside only when needed."""
     scope = {"_unsupplied": UNSUPPLIED, "_part": part_class}
-    parameters, body = ["self"], []  # written out once per type, as dataclasses do: making messages is on the path of every command
+    parameters, body = _assignments(fields, DEFAULTS)
+    initializer = generated_function(f"__init__ of {cls.ros_type}", "__init__", ["self", *parameters], body, scope)
+    initializer.__qualname__ = f"{cls.__name__}.__init__"
+    return initializer
+
+
+_makers: dict[type, Callable[..., Any]] = {}
+
+
+def maker(cls: MessageType) -> Callable[..., Any]:
+    """The function that makes messages of ``cls`` as roslisp does: a float that is not given is the 0.0 of Lisp's literals."""
+    found = _makers.get(cls)
+    if found is None:
+        scope = {"_unsupplied": UNSUPPLIED, "_part": lambda ros_type: maker(part_class(ros_type)), "_zero": literal_float(0.0)}
+        parameters, body = _assignments(cls.fields, {**DEFAULTS, "float32": "_zero", "float64": "_zero"})
+        lines = ["self = new(cls)", *body, "return self"]
+        found = generated_function(f"making {cls.ros_type}", "make", parameters, lines, {**scope, "new": cls.__new__, "cls": cls})
+        _makers[cls] = found
+    return found
+
+
+def _assignments(fields: Sequence[Field], defaults: dict[str, str]) -> tuple[list[str], list[str]]:
+    parameters, body = [], []  # written out once per type, as dataclasses do: making messages is on the path of every command
     for field in fields:
-        default = _default(field)
+        default = _default(field, defaults)
         if default is None:
-            default = DEFAULTS.get(field.base, "0")
+            default = defaults.get(field.base, "0")
             parameters.append(f"{field.attribute}={default}")
             body.append(f"self.{field.attribute} = {field.attribute}")
         else:
             parameters.append(f"{field.attribute}=_unsupplied")
             body.append(f"self.{field.attribute} = {default} if {field.attribute} is _unsupplied else {field.attribute}")
-    initializer = generated_function(f"__init__ of {cls.ros_type}", "__init__", parameters, body, scope)
-    initializer.__qualname__ = f"{cls.__name__}.__init__"
-    return initializer
+    return parameters, body
 
 
 def part_class(ros_type: str) -> MessageType:
@@ -369,12 +395,12 @@ def part_class(ros_type: str) -> MessageType:
     )
 
 
-def _default(field: Field) -> str | None:
+def _default(field: Field, defaults: dict[str, str]) -> str | None:
     """An expression, as text, for a default that each message needs anew; ``None`` for a constant default."""
     if field.is_array:
         if field.length == 0:
             return "[]"
-        element = DEFAULTS.get(field.base, "0") if field.primitive else f"_part({field.base!r})()"
+        element = defaults.get(field.base, "0") if field.primitive else f"_part({field.base!r})()"
         return f"[{element}] * {field.length}"  # message elements are one shared instance, as in roslisp
     return None if field.primitive else f"_part({field.base!r})()"
 

@@ -13,8 +13,9 @@ import math
 
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import FloatingPointOverflow, SimpleError, TypeError_
-from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, LispString, Symbol, truth
-from cramhy_runtime.ground.numbers import is_real, single
+from cramhy_runtime.ground.data import Character, Cons, LispString, Symbol, truth
+from cramhy_runtime.ground.floats import FLOATS, to_float32
+from cramhy_runtime.ground.numbers import is_real
 from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.utilities.generated_functions import generated_function
@@ -92,12 +93,12 @@ def _real(value):
 
 def _float64(value):
     if value.__class__ is float and math.isfinite(value):
-        return DoubleFloat(value)
+        return value
     return lisp_float(float(_real(value)))
 
 
 def _float32(value):
-    return lisp_float(single(float(_real(value))))
+    return lisp_float(to_float32(float(_real(value))))
 
 
 def _integer(bits, signed):
@@ -134,7 +135,7 @@ def _string(value):
 def _time(value):
     value = _real(value)
     seconds = math.floor(value)
-    return DoubleFloat(seconds + round((value - seconds) * 1e9) / 1e9)
+    return seconds + round((float(value) - seconds) * 1e9) / 1e9
 
 
 _primitives = {"float64": _float64, "float32": _float32, "bool": _bool, "string": _string, "time": _time, "duration": _time}
@@ -205,8 +206,8 @@ def _array(field: Field, convert: Callable[[Any], Any]) -> Callable[[Any], Seque
 
 _transmitters: dict[type, Callable[[Any], Any]] = {}
 _READY = {
-    "float64": "{0} if {0}.__class__ is Double and isfinite({0}) else {1}({0})",
-    "float32": "Double(single({0})) if {0}.__class__ in floats and -3e38 < {0} < 3e38 else {1}({0})",
+    "float64": "{0} if {0}.__class__ is float and isfinite({0}) else {1}({0})",
+    "float32": "to_float32({0}) if {0}.__class__ in floats and -3e38 < {0} < 3e38 else {1}({0})",
     "bool": "{0} if {0} is True or {0} is False else {1}({0})",
     "string": "{0} if {0}.__class__ is str and {0}.isascii() else {1}({0})",
 }
@@ -215,8 +216,8 @@ _READY = {
 
 def _transmitter(cls: Any) -> Callable[[Any], Any]:
     """Generate, compile and keep the function that transmits messages of class ``cls``."""
-    scope = {"new": cls.__new__, "cls": cls, "Double": DoubleFloat, "floats": (DoubleFloat, float), "isfinite": math.isfinite}
-    scope["single"] = single
+    scope = {"new": cls.__new__, "cls": cls, "floats": FLOATS, "isfinite": math.isfinite}
+    scope["to_float32"] = to_float32
     lines = ["result = new(cls)"]  # written out once per type: it is on the path of every message
     for field in cls.fields:
         name, convert = field.attribute, f"convert_{field.attribute}"

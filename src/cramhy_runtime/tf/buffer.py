@@ -18,7 +18,6 @@ from __future__ import annotations
 from bisect import bisect_right
 from math import floor, isfinite
 
-from cramhy_runtime.ground.data import DoubleFloat
 from cramhy_runtime.ground.numbers import is_real
 from ..transforms.quaternions import general, inverse, multiply, quaternion, rotated, slerp
 from ..transforms.vectors import interpolate_vector, point, vector
@@ -133,11 +132,11 @@ class Link:
 
 
 def _between(before: TransformStamped, after: TransformStamped, time: float) -> TransformStamped:
-    share = DoubleFloat((time - before.stamp) / (after.stamp - before.stamp))
+    share = float((time - before.stamp) / (after.stamp - before.stamp))
     return TransformStamped(
         before.frame_id,
         before.child_frame_id,
-        DoubleFloat(time),
+        float(time),
         interpolate_vector(vector(point(before.translation)), vector(point(after.translation)), share),
         slerp(quaternion(general(before.rotation)), quaternion(general(after.rotation)), share),
     )
@@ -193,7 +192,7 @@ class FrameBuffer:
             link = self.links.get(unslash_frame(source))
             stamp = time or (link.newest.stamp if link is not None else 0.0)
             return TransformStamped(
-                unslash_frame(target), unslash_frame(source), DoubleFloat(stamp), vector((0.0, 0.0, 0.0)), quaternion((0.0, 0.0, 0.0, 1.0))
+                unslash_frame(target), unslash_frame(source), float(stamp), vector((0.0, 0.0, 0.0)), quaternion((0.0, 0.0, 0.0, 1.0))
             )
         if len(up) == 1 and not down:
             return up[0]

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from .. import kernel
 from ..actionlib.client import ActionClient
-from cramhy_runtime.ground.data import DoubleFloat
 from ..ros.messages import message_class_exact
 from . import errors
 from .stamped_messages import from_msg
@@ -34,7 +33,7 @@ class BufferClient:
     lisp_name = "CL-TF2::BUFFER-CLIENT"
     initargs = {"TIMEOUT": "timeout"}
 
-    def __init__(self, timeout=DoubleFloat(10), server="tf2_buffer_server"):
+    def __init__(self, timeout=10.0, server="tf2_buffer_server"):
         self.timeout, self.server = timeout, server
         self.idle = [ActionClient(server, ACTION)]
         if not self.idle[0].wait_for_server(timeout):
@@ -44,7 +43,7 @@ class BufferClient:
                 f"Nobody serves the action {server} ({ACTION}). A CL-TF:TRANSFORM-LISTENER needs no server.",
             )
 
-    def lookup(self, target, source, *, time=None, timeout=DoubleFloat(0), target_time=None, fixed_frame=None):
+    def lookup(self, target, source, *, time=None, timeout=0.0, target_time=None, fixed_frame=None):
         """The transform as the server knows it after waiting up to ``timeout`` seconds."""
         goal = message_class_exact("tf2_msgs/LookupTransformGoal")(
             target_frame=target,

@@ -8,7 +8,7 @@ Frames come first, then the stamp, then the geometry. Source: cl-transforms.md 5
 from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import SimpleError, error, warn
-from cramhy_runtime.ground.data import DoubleFloat, LispString
+from cramhy_runtime.ground.data import LispString
 from cramhy_runtime.ground.numbers import is_real
 from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from ..transforms.coercion import check_type, part, real, slot_reader, wrong_type
@@ -90,17 +90,10 @@ class _VectorInFrame(Stamped, Vector3):
     initargs: dict[str, str] = {}
     given: tuple[float, float, float] | None = None
 
-    def __init__(
-        self,
-        frame_id: str | None = None,
-        stamp: float | None = None,
-        x: float = DoubleFloat(0),
-        y: float = DoubleFloat(0),
-        z: float = DoubleFloat(0),
-    ):
+    def __init__(self, frame_id: str | None = None, stamp: float | None = None, x: float = 0.0, y: float = 0.0, z: float = 0.0):
         Stamped.__init__(self, frame_id, stamp)
         self._components = real(x), real(y), real(z)
-        if not x.__class__ is y.__class__ is z.__class__ is DoubleFloat:
+        if not x.__class__ is y.__class__ is z.__class__ is float:
             self.given = x, y, z
 
     def component(self, index: int) -> Any:

@@ -11,7 +11,8 @@ from __future__ import annotations
 from .. import kernel
 from cramhy_runtime.ground.condition_types import Error
 from cramhy_runtime.ground.conditions import SimpleError, error, handler_case, type_error, warn
-from cramhy_runtime.ground.data import DoubleFloat, LispString, truth
+from cramhy_runtime.ground.data import LispString, truth
+from cramhy_runtime.ground.floats import ZERO
 from cramhy_runtime.ground.numbers import is_real
 from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.printing import princ_to_string
@@ -28,7 +29,7 @@ from .stamped_messages import from_msg
 
 LOG = ("CL-TF",)
 _KINDS = {"lookup": errors.FrameLookupError, "connectivity": errors.ConnectivityError, "extrapolation": errors.ExtrapolationError}
-NOW = DoubleFloat(0)
+NOW = 0.0
 
 
 class Transformer:
@@ -112,7 +113,7 @@ class TransformListener(Transformer):
         self.prefix = parameters.get_param("~tf_prefix", "")
         self.subscribers = [
             topics.subscribe("/tf", "tf/tfMessage", self.hear),
-            topics.subscribe("/tf_static", "tf/tfMessage", lambda message: self.hear(message, 0.0)),
+            topics.subscribe("/tf_static", "tf/tfMessage", lambda message: self.hear(message, ZERO)),
         ]
 
     def hear(self, message, stamp=None):

@@ -3,8 +3,7 @@
 Conventions: right-handed, metres and radians, quaternions in the order x y z w. A transform with translation t and rotation q
 maps a point p to t + q p q⁻¹, and ``transform_star(a, b)`` applies b first.
 
-The classes `vectors.Vector3`, `quaternions.Quaternion`, `poses.Transform` and `poses.Pose` hold plain Python floats at double
-precision: ``Pose(Vector3(1, 2, 0.1), yaw(DoubleFloat(0.5)))``. The functions with Lisp names (``make_3d_vector``, ``yaw``, readers such
-as ``x``) are the border: to them a plain ``float`` is a Lisp single-float, rounded to 24 bits, as everywhere in cramhy; a
-`DoubleFloat` is taken as it is, and is what they give.
+The classes `vectors.Vector3`, `quaternions.Quaternion`, `poses.Transform` and `poses.Pose` hold plain Python floats:
+``Pose(Vector3(1, 2, 0.1), yaw(0.5))``. The functions with Lisp names (``make_3d_vector``, ``yaw``, readers such as ``x``) take them as
+they are, and give them.
 """

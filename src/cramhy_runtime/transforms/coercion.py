@@ -1,6 +1,6 @@
 """What the functions of cl-transforms accept, and their errors.
 
-A component may be any real: integers, ratios and singles become doubles, a single with the rounding that it has. A point is a
+A component may be any real: integers, ratios and singles become doubles. A point is a
 `Vector3` or a Lisp vector of three numbers; a list is not a point. Source: cl-transforms.md sections 1.1 and 1.2.
 """
 
@@ -14,9 +14,8 @@ from cramhy_runtime.ground.arrays import InvalidArrayIndex, wrong_rank
 from cramhy_runtime.ground.arrays import LispArray
 from cramhy_runtime.ground.condition_types import TypeError_, shown_with
 from cramhy_runtime.ground.conditions import FloatingPointInvalidOperation, SimpleTypeError, error, type_error
-from cramhy_runtime.ground.data import DoubleFloat
-from cramhy_runtime.ground.numbers import is_real, single
-from cramhy_runtime.ground.numbers import too_large_for
+from cramhy_runtime.ground.floats import float_like
+from cramhy_runtime.ground.numbers import is_real, too_large_for
 from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
 from cramhy_runtime.ground.packages import ensure_package, sym
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar
@@ -33,10 +32,9 @@ ensure_package("CL-TRANSFORMS")
 def real(value: Any, parameter: str | None = None) -> float:
     """The real ``value``, given for ``parameter``, as a Python float at double precision."""
     kind = value.__class__
-    if kind is DoubleFloat:
-        return float(value)
     if kind is float:
-        return single(value)
+        plain: float = value
+        return plain
     if kind is int or is_real(value):
         try:
             return float(value)
@@ -67,9 +65,9 @@ def float_argument(value: Any, parameter: str) -> float:
 
 
 def sine_and_cosine(angle: float) -> tuple[float, float]:
-    """Both of an angle in radians, plain floats; of an infinite one they are an error, as in Lisp."""
+    """Both of an angle in radians, plain floats of its precision; of an infinite one they are an error, as in Lisp."""
     try:
-        return math.sin(angle), math.cos(angle)
+        return float(float_like(angle, math.sin(angle))), float(float_like(angle, math.cos(angle)))
     except ValueError:
         return error(FloatingPointInvalidOperation())
 

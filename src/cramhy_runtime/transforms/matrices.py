@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from cramhy_runtime.ground.arrays import LispArray, SimpleArray
+from cramhy_runtime.ground.floats import ZERO
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import DoubleFloat
 
 from .coercion import instance, real, wrong_type
 from .poses import Pose, Transform, make_transform, pose_to_transform
@@ -48,7 +48,7 @@ def _rotation_rows(components):
 def quaternion_to_matrix(q):
     """The 3 by 3 rotation matrix."""
     instance(q, Quaternion, "Q")
-    return _matrix([[DoubleFloat(item) for item in row] for row in _rotation_rows(q._components)])
+    return _matrix([list(row) for row in _rotation_rows(q._components)])
 
 
 def matrix_to_quaternion(matrix):
@@ -73,11 +73,8 @@ def _quaternion_of(rows):
 def transform_to_matrix(transform):
     """The 4 by 4 matrix; its last row is three singles and an integer, as in the original."""
     instance(transform, Transform, "TRANSFORM")
-    rows = [
-        [*map(DoubleFloat, row), DoubleFloat(moved)]
-        for row, moved in zip(_rotation_rows(general(transform.rotation)), point(transform.translation))
-    ]
-    return _matrix([*rows, [0.0, 0.0, 0.0, 1]])
+    rows = [[*row, moved] for row, moved in zip(_rotation_rows(general(transform.rotation)), point(transform.translation))]
+    return _matrix([*rows, [ZERO, ZERO, ZERO, 1]])
 
 
 def pose_to_matrix(pose):

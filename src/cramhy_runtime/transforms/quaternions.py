@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 
 from cramhy_runtime.ground.conditions import FloatingPointInvalidOperation, SimpleError, error
-from cramhy_runtime.ground.data import Cons, DoubleFloat, MultipleValues, list_from
-from cramhy_runtime.ground.numbers import is_real, single
+from cramhy_runtime.ground.data import Cons, MultipleValues, list_from
+from cramhy_runtime.ground.floats import ZERO, float_like, literal_float, result_class
+from cramhy_runtime.ground.numbers import is_real
 from cramhy_runtime.ground.packages import keyword, sym
 
 from .coercion import (
@@ -44,7 +45,7 @@ class Quaternion(ByValue):
 
     lisp_name = "CL-TRANSFORMS::QUATERNION"
     initargs = {"X": "x", "Y": "y", "Z": "z", "W": "w"}
-    kind: type[float] = DoubleFloat
+    kind: type[float] = float
     x, y, z, w = component(0), component(1), component(2), component(3)
     components: Four = part("components", "The components, plain floats.")
     _components: Four
@@ -86,16 +87,11 @@ def _made(components: Any, *sources: Rotation) -> Quaternion:
     """A quaternion of ``components``: of singles if no source has a double, as the original's arithmetic gives."""
     result = quaternion(components)
     for source in sources:
-        if source.__class__ is Quaternion and source.kind is DoubleFloat or _has_double(source):
+        kind = source.kind if isinstance(source, Quaternion) else result_class(*(elements(source, 4) or [source]))
+        if kind is float:
             return result
-    result.kind = float
+    result.kind = kind
     return result
-
-
-def _has_double(source: Any) -> bool:
-    if isinstance(source, Quaternion):
-        return source.kind is DoubleFloat
-    return any(isinstance(item, DoubleFloat) for item in elements(source, 4) or [source])
 
 
 def _numbers(q: Rotation) -> list[float]:
@@ -103,7 +99,7 @@ def _numbers(q: Rotation) -> list[float]:
     if isinstance(q, Quaternion):
         return [q.kind(component) for component in q._components]
     general(q)
-    return [0.0, 0.0, 0.0, q] if is_real(q) else elements(q, 4)
+    return [ZERO, ZERO, ZERO, q] if is_real(q) else elements(q, 4)
 
 
 def make_quaternion(x: float, y: float, z: float, w: float) -> Quaternion:
@@ -157,7 +153,7 @@ def q_eq(q1: Rotation, q2: Rotation) -> bool | None:
 def q_star(*args: Rotation) -> Quaternion:
     """``q*``: the product; without arguments the number 1.0."""
     if not args:
-        return 1.0
+        return literal_float(1.0)
     product = general(args[-1])
     for q in args[-2::-1]:
         product = multiply(general(q), product)
@@ -181,7 +177,7 @@ def q_inv(q: Rotation) -> Quaternion:
 def q_plus(*args: Rotation) -> Quaternion:
     """``q+``: the sum; without arguments the number 0.0."""
     if not args:
-        return 0.0
+        return ZERO
     return _made(tuple(map(sum, zip(*map(general, args)))), *args)
 
 
@@ -214,7 +210,7 @@ def squared_norm(q: Rotation) -> float:
 def q_norm(q: Rotation) -> float:
     """The root of the sum of the squares of the components."""
     square = q_dot(q, q)
-    return DoubleFloat(math.sqrt(square)) if isinstance(square, DoubleFloat) else math.sqrt(square)
+    return result_class(square)(math.sqrt(square))
 
 
 def normalized(q: Rotation) -> bool:
@@ -234,7 +230,7 @@ def normalize(q: Rotation) -> Quaternion:
     norm = math.sqrt(sum(component * component for component in components))
     if norm < TOLERANCE:
         return error(
-            SimpleError("Attempted to normalize quaternion ~a with norm ~a", q, DoubleFloat(norm)),
+            SimpleError("Attempted to normalize quaternion ~a with norm ~a", q, norm),
             hint="A message that nobody filled in has the orientation (0 0 0 0), which is no rotation; "
             "(make-identity-rotation) is the one that turns nothing.",
         )
@@ -259,27 +255,19 @@ def axis_angle_to_quaternion(axis: Place, angle: float) -> Quaternion:
             return error("Can't normalize ~a", axis)
         factor = 1 / math.sqrt(square)
         ax, ay, az = ax * factor, ay * factor, az * factor
-    half = float(angle) / 2
-    sine, cosine = sine_and_cosine(half)
-    if not isinstance(angle, DoubleFloat):  # a single gives the sine of a single
-        sine, cosine = single(sine), single(cosine)
+    sine, cosine = sine_and_cosine(angle / 2)
     return quaternion((ax * sine, ay * sine, az * sine, cosine))
 
 
 def quaternion_to_axis_angle(q: Rotation) -> tuple[Vector3, float]:
     """Values: the vector part, which is not of unit length, and the angle in [0, 2 pi]."""
     qx, qy, qz, qw = general(q)
-    return MultipleValues((vector((qx, qy, qz)), DoubleFloat(2 * math.acos(max(-1.0, min(1.0, qw))))))
+    return MultipleValues((vector((qx, qy, qz)), 2 * math.acos(max(-1.0, min(1.0, qw)))))
 
 
-def euler_to_quaternion(*, ax: float = 0.0, ay: float = 0.0, az: float = 0.0) -> Quaternion:
+def euler_to_quaternion(*, ax: float = ZERO, ay: float = ZERO, az: float = ZERO) -> Quaternion:
     """The rotation by roll ``ax``, then pitch ``ay``, then yaw ``az`` about the fixed axes, in radians."""
-
-    def halves(angle):
-        sine, cosine = sine_and_cosine(real(angle) / 2)
-        return (sine, cosine) if isinstance(angle, DoubleFloat) else (single(sine), single(cosine))
-
-    (sx, cx), (sy, cy), (sz, cz) = halves(ax), halves(ay), halves(az)
+    (sx, cx), (sy, cy), (sz, cz) = (sine_and_cosine(float_like(angle, real(angle) / 2)) for angle in (ax, ay, az))
     return quaternion((sx * cy * cz - cx * sy * sz, cx * sy * cz + sx * cy * sz, cx * cy * sz - sx * sy * cz, cx * cy * cz + sx * sy * sz))
 
 
@@ -288,14 +276,14 @@ def quaternion_to_euler(q: Rotation, *, just_values: bool | None = None) -> Cons
     qx, qy, qz, qw = general(q)
     sine = qw * qy - qz * qx
     if abs(sine - 0.5) < 1e-5:
-        angles = (0, DoubleFloat(math.pi / 2), DoubleFloat(-2 * math.atan2(qx, qw)))
+        angles = (0, math.pi / 2, -2 * math.atan2(qx, qw))
     elif abs(sine + 0.5) < 1e-5:
-        angles = (0, DoubleFloat(-math.pi / 2), DoubleFloat(2 * math.atan2(qx, qw)))
+        angles = (0, -math.pi / 2, 2 * math.atan2(qx, qw))
     else:
         angles = (
-            DoubleFloat(math.atan2(2 * (qw * qx + qy * qz), 1 - 2 * (qx * qx + qy * qy))),
-            DoubleFloat(math.asin(max(-1.0, min(1.0, 2 * sine)))),
-            DoubleFloat(math.atan2(2 * (qx * qy + qw * qz), 1 - 2 * (qy * qy + qz * qz))),
+            math.atan2(2 * (qw * qx + qy * qz), 1 - 2 * (qx * qx + qy * qy)),
+            math.asin(max(-1.0, min(1.0, 2 * sine))),
+            math.atan2(2 * (qx * qy + qw * qz), 1 - 2 * (qy * qy + qz * qz)),
         )
     if just_values is not None:
         return list_from(angles)
@@ -305,7 +293,7 @@ def quaternion_to_euler(q: Rotation, *, just_values: bool | None = None) -> Cons
 def get_yaw(q: Rotation) -> float:
     """The heading of a rotation, in radians."""
     qx, qy, qz, qw = general(q)
-    return DoubleFloat(math.atan2(2 * (qx * qy + qw * qz), qw * qw + qx * qx - qy * qy - qz * qz))
+    return math.atan2(2 * (qx * qy + qw * qz), qw * qw + qx * qx - qy * qy - qz * qz)
 
 
 _Z = Vector3(0.0, 0.0, 1.0)
@@ -359,7 +347,7 @@ def normalize_angle(angle: float) -> float:
         value += 2 * math.pi
     while value > math.pi:
         value -= 2 * math.pi
-    return DoubleFloat(value)
+    return value
 
 
 _MANY_TURNS = 1e5

@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 
 from cramhy_runtime.ground.conditions import DivisionByZero, error, wrong_argument_count
-from cramhy_runtime.ground.data import Cons, DoubleFloat
+from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.ground.floats import ZERO, result_class
 from cramhy_runtime.ground.numbers import is_real
 from cramhy_runtime.ground.packages import sym
 
@@ -34,14 +35,14 @@ class Vector3(ByValue):
     def __init__(self, x: float = 0.0, y: float = 0.0, z: float = 0.0):
         self._components: Three = (float(x), float(y), float(z))
 
-    def component(self, index: int) -> DoubleFloat:
-        return DoubleFloat(self._components[index])
+    def component(self, index: int) -> float:
+        return self._components[index]
 
     def __iter__(self) -> Iterator[float]:
         return iter(self._components)
 
     def __repr__(self) -> str:
-        return "#<3D-VECTOR ({}d0 {}d0 {}d0)>".format(*self._components)
+        return "#<3D-VECTOR ({} {} {})>".format(*self._components)
 
 
 def vector(components: Three) -> Vector3:
@@ -82,13 +83,13 @@ def copy_3d_vector(v: Vector3, *, x: float | None = None, y: float | None = None
 def _reader(index: int, letter: str) -> Callable[[object], float]:
     def read(obj: Any) -> float:
         if obj.__class__ is Vector3:
-            return DoubleFloat(obj._components[index])
+            return obj._components[index]
         if hasattr(obj, "_components"):  # a quaternion, or a vector of another kind
             return obj.component(index)
         found = element(obj, index)
         if found is not None:
             return found
-        return 0.0 if is_real(obj) else no_method(letter, obj)
+        return ZERO if is_real(obj) else no_method(letter, obj)
 
     read.__name__ = letter
     read.__doc__ = f"The {letter} of a vector, quaternion or array; 0.0 of a number."
@@ -158,7 +159,7 @@ def dot_product(v_1: Place, v_2: Place) -> float:
     """The scalar product of two points; an integer for integer arrays, a double for vectors."""
     if isinstance(v_1, Vector3) and isinstance(v_2, Vector3):
         (ax, ay, az), (bx, by, bz) = v_1._components, v_2._components
-        return DoubleFloat(ax * bx + ay * by + az * bz)
+        return ax * bx + ay * by + az * bz
     return sum(a * b for a, b in zip(_numbers(v_1, "V-1"), _numbers(v_2, "V-2")))
 
 
@@ -171,7 +172,7 @@ def cross_product(v_1: Place, v_2: Place) -> Vector3:
 def v_norm(v: Place) -> float:
     """The length of a point; a double for vectors, a single for arrays of integers."""
     square = dot_product(v, v)
-    return DoubleFloat(math.sqrt(square)) if isinstance(square, DoubleFloat) else math.sqrt(square)
+    return result_class(square)(math.sqrt(square))
 
 
 def v_dist(v_1: Place, v_2: Place) -> float:
@@ -179,7 +180,7 @@ def v_dist(v_1: Place, v_2: Place) -> float:
     for v in (v_1, v_2):
         if not isinstance(v, Vector3) and elements(v, 3) is None:
             return no_method("x", v)
-    return DoubleFloat(math.dist(point(v_1), point(v_2)))
+    return math.dist(point(v_1), point(v_2))
 
 
 def normalize_vector(v: Place) -> Vector3:

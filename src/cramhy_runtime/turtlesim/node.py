@@ -12,7 +12,6 @@ from weakref import WeakKeyDictionary
 
 from .. import kernel
 from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.data import DoubleFloat
 from ..ros import graph, rosout, wire
 from ..ros.messages import message_class, service_type
 from ..ros.names import check_graph_name
@@ -34,7 +33,6 @@ if TYPE_CHECKING:
 
 
 BACKGROUND = (("background_r", 69), ("background_g", 86), ("background_b", 255))
-_double = DoubleFloat
 
 
 class Inhabitant:
@@ -104,7 +102,7 @@ class Inhabitant:
             x, y, heading, speed, turn = self.turtle.pose()
             total = x + y + heading + speed + turn
             if total - total == 0.0:  # all are finite
-                message = simulator.pose_type(_double(x), _double(y), _double(heading), _double(speed), _double(turn))
+                message = simulator.pose_type(x, y, heading, speed, turn)
             else:
                 message = simulator.pose_type(*(wire.lisp_float(value) for value in (x, y, heading, speed, turn)))
             self.pose.send(message)

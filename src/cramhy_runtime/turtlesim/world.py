@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import struct
 
-from cramhy_runtime.ground.numbers import single
+from cramhy_runtime.ground.floats import to_float32
 from .dimensions import EXTENT
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
@@ -152,7 +152,7 @@ class Turtle:
             try:
                 self._pose = _five_singles.unpack(_five_singles.pack(*values))
             except OverflowError:
-                self._pose = tuple(single(value) for value in values)
+                self._pose = tuple(to_float32(value) for value in values)
         return self._pose  # type: ignore[return-value]  # of five
 
     def colour(self) -> Colour:

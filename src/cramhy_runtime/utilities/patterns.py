@@ -17,7 +17,6 @@ from cramhy_runtime.ground.conditions import error, type_error, warn
 from cramhy_runtime.ground.data import (
     TRUE_CLASSES,
     Cons,
-    DoubleFloat,
     Keyword,
     LispString,
     MultipleValues,
@@ -40,7 +39,7 @@ ANONYMOUS_SEGMENT = CUT.intern("!?_")
 _counter = itertools.count(1)
 
 
-_COMPARED_BY_LISP = (TRUE_CLASSES | {DoubleFloat} | equality.EQUAL_TO_THEMSELVES) - {bytes, tuple}
+_COMPARED_BY_LISP = (TRUE_CLASSES | equality.EQUAL_TO_THEMSELVES) - {bytes, tuple}
 """Classes whose objects only ``equal`` compares, though Python finds more of them equal: ``True`` and 1, ``0.0`` and ``-0.0``."""
 
 

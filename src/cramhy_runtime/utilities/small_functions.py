@@ -13,7 +13,7 @@ import re
 from cramhy_runtime import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.conditions import Error, SimpleStyleWarning, error, type_error, warn
-from cramhy_runtime.ground.data import Cons, DoubleFloat, MultipleValues, Symbol, list_from, one, python_list, truth
+from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, list_from, one, python_list, truth
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.equality import eql
 from cramhy_runtime.ground.functions import function_of, identity
@@ -78,11 +78,11 @@ TIMESTAMP_FUNCTION = special(sym("CUT::*TIMESTAMP-FUNCTION*"))
 def current_timestamp(what_time=None):
     """Seconds as a double, from ``*timestamp-function*``; with ``:real`` the kernel's clock, with ``:run`` the time that was computed."""
     if what_time is RUN:
-        return DoubleFloat(round(os.times().user, 6))
+        return float(round(os.times().user, 6))
     if what_time not in (None, REAL):
         return type_error(what_time, "(MEMBER :REAL :RUN)")
     function = TIMESTAMP_FUNCTION.value if what_time is None else None
-    return DoubleFloat(kernel.now()) if function is None else one(function_of(function)())
+    return float(kernel.now()) if function is None else one(function_of(function)())
 
 
 def set_timestamp_function(fn):
@@ -97,7 +97,7 @@ def set_default_timestamp_function():
 def microsecond_timestamp_function(*, relative=None):
     """A function that gives seconds to the microsecond, since 1970 or, with ``relative``, since now."""
     start = kernel.now() if truth(relative) else -kernel.active().epoch
-    return lambda: DoubleFloat(round(kernel.now() - start, 6))
+    return lambda: float(round(kernel.now() - start, 6))
 
 
 def current_string_timestamp():

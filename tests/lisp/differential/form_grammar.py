@@ -14,7 +14,7 @@ from pathlib import Path
 from random import Random
 
 CHAPTERS = Path(__file__).parent / "chapters"
-NAMES = "objects structures types strings sequences printer reader".split()
+NAMES = "objects structures types strings sequences printer reader floats".split()
 HOLE = re.compile(r'\{("?)([a-z][a-z0-9-]*)([*+?]?)\}')
 ALTERNATIVE = re.compile(r"(?:([a-z][a-z0-9-]*) =|\|)(?: (?:(\d+)\|(?: |$))?(.*))?$")
 WRITTEN = {"newline": "\n", "space": " "}

@@ -5,7 +5,7 @@ from math import pi
 from typing import Any, assert_type
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, lisp_list
+from cramhy_runtime.ground.data import Cons, Keyword, lisp_list
 from cramhy_runtime.ground.packages import keyword
 from cramhy_runtime.repl.session import Session
 from cramhy_runtime.session import Image, fresh_start
@@ -73,7 +73,7 @@ def the_simulator() -> None:
 
 
 def geometry() -> None:
-    turtle = Pose(Vector3(1, 1, 0), yaw(DoubleFloat(pi / 2)))
+    turtle = Pose(Vector3(1, 1, 0), yaw(float(pi / 2)))
     x, y, z = transform_point(transform_inv(pose_to_transform(turtle)), Vector3(2, 1, 0))
     assert_type(x, float)
     assert_type(turtle.orientation, Quaternion)

@@ -15,7 +15,7 @@ and all nets of this shape share its code (``utilities/generated_functions.py``)
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import TRUE_CLASSES, one, plain_truth, truth
+from cramhy_runtime.ground.data import FLOATS, TRUE_CLASSES, one, plain_truth, truth
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.utilities.generated_functions import generated_function
 from .fluents import Fluent
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 FLUENT, NUMBER, OTHER = "fno"
 TRUE = "{0} is not None and {0} is not False and ({0}.__class__ in TRUE_CLASSES or truth({0}))"
 """The question `truth` in place, for a variable."""
-NUMBERS = (int, float)
+NUMBERS = (int, *FLOATS)
 """The kinds whose arithmetic and order are Python's, also between one and the other."""
 MOST = 1000  # makers that are kept; a program needs a few dozen
 _makers: dict[tuple[Any, ...], Callable[..., Formula]] = {}

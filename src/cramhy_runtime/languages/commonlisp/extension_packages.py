@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from cramhy_runtime.ground import hash_tables
-from cramhy_runtime.ground.data import DoubleFloat
+from cramhy_runtime.ground.floats import SingleFloat
 from .evaluation import environment
 from .packages.face_definition import define_face
 from .files import files
@@ -22,7 +22,7 @@ from .packages import package_functions
 INFINITIES = {
     f"{kind}-float-{sign}-infinity": value
     for sign, infinity in (("positive", math.inf), ("negative", -math.inf))
-    for kind, value in (("short", infinity), ("single", infinity), ("double", DoubleFloat(infinity)), ("long", DoubleFloat(infinity)))
+    for kind, value in (("short", SingleFloat(infinity)), ("single", SingleFloat(infinity)), ("double", infinity), ("long", infinity))
 }
 """Constants of SB-EXT: what the printer writes for numbers without end must be read back."""
 

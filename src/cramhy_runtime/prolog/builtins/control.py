@@ -12,7 +12,7 @@ the choice point stack at which the enclosing clause or query was entered, and t
 from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol, list_from
+from cramhy_runtime.ground.data import FLOATS, Cons, Keyword, Symbol, list_from
 
 from ..engine import database
 from ..engine.database import arguments_of, find_predicate, handled, undefined_step, valid_functor
@@ -22,7 +22,7 @@ from .native_predicates import refuse_count
 from ..symbols import sym
 from ..terms.terms import UNSET, Restore, TermTail, Var, copy_term, deref, raw, undo, unify, unset_variables
 
-_PLAIN = frozenset([Symbol, Keyword, int, str, float, DoubleFloat])
+_PLAIN = frozenset([Symbol, Keyword, int, str, *FLOATS])
 
 CONTROL: dict = {}
 """Functor → control function. `extend` replaces it while users have facts for the functor."""

@@ -12,9 +12,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
-from cramhy_runtime.ground.data import list_end
+from cramhy_runtime.ground.data import FLOATS, list_end
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol, list_from, list_parts, one, python_list, truth
+from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from, list_parts, one, python_list, truth
 from cramhy_runtime.ground.equality import eql_key, equal_key
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.printing import define_printer, output_object, print_unreadable
@@ -36,7 +36,7 @@ object_id = generic(
 )
 object_id.method(object)(lambda obj: obj)
 
-_ATOMS = frozenset([Symbol, Keyword, int, str, float, DoubleFloat, bool, type(None)])
+_ATOMS = frozenset([Symbol, Keyword, int, str, *FLOATS, bool, type(None)])
 _plain = Cell(_ATOMS)  # the classes whose objects are their own identity
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol
+from cramhy_runtime.ground.data import FLOATS, Cons, Keyword, Symbol
 from cramhy_runtime.ground.equality import equal_key
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.utilities.generated_functions import generated_function
@@ -33,7 +33,7 @@ _CONSES = 40
 _SHAPES = 50
 """The number of shapes that the rows of one key are sorted by."""
 _CONS, _ATOM, _UNKNOWN = "c", "a", "?"
-_BY_VALUE = frozenset([int, str, float, DoubleFloat])
+_BY_VALUE = frozenset([int, str, *FLOATS])
 
 
 def index_key(atom: Any) -> Any:

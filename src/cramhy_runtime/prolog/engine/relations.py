@@ -15,7 +15,7 @@ from collections import defaultdict
 from functools import lru_cache
 from itertools import islice
 
-from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol
+from cramhy_runtime.ground.data import FLOATS, Cons, Keyword, Symbol
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.utilities.generated_functions import generated_function
 
@@ -38,7 +38,7 @@ _MANY = 1000
 """So many rows are worth a look through the columns instead of a table, when somebody asks for the first time."""
 _SAMPLE = 500
 """So many rows are looked at in order to guess whether each has a key of its own."""
-_CONSTANTS = {int, str, float, DoubleFloat, type(None), bool}
+_CONSTANTS = {int, str, *FLOATS, type(None), bool}
 """The kinds of atoms that are never variables."""
 
 

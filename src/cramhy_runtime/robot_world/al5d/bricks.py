@@ -5,7 +5,6 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from ...ground.data import DoubleFloat
 from ...ros.messages import message_class_exact, service_type_exact
 from ...ros.services import Refusal
 from ...ros.wire import as_float
@@ -59,7 +58,7 @@ class Brick:
 
     def pose(self) -> RosMessage:
         """Where it is, as a message."""
-        x, y, z, roll, pitch, yaw = map(DoubleFloat, self.where())
+        x, y, z, roll, pitch, yaw = map(float, self.where())
         message = self.pose_type()
         message.position.x, message.position.y, message.position.z = x, y, z
         message.orientation.roll, message.orientation.pitch, message.orientation.yaw = roll, pitch, yaw

@@ -5,7 +5,6 @@ from __future__ import annotations
 from math import tan
 from typing import TYPE_CHECKING
 
-from ...ground.data import DoubleFloat
 from ...ros.messages import message_class_exact
 from ..descriptions import Frame
 from . import model
@@ -20,7 +19,7 @@ CAMERA_FRAME = "camera_link"
 _CAMERA = Frame(model.CAMERA, (0.0, 1.0, 0.0, 0.0))
 
 
-def frames(positions: Sequence[float], stamp: DoubleFloat) -> RosMessage:
+def frames(positions: Sequence[float], stamp: float) -> RosMessage:
     """The message with the frame of each link in that of the link before it. positions: those of `model.JOINTS`, in rad and m."""
     known, robot = model.positions(tuple(positions)), model.described()
     root = next(iter(robot.links))
@@ -28,7 +27,7 @@ def frames(positions: Sequence[float], stamp: DoubleFloat) -> RosMessage:
     return message_class_exact("tf2_msgs/TFMessage")([_stamped(*each, stamp) for each in (*placed, (root, CAMERA_FRAME, _CAMERA))])
 
 
-def _stamped(parent: str, child: str, frame: Frame, stamp: DoubleFloat) -> RosMessage:
+def _stamped(parent: str, child: str, frame: Frame, stamp: float) -> RosMessage:
     header, vector, quaternion, transform, stamped = (
         message_class_exact(f"{package}/{name}")
         for package, name in (
@@ -39,8 +38,8 @@ def _stamped(parent: str, child: str, frame: Frame, stamp: DoubleFloat) -> RosMe
             ("geometry_msgs", "TransformStamped"),
         )
     )
-    w, *rest = map(DoubleFloat, frame.rotation)
-    place = transform(vector(*map(DoubleFloat, frame.position)), quaternion(*rest, w))
+    w, *rest = map(float, frame.rotation)
+    place = transform(vector(*map(float, frame.position)), quaternion(*rest, w))
     return stamped(header(seq=0, stamp=stamp, frame_id=parent), child, place)
 
 
@@ -56,5 +55,5 @@ def camera_info(header: RosMessage) -> RosMessage:
         height=model.HEIGHT,
         width=model.WIDTH,
         distortion_model="plumb_bob",
-        **{name: list(map(DoubleFloat, values)) for name, values in numbers.items()},
+        **{name: list(map(float, values)) for name, values in numbers.items()},
     )

@@ -21,7 +21,6 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from ...ground.data import DoubleFloat
 from ...ros import rosout
 from ...ros.messages import message_class_exact, service_type_exact
 from ...ros.names import check_graph_name
@@ -114,14 +113,14 @@ class Simulator(Program):
         return (*arm, 2 * finger)
 
     def _header(self, frame: str = "") -> RosMessage:
-        return self.header_type(seq=0, stamp=DoubleFloat(self.graph.now()), frame_id=frame)
+        return self.header_type(seq=0, stamp=float(self.graph.now()), frame_id=frame)
 
     def _states(self) -> RosMessage:
-        positions, velocities, efforts = (list(map(DoubleFloat, numbers)) for numbers in self.bench.states())
+        positions, velocities, efforts = (list(map(float, numbers)) for numbers in self.bench.states())
         return self.states_type(self._header(), list(model.JOINTS), positions, velocities, efforts)
 
     def _frames(self) -> RosMessage:
-        return frames(self.bench.states()[0], DoubleFloat(self.graph.now()))
+        return frames(self.bench.states()[0], float(self.graph.now()))
 
     def _image(self) -> RosMessage:
         now = self.bench.moment

@@ -16,7 +16,7 @@ from typing import Any
 
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import DoubleFloat, one
+from cramhy_runtime.ground.data import one
 from cramhy_runtime.ground.numbers import is_real
 
 from .arrays import np
@@ -63,7 +63,7 @@ class FunctionCostmapGenerator(CostmapGenerator):
         if isinstance(self.generator_function, Cost):
             return matrix * self.generator_function.over(metadata.xs(), metadata.ys())
         function, result = self.generator_function, matrix.copy()
-        xs, ys = [[DoubleFloat(value) for value in axis.ravel().tolist()] for axis in (metadata.xs(), metadata.ys())]
+        xs, ys = [[float(value) for value in axis.ravel().tolist()] for axis in (metadata.xs(), metadata.ys())]
         for row, y in enumerate(ys):
             columns = np.flatnonzero(result[row]).tolist()
             if columns:
@@ -177,7 +177,7 @@ class LocationCostmap(GridMetadata):
     def value(self, x: float, y: float) -> float:
         """The value of the cell at ``x`` and ``y``; 0 outside of the grid."""
         values, cell = self.values(), self.cell(x, y)
-        return DoubleFloat(0) if cell is None else DoubleFloat(values[cell])
+        return 0.0 if cell is None else float(values[cell])
 
     @property
     def maximum(self) -> float:

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from cramhy_runtime.ground.data import DoubleFloat
 
 from .arrays import np
 from .grids import GridMetadata, OccupancyGrid
@@ -24,7 +23,7 @@ class Cost:
 
     def __call__(self, x: float, y: float) -> float:
         values = self.over(np.array([[float(x)]]), np.array([[float(y)]]))
-        return DoubleFloat(float(values.flat[0]))
+        return float(values.flat[0])
 
 
 class Gauss(Cost):
@@ -68,7 +67,7 @@ class AxisBoundary(Cost):
     def over(self, xs: Any, ys: Any) -> Any:
         """The predicate is asked once for each row or column."""
         coordinates = xs if self.axis == "x" else ys
-        holds = [float(bool(self.predicate(DoubleFloat(value), self.boundary))) for value in coordinates.ravel().tolist()]
+        holds = [float(bool(self.predicate(float(value), self.boundary))) for value in coordinates.ravel().tolist()]
         return np.array(holds).reshape(coordinates.shape)
 
 

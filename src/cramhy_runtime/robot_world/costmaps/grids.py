@@ -11,7 +11,6 @@ from typing import Any
 
 from cramhy_runtime.ground.condition_types import TypeError_
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import DoubleFloat
 from cramhy_runtime.ground.numbers import is_real
 
 from .arrays import np
@@ -54,9 +53,9 @@ class GridMetadata:
     def __init__(
         self, *, width: Any = None, height: Any = None, origin_x: Any = 0.0, origin_y: Any = 0.0, resolution: Any = None, **others: Any
     ):
-        self.width, self.height = DoubleFloat(metres(width, "WIDTH")), DoubleFloat(metres(height, "HEIGHT"))
-        self.origin_x, self.origin_y = DoubleFloat(metres(origin_x, "ORIGIN-X")), DoubleFloat(metres(origin_y, "ORIGIN-Y"))
-        self.resolution = DoubleFloat(metres(resolution, "RESOLUTION"))
+        self.width, self.height = float(metres(width, "WIDTH")), float(metres(height, "HEIGHT"))
+        self.origin_x, self.origin_y = float(metres(origin_x, "ORIGIN-X")), float(metres(origin_y, "ORIGIN-Y"))
+        self.resolution = float(metres(resolution, "RESOLUTION"))
         if not (self.width > 0 and self.height > 0 and self.resolution > 0):
             error("A grid of ~a by ~a m with cells of ~a m has no cells.", self.width, self.height, self.resolution)
         if not self.width / self.resolution * (self.height / self.resolution) <= MOST_CELLS:
@@ -187,7 +186,7 @@ class ValueMap(GridMetadata):
 
     def lookup(self, x: float, y: float) -> Any:
         """The value of the cell at ``x`` and ``y``; outside of the grid it is an error."""
-        return self.values.get(self._cell_or_error(x, y), DoubleFloat(0))
+        return self.values.get(self._cell_or_error(x, y), 0.0)
 
     def set(self, x: float, y: float, value: Any) -> Any:
         """Set the value of the cell at ``x`` and ``y``; outside of the grid it is an error. Returns ``value``."""

@@ -6,14 +6,13 @@ prints the same stamps. Source: roslisp.md 9.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import DoubleFloat
 from .. import graph
 
 
 def ros_time() -> float:
-    """The time in seconds since 1970, a double. Under simulated time: the last ``/clock``, or single 0.0 before the first."""
+    """The time in seconds since 1970, a double. Under simulated time: the last ``/clock``, or 0.0 before the first."""
     here = graph.active()
     node = here.lisp_node
     if node is not None and getattr(node, "simulated_time", None) is not None:
         return node.simulated_time
-    return DoubleFloat(here.now())
+    return float(here.now())

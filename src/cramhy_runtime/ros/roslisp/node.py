@@ -15,6 +15,7 @@ from cramhy_runtime.ground.data import Cons, LispString, Symbol, python_list, tr
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.hash_tables import HashTable
 from cramhy_runtime.ground.output import standard_output
+from cramhy_runtime.ground.floats import literal_float
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.printing import princ_to_string
 from cramhy_runtime.utilities.wait_queue import need
@@ -168,7 +169,7 @@ def _connect_services(node: graph.Node) -> None:
     rosout.join(node, ROSOUT_DELAY)
     tree = node.graph.parameters
     if tree.has("/use_sim_time") and tree.get("/use_sim_time") in (True, 1, "true", "T"):
-        node.simulated_time = 0.0
+        node.simulated_time = literal_float(0.0)
 
         def tick(message):
             node.simulated_time = message.clock

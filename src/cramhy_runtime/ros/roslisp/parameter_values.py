@@ -1,7 +1,7 @@
 """Convert Lisp values to parameters and back, as XML-RPC does, but without the text.
 
 Symbols become their names, lists and vectors become arrays, structs become dictionaries. On the way back, floats become
-single-floats, arrays lists, and false NIL. An integer has 32 bits. Source: roslisp.md 8, xmlrpc.com/spec.
+those of Lisp's literals, arrays lists, and false NIL. An integer has 32 bits. Source: roslisp.md 8, xmlrpc.com/spec.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from fractions import Fraction
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import SimpleError, shown
 from cramhy_runtime.ground.data import Cons, LispString, Symbol, list_from
+from cramhy_runtime.ground.floats import literal_float
 from cramhy_runtime.ground.packages import symbol_name
 from .structs import Struct
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn
@@ -70,4 +71,4 @@ def decode(value: Parameter) -> Any:
         return list_from([decode(element) for element in value])
     if isinstance(value, dict):
         return Struct({name: decode(element) for name, element in value.items()})
-    return value
+    return literal_float(value) if value.__class__ is float else value

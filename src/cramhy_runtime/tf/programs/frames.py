@@ -13,7 +13,6 @@ import math
 from ... import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import Error, SimpleError
-from cramhy_runtime.ground.data import DoubleFloat
 from ...ros import rosout
 from ...ros.messages import message_class
 from ...ros.roscpp import Program, anonymous, plain_words
@@ -143,7 +142,7 @@ class StaticTransformPublisher(Program):
     @staticmethod
     def _rotation(*numbers: float) -> Quaternion:
         if len(numbers) == 3:
-            yaw, pitch, roll = map(DoubleFloat, numbers)
+            yaw, pitch, roll = map(float, numbers)
             return euler_to_quaternion(ax=roll, ay=pitch, az=yaw)
         length = math.hypot(*numbers)
         return make_quaternion(*(number / length for number in numbers))

@@ -14,7 +14,6 @@ from math import isfinite
 from ... import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.data import DoubleFloat
 from ...robot_world import urdf_parts
 from ...robot_world.description_files import read_text
 from ...robot_world.descriptions import Description, DescriptionError, Joint
@@ -205,5 +204,5 @@ class JointStatePublisher(Program):
     def _send(self) -> None:
         joints = [(joint.name, self.robot.position(joint, self.places)) for joint in self.robot.moving]
         known = [(name, place) for name, place in joints if place is not None]
-        header = self.header(seq=0, stamp=DoubleFloat(self.graph.now()), frame_id="")
-        self.publication.publish(self.type(header, [name for name, _ in known], [DoubleFloat(place) for _, place in known], [], []))
+        header = self.header(seq=0, stamp=float(self.graph.now()), frame_id="")
+        self.publication.publish(self.type(header, [name for name, _ in known], [place for _, place in known], [], []))

@@ -13,7 +13,6 @@ import math
 from ... import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.data import DoubleFloat
 from ...ros import rosout, wire
 from ...ros.messages import message_class
 from ...ros.roscpp import Program, plain_words
@@ -70,7 +69,7 @@ class Broadcaster(Program):
     def _tell(self, pose: RosMessage) -> None:
         x, y, heading = (wire.as_float(value) for value in pose.values()[:3])
         if math.isfinite(x + y + heading):
-            transform = Transform(make_3d_vector(x, y, 0.0), euler_to_quaternion(az=DoubleFloat(heading)))
+            transform = Transform(make_3d_vector(x, y, 0.0), euler_to_quaternion(az=float(heading)))
             self.sender.send("world", self.turtle, self.graph.now(), transform)
 
 

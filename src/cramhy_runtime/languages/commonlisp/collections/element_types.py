@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Symbol, lisp_list
+from cramhy_runtime.ground.data import Character, Cons, Symbol, lisp_list
+from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.arrays import BASE_CHAR, BIT, CHARACTER, STRING_KINDS
 
@@ -98,14 +99,14 @@ def initial_element(element_type):
     if element_type in STRING_KINDS:
         return Character("\0")
     if element_type is _SINGLE:
-        return 0.0
+        return SingleFloat(0.0)
     if element_type is _DOUBLE:
-        return DoubleFloat(0.0)
+        return 0.0
     return 0
 
 
 def check_element(element, element_type, context=None):
-    """``element`` if it may stand in an array of the upgraded type, else a type-error. Floats of both kinds pass as either."""
+    """``element`` if it may stand in an array of the upgraded type, else a type-error."""
     if element_type is True:
         return element
     if element_type is CHARACTER:
@@ -116,8 +117,10 @@ def check_element(element, element_type, context=None):
         fits = False
     elif element_type is BIT:
         fits = element.__class__ is int and 0 <= element <= 1
-    elif element_type is _SINGLE or element_type is _DOUBLE:
-        fits = isinstance(element, float)
+    elif element_type is _SINGLE:
+        fits = element.__class__ is SingleFloat
+    elif element_type is _DOUBLE:
+        fits = isinstance(element, float) and element.__class__ is not SingleFloat
     else:
         fits = element.__class__ is int and _in_range(element, element_type)
     if not fits:

@@ -14,7 +14,8 @@ from cramhy_runtime.ground.arrays import LispArray, SimpleArray, TypedVector, Ve
 from cramhy_runtime.ground.catching import Case
 from cramhy_runtime.ground.keyword_calls import KeywordCalls
 from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, LispString, Symbol, all_values
+from cramhy_runtime.ground.data import Character, Cons, LispString, Symbol, all_values
+from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.packages import Package
 from ..format.format_pieces import Piece
 from ..numbers.complex_numbers import parts
@@ -132,8 +133,8 @@ class Constants:
             return obj
         if kind is float:
             return float_model(obj)
-        if kind is DoubleFloat:
-            return expression(word("Ldouble"), float_model(float(obj)))
+        if kind is SingleFloat:
+            return expression(word("Lsingle"), float_model(float(obj)))
         if kind is Fraction:
             return expression(word("Lratio"), obj.numerator, obj.denominator)
         if isinstance(obj, complex):

@@ -2,7 +2,7 @@
 
 As in SBCL at its usual safety a declaration is an assertion: a value of another type is a type-error where it is bound or assigned,
 not somewhere later. A function that says ``(optimize (safety 0))`` is not checked. What cannot be known is let pass: types that
-are not defined, types of several values, and single and double floats where a double is wanted, because ROS and Python give both.
+are not defined, and types of several values.
 """
 
 from __future__ import annotations
@@ -25,7 +25,6 @@ MUFFLE-CONDITIONS""".split()
 UNCHECKED = {sym("T"), sym("*"), True}
 FIXNUM = sym("FIXNUM")
 LEAST_FIXNUM, GREATEST_FIXNUM = -FIXNUM_LIMIT, FIXNUM_LIMIT - 1
-DOUBLE = {sym("DOUBLE-FLOAT"), sym("LONG-FLOAT")}
 
 
 def declared_types(specifiers):
@@ -72,18 +71,12 @@ def checked(value, specifier, place=None):
         if not _all_known(specifier):  # it may be defined later
             return value
         # the specifier is kept: its id must not become another object's
-        known = _predicates[id(specifier)] = (_predicate(specifier), specifier)
+        known = _predicates[id(specifier)] = (PORTS.types.predicate(specifier), specifier)
     first = one(value) if value.__class__ is MultipleValues else value
     if known[0](first):
         return value
     context = f"\nwhen binding {prin1_to_string(place)}" if place is not None else ""
     return type_error(first, PORTS.types.simplified(specifier), context)
-
-
-def _predicate(specifier):
-    if isinstance(specifier, Symbol) and specifier in DOUBLE:
-        return lambda value: isinstance(value, float)
-    return PORTS.types.predicate(specifier)
 
 
 def _all_known(specifier):

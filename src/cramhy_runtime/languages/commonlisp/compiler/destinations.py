@@ -8,7 +8,7 @@ __all__ = ["NONE", "TRUE"]
 
 
 class Destination:
-    """Where a value goes. ``multiple``: all values are wanted, not only the first. ``raw``: doubles come as Python's floats."""
+    """Where a value goes. ``multiple``: all values are wanted, not only the first. ``raw``: singles come as Python's floats."""
 
     __slots__ = ("kind", "name", "multiple", "raw")
 

@@ -9,7 +9,8 @@ Exits are in ``generate_exits.py``, function definitions in ``generate_functions
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import DoubleFloat, Symbol, UndefinedFunction
+from cramhy_runtime.ground.data import Symbol, UndefinedFunction
+from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.dispatch.reached_slots import written_attribute
 from cramhy_runtime.ground.packages import COMMON_LISP, CRAMHY, is_symbol, sym
 from . import core, nodes
@@ -96,7 +97,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         return self.gen(node, VALUE)
 
     def finish(self, model, node, destination, pure=False, raw=False):
-        """Deliver an expression to its destination. ``raw``: doubles among its values are Python's floats."""
+        """Deliver an expression to its destination. ``raw``: singles among its values are Python's floats."""
         kind = destination.kind
         if not destination.multiple and not node.single and kind != "effect":
             model = self.first_value(model)
@@ -158,7 +159,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
     # -------------------------------------------------------------------------------------------------------- values, names
 
     def Constant(self, node, destination):
-        if destination.raw and node.value.__class__ is DoubleFloat:
+        if destination.raw and node.value.__class__ is SingleFloat:
             return self.finish(float_model(float(node.value)), node, destination, pure=True, raw=True)
         return self.finish(self.literal(node.value), node, destination, pure=True)
 
@@ -184,8 +185,8 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         return self.finish(self.reference(node.variable), node, destination, pure=True, raw=node.variable.raw)
 
     def GlobalVariable(self, node, destination):
-        if node.symbol is PI and destination.raw:
-            return self.finish(float(PI.value), node, destination, pure=True, raw=True)
+        if node.symbol is PI:
+            return self.finish(PI.value, SINGLE_VALUE, destination, pure=True)
         constant, value = self.constant(node.symbol), word("Lv")
         place = expression(word("."), constant, word("value"))
         bound = expression(word("is-not"), expression(word("setx"), value, place), word("Lunbound"))

@@ -13,7 +13,7 @@ from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.packages import symbol_name
 from . import nodes
 from .core import List, Tuple, expression, word
-from .arithmetic.operations import AND, DOUBLE_CLASS, FLOAT_CLASS, INT_CLASS, IS, class_of, fixnum_test
+from .arithmetic.operations import AND, FLOAT_CLASS, INT_CLASS, IS, SINGLE_CLASS, class_of, fixnum_test
 from .kinds import DOUBLE, INT, SINGLE
 from .arithmetic.versions import assumed, bounded, guesses
 from .destinations import NONE, RETURN, RETURN_TUPLE, TRUE, Destination
@@ -87,7 +87,7 @@ class FunctionGenerator:
         tests = []
         for variable, kind in found.items():
             name = word(variable.name)
-            tests.append(expression(IS, class_of(name), {INT: INT_CLASS, SINGLE: FLOAT_CLASS, DOUBLE: DOUBLE_CLASS}[kind]))
+            tests.append(expression(IS, class_of(name), {INT: INT_CLASS, SINGLE: SINGLE_CLASS, DOUBLE: FLOAT_CLASS}[kind]))
             if kind == INT and bounded(node, variable):
                 tests.append(fixnum_test(name))
 

@@ -15,7 +15,6 @@ from .arithmetic.operations import (
     ARITHMETIC,
     COMPARISONS,
     DOT,
-    DOUBLE_CLASS,
     FLOAT_CLASS,
     IF,
     INT_CLASS,
@@ -23,12 +22,13 @@ from .arithmetic.operations import (
     IS_NOT,
     OR,
     SETX,
+    SINGLE_CLASS,
     class_of,
     fixnum_test,
 )
 from .arithmetic.elements import ELEMENTS, LENGTH, ArrayGenerator
 from .arithmetic.functions import NumberGenerator
-from .kinds import DOUBLE_TYPES, INT, MACHINE, exactly, kind_of, kind_of_type
+from .kinds import DOUBLE_TYPES, INT, MACHINE, SINGLE_TYPES, exactly, kind_of, kind_of_type
 
 SIGNS = {sym("ZEROP"): COMPARISONS[sym("=")], sym("PLUSP"): COMPARISONS[sym(">")], sym("MINUSP"): COMPARISONS[sym("<")]}
 PARITY = {sym("EVENP"): 0, sym("ODDP"): 1}
@@ -42,13 +42,13 @@ CONSP, ATOM, ENDP = map(sym, "CONSP ATOM ENDP".split())
 PROVING_CLASSES = {
     sym("INTEGER"): [INT_CLASS],
     FIXNUM: [INT_CLASS],
-    sym("SINGLE-FLOAT"): [FLOAT_CLASS],
-    **dict.fromkeys(DOUBLE_TYPES, [DOUBLE_CLASS, FLOAT_CLASS]),
-    sym("FLOAT"): [FLOAT_CLASS, DOUBLE_CLASS],
-    sym("REAL"): [INT_CLASS, FLOAT_CLASS, DOUBLE_CLASS],
-    sym("NUMBER"): [INT_CLASS, FLOAT_CLASS, DOUBLE_CLASS],
+    **dict.fromkeys(SINGLE_TYPES, [SINGLE_CLASS]),
+    **dict.fromkeys(DOUBLE_TYPES, [FLOAT_CLASS]),
+    sym("FLOAT"): [FLOAT_CLASS, SINGLE_CLASS],
+    sym("REAL"): [INT_CLASS, FLOAT_CLASS, SINGLE_CLASS],
+    sym("NUMBER"): [INT_CLASS, FLOAT_CLASS, SINGLE_CLASS],
 }
-"""Types that a comparison of classes proves, for a fixnum also one of size. A variable of doubles may be given a single."""
+"""Types that a comparison of classes proves, for a fixnum also one of size."""
 
 MOST_TERMS = 32
 """A sum of more terms is a call of the function: written as sums of two, it would take long to compile."""
@@ -73,11 +73,13 @@ class OperatorGenerator(ArrayGenerator, NumberGenerator):
         slow = self.positioned(self.call("checked", value, self.literal(node.type), *place), node)
         if operand.raw:
             slow = self.unwrapped(slow, 0)
-            classes = [FLOAT_CLASS if each is DOUBLE_CLASS else each for each in classes if each is not FLOAT_CLASS]
-        if classes:
-            noted, again = self.noted_class(operand.first)
-            tests = [expression(IS, again if index else noted, each) for index, each in enumerate(classes)]
-            test = tests[0] if len(tests) == 1 else expression(OR, *tests)
+            classes = [FLOAT_CLASS if each is SINGLE_CLASS else each for each in classes if each is not FLOAT_CLASS]
+        if not classes:  # it is of another kind for sure
+            self.settle([operand])
+            return self.finish(slow, node, destination, raw=operand.raw)
+        noted, again = self.noted_class(operand.first)
+        tests = [expression(IS, again if index else noted, each) for index, each in enumerate(classes)]
+        test = tests[0] if len(tests) == 1 else expression(OR, *tests)
         if not fits:
             test = expression(AND, test, fixnum_test(operand.later))
         if destination.kind == "effect":

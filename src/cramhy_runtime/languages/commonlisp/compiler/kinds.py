@@ -3,25 +3,26 @@
 A kind is a set of classes, as bits: ``INT | SINGLE`` is an integer or a single-float. `kind_of` says the kind of a node's first
 value; variables get theirs in ``facts.py``. Where all classes of the operands are known, Python's operator stands alone.
 
-A double-float is a `DoubleFloat` wherever a program can see it, and its operators are Python functions. But where a value is surely
-no single-float, a plain Python float can stand for the double: it is *raw*. So variables and intermediate results of such kinds
-(`raw`) are computed with Python's own floats, and what leaves them is wrapped again.
+A double-float is Python's float. A single-float is a `SingleFloat` wherever a program can see it, and its operators are Python functions.
+But where a value is surely no double, a plain Python float of 24 bits can stand for the single: it is *raw*. So variables and
+intermediate results of such kinds (`raw`) are computed with Python's own floats and rounded in place, and what leaves them is wrapped
+again.
 """
 
 from __future__ import annotations
 
 import math
 
-from cramhy_runtime.ground.data import Cons, DoubleFloat, Symbol
+from cramhy_runtime.ground.data import Cons, Symbol
+from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.packages import sym
 from . import nodes
 from .declared_types import FIXNUM
 
-INT, SINGLE, DOUBLE, ODD, OTHER, BOOLEAN, THING = (1 << place for place in range(7))
-"""``ODD`` is what a double and any number may give besides a double: a complex of doubles, or a number of another library, but never
-a plain float. ``OTHER`` are ratios and all other numbers."""
+INT, SINGLE, DOUBLE, OTHER, BOOLEAN, THING = (1 << place for place in range(6))
+"""``OTHER`` are ratios, complex numbers, and numbers of other libraries."""
 NONE_YET = 0
-NUMBER = INT | SINGLE | DOUBLE | ODD | OTHER
+NUMBER = INT | SINGLE | DOUBLE | OTHER
 ANY = NUMBER | BOOLEAN | THING
 MACHINE = INT | SINGLE | DOUBLE
 """The classes on which Python's operators do what Lisp's do."""
@@ -46,12 +47,12 @@ DOUBLE_TYPES = {sym("DOUBLE-FLOAT"), sym("LONG-FLOAT")}
 SINGLE_TYPES = {sym("SINGLE-FLOAT"), sym("SHORT-FLOAT")}
 PI = sym("PI")
 
-_CLASSES = {int: INT, float: SINGLE, DoubleFloat: DOUBLE}
+_CLASSES = {int: INT, SingleFloat: SINGLE, float: DOUBLE}
 
 
 def raw(kind):
-    """Whether values of ``kind`` are held raw: a float among them is a double for sure."""
-    return bool(kind & DOUBLE) and not kind & (SINGLE | THING)
+    """Whether values of ``kind`` are held raw: a float among them is a single for sure."""
+    return bool(kind & SINGLE) and not kind & (DOUBLE | THING)
 
 
 def exactly(kind, classes):
@@ -75,17 +76,17 @@ def combined(one, other):
 
 
 def _bits(kind):
-    found = [bit for bit in (INT, SINGLE, DOUBLE, ODD, OTHER) if kind & bit]
+    found = [bit for bit in (INT, SINGLE, DOUBLE, OTHER) if kind & bit]
     return [*found, OTHER] if kind & THING and not kind & OTHER else found  # it may be a number of another library
 
 
 def _pair(one, other):
     most = max(one, other)
-    if most < ODD:
+    if most < OTHER:
         return most
-    if one & (DOUBLE | ODD) or other & (DOUBLE | ODD):
-        return DOUBLE | ODD
-    return SINGLE | OTHER if SINGLE in (one, other) else INT | SINGLE | OTHER
+    if DOUBLE in (one, other):
+        return DOUBLE | OTHER
+    return SINGLE | DOUBLE | OTHER if SINGLE in (one, other) else INT | DOUBLE | OTHER
 
 
 def kind_of(node):
@@ -118,10 +119,7 @@ def _checked(node):
 
 
 def kind_of_type(specifier):
-    """The kind of the values that have passed the check of a declared type, or ``None`` if it says nothing.
-
-    A variable of doubles may be given a single.
-    """
+    """The kind of the values that have passed the check of a declared type, or ``None`` if it says nothing."""
     if specifier.__class__ is Cons:
         specifier = specifier.car
     return _TYPES.get(specifier) if specifier.__class__ is Symbol else None
@@ -130,10 +128,9 @@ def kind_of_type(specifier):
 _INTEGER_TYPES = {sym(name) for name in "INTEGER FIXNUM BIGNUM UNSIGNED-BYTE SIGNED-BYTE MOD BIT".split()}
 _TYPES = {
     **dict.fromkeys(_INTEGER_TYPES, INT),
-    **dict.fromkeys(SINGLE_TYPES, SINGLE | OTHER),
-    **dict.fromkeys(DOUBLE_TYPES, FLOATS | OTHER),
-    sym("SINGLE-FLOAT"): SINGLE,
-    sym("FLOAT"): FLOATS | OTHER,
+    **dict.fromkeys(SINGLE_TYPES, SINGLE),
+    **dict.fromkeys(DOUBLE_TYPES, DOUBLE),
+    sym("FLOAT"): FLOATS,
     sym("REAL"): NUMBER,
     sym("NUMBER"): NUMBER,
 }
@@ -218,10 +215,8 @@ def _floated(kind):
     found = 0
     if kind & (INT | SINGLE | OTHER | THING):
         found |= SINGLE
-    if kind & (DOUBLE | ODD):
+    if kind & DOUBLE:
         found |= DOUBLE
-    if kind & ODD:
-        found |= ODD
     if kind & (OTHER | THING):
         found |= OTHER | DOUBLE
     return found
@@ -234,9 +229,7 @@ def _root(symbol, arguments):
     found = _floated(kind)
     if not kind or symbol is SQRT and never_negative(arguments[0]):
         return found
-    if found & SINGLE:
-        found |= OTHER
-    return found | ODD if found & DOUBLE else found
+    return found | OTHER
 
 
 def _abs(symbol, arguments):
@@ -244,15 +237,13 @@ def _abs(symbol, arguments):
         return ANY
     kind = kind_of(arguments[0])
     found = kind & MACHINE
-    if kind & ODD:
-        found |= DOUBLE | ODD
     return found | SINGLE | DOUBLE | OTHER if kind & (OTHER | THING) else found
 
 
 def _float(symbol, arguments):
     if len(arguments) == 1:
         kind = kind_of(arguments[0])
-        return (SINGLE if kind & ~(DOUBLE | ODD) else 0) | kind & (DOUBLE | ODD | THING)
+        return (SINGLE if kind & ~DOUBLE else 0) | kind & (DOUBLE | THING)
     if len(arguments) == 2 and kind_of(arguments[1]) in (SINGLE, DOUBLE):
         return kind_of(arguments[1])
     return ANY
@@ -262,6 +253,8 @@ def _coerce(symbol, arguments):
     if len(arguments) == 2 and arguments[1].__class__ is nodes.Constant:
         if arguments[1].value in DOUBLE_TYPES:
             return DOUBLE
+        if arguments[1].value in SINGLE_TYPES:
+            return SINGLE
     return ANY
 
 

@@ -40,7 +40,6 @@ from cramhy_runtime.ground.data import (
     Character,
     TEXTS,
     Cons,
-    DoubleFloat,
     Keyword,
     MultipleValues,
     Symbol,
@@ -53,6 +52,8 @@ from cramhy_runtime.ground.data import (
     one,
     truth,
 )
+from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.ground.floats import new_single, to_float32
 from cramhy_runtime.ground.hash_tables import REMOVED, HashTable, need_table, value_and_presence, value_in_table
 from cramhy_runtime.ground.keyword_calls import keyword_calls
 from cramhy_runtime.ground.dynamic import Bindings, bind, unbind
@@ -298,13 +299,26 @@ def value_list(value):
 
 
 def wrapped(value):
-    """What a raw value is for Lisp: a float is a double, anything else is itself (see ``kinds.py``)."""
-    return DoubleFloat(value) if value.__class__ is float else value
+    """What a raw value is for Lisp: a float is a single, anything else is itself (see ``kinds.py``)."""
+    return new_single(value) if value.__class__ is float else value
 
 
 def unwrapped(value):
-    """The raw value that stands for ``value``, which is no single-float."""
-    return float(value) if value.__class__ is DoubleFloat else value
+    """The raw value that stands for ``value``, which is no double-float."""
+    return float(value) if value.__class__ is SingleFloat else value
+
+
+def in_single(number):
+    """The single-float nearest to the integer ``number``, raw; what is a float is one already."""
+    return float(arithmetic.single_of(number)) if number.__class__ is int else number
+
+
+def rounded(exact):
+    """The single-float nearest to ``exact``, the result in doubles of an operation with singles, raw; an overflow where singles end."""
+    result = to_float32(exact)
+    if result - result != 0.0 and exact - exact == 0.0:
+        return float(arithmetic.overflow("FLOAT", exact))
+    return result
 
 
 def not_(value):
@@ -377,7 +391,10 @@ NAMESPACE = {
     "Lgensym": Symbol,
     "Llist": lisp_list,
     "Ldotted": dotted,
-    "Ldouble": DoubleFloat,
+    "Lsingle": SingleFloat,
+    "Lnew_single": new_single,
+    "Lin_single": in_single,
+    "Lrounded": rounded,
     "Labs": abs,
     "Latan2": math.atan2,
     "Lceil": math.ceil,

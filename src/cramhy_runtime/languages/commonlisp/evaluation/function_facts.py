@@ -10,7 +10,7 @@ from __future__ import annotations
 
 
 from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import Cons, DoubleFloat, Keyword, Symbol, lisp_list, list_from
+from cramhy_runtime.ground.data import FLOATS, Cons, Keyword, Symbol, lisp_list, list_from
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.dispatch.methods import shape_items
 from cramhy_runtime.ground.packages import COMMON_LISP_USER, is_symbol, sym, symbol_name
@@ -60,7 +60,7 @@ def from_signature(function):
             items.append(sym(marker))
             state = marker
         name, default = Symbol(parameter.name.strip("_").replace("_", "-").upper()), parameter.default
-        items.append(lisp_list(name, default) if default.__class__ in (int, float, DoubleFloat, Keyword) else name)
+        items.append(lisp_list(name, default) if default.__class__ in {int, *FLOATS, Keyword} else name)
     return list_from(items)
 
 

@@ -34,7 +34,7 @@ def get_universal_time():
 
 
 def get_internal_real_time():
-    return int(kernel.now() * CONSTANTS["INTERNAL-TIME-UNITS-PER-SECOND"])
+    return round(kernel.now() * CONSTANTS["INTERNAL-TIME-UNITS-PER-SECOND"])
 
 
 def get_internal_run_time():

@@ -10,8 +10,8 @@ import math
 from fractions import Fraction
 
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import DoubleFloat
-from cramhy_runtime.ground.float_printing import fixed_text, marker, scaled
+from cramhy_runtime.ground.floats import SingleFloat
+from ..printer.float_printing import fixed_text, marker, scaled
 from ..printer.print_controls import PRINT_BASE, PRINT_RADIX, bound
 from ..printer.print_names import digits_in_base
 from ..printer.printer import prin1, princ_to_string
@@ -151,7 +151,7 @@ def as_float(number):
     if isinstance(number, float):
         return number
     if isinstance(number, Fraction) or (isinstance(number, int) and not isinstance(number, bool)):
-        return float(number)
+        return SingleFloat(number)
     return None
 
 
@@ -173,7 +173,7 @@ def _negative(number):
 
 
 def _magnitude(number):
-    return DoubleFloat(abs(float(number))) if isinstance(number, DoubleFloat) else abs(float(number))
+    return abs(number)
 
 
 def write_fixed(stream, number, width=None, digits=None, scale=None, overflow=None, padchar=" ", sign=False):

@@ -6,7 +6,7 @@ an object that has a print function or does not fit. Templates (``format_templat
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Character, Cons, DoubleFloat
+from cramhy_runtime.ground.data import FLOATS, Character, Cons
 from .format_numbers import integer_field, write_fixed
 from .format_parser import Directive
 
@@ -73,7 +73,7 @@ def _fixed(node, values, texts):
     sign = node.at
 
     def fixed(argument):
-        if argument.__class__ is not float and argument.__class__ is not DoubleFloat or argument - argument != 0:
+        if argument.__class__ not in FLOATS or argument - argument != 0:
             return None
         stream = _Text()
         write_fixed(stream, argument, width, digits, None, None, " ", sign)

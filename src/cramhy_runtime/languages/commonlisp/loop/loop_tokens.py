@@ -8,15 +8,16 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import SimpleProgramError
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, DoubleFloat, list_from
+from cramhy_runtime.ground.data import Cons, list_from
+from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.packages import is_symbol, near_names, symbol_name
 
 NOTHING = object()
 
 ZERO_OF_TYPE = {
     **dict.fromkeys("FIXNUM INTEGER NUMBER REAL RATIONAL BIT BIGNUM UNSIGNED-BYTE SIGNED-BYTE MOD".split(), 0),
-    **dict.fromkeys("FLOAT SINGLE-FLOAT SHORT-FLOAT".split(), 0.0),
-    **dict.fromkeys("DOUBLE-FLOAT LONG-FLOAT".split(), DoubleFloat(0.0)),
+    **dict.fromkeys("FLOAT SINGLE-FLOAT SHORT-FLOAT".split(), SingleFloat(0.0)),
+    **dict.fromkeys("DOUBLE-FLOAT LONG-FLOAT".split(), 0.0),
 }
 """First values of variables that are declared to be numbers and get no value."""
 SIMPLE_TYPES = {

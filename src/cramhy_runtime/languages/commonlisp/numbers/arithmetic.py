@@ -1,9 +1,8 @@
 """Arithmetic and comparison of numbers: ``+ - * / = < max``, and the tests of a number's kind.
 
-The numeric tower is Python's: `int`, `Fraction` for ratios (a ratio with denominator 1 becomes an integer), `float` for single-
-floats, `DoubleFloat` for doubles, and three kinds of `complex`. A Python float is a single here and keeps its double precision
-inside; rounding to 24 bits happens where Common Lisp makes it visible: in the printer, in ``coerce`` to double and in
-``rational`` (see `single`). ``t``, ``nil`` and strings are no numbers, although Python's ``True`` is.
+The numeric tower is Python's: `int`, `Fraction` for ratios (a ratio with denominator 1 becomes an integer), `float` for double-
+floats, `SingleFloat` for singles, and three kinds of `complex`. An operation with singles is done in doubles and rounded to 24 bits,
+which gives what IEEE's operation of singles gives. ``t``, ``nil`` and strings are no numbers, although Python's ``True`` is.
 
 The compiler calls `add2`, `sub2`, `mul2`, `div2`, `lt2`, `gt2`, `le2`, `ge2`, `num_eq2` and `num_ne2` for two arguments.
 They test for the two common classes first, so ordinary numbers pay for one set lookup each. Source: ANSI chapter 12; texts
@@ -13,36 +12,28 @@ are SBCL's.
 from __future__ import annotations
 
 import math
-import struct
 import sys
 from fractions import Fraction
 
 from cramhy_runtime.ground.conditions import DivisionByZero, FloatingPointOverflow, error, type_error
-from cramhy_runtime.ground.data import DoubleFloat, MultipleValues, lisp_list, one
+from cramhy_runtime.ground.data import MultipleValues, lisp_list, one
+from cramhy_runtime.ground.floats import LARGEST_SINGLE, SPLITTER, SingleFloat, new_single, rational_to_float32, to_float32
 from cramhy_runtime.ground.packages import sym
-from .complex_numbers import DoubleComplex, ExactComplex
+from .complex_numbers import ExactComplex, SingleComplex, of_parts, parts
 
 LISP_NAMES = """max min abs gcd lcm signum mod rem numberp realp rationalp integerp floatp complexp zerop plusp minusp evenp oddp
 numerator denominator"""
 
 _PLAIN = frozenset((int, float))
-_REALS = frozenset((int, float, DoubleFloat, Fraction))
-_MACHINE = frozenset((int, float, DoubleFloat))
+_REALS = frozenset((int, float, SingleFloat, Fraction))
+_MACHINE = frozenset((int, float, SingleFloat))
 _NUMBERS = _REALS | {complex}
 
 _LARGEST = sys.float_info.max
-_float_add, _float_subtract = float.__add__, float.__sub__
-"""They add doubles without a look at the class of the second, and give a plain float."""
-
-_pack_single = struct.Struct("f")
-
-
-def single(value):
-    """``value``, a Python float, rounded to the nearest single-float (a float with 24 bits of precision)."""
-    try:
-        return _pack_single.unpack(_pack_single.pack(value))[0]
-    except OverflowError:
-        return math.copysign(math.inf, value)
+_SMALL_INTEGERS = 2**24
+"""Integers up to here are single-floats, exactly."""
+_add_floats, _subtract_floats, _multiply_floats = float.__add__, float.__sub__, float.__mul__
+"""They compute without a look at the classes, and give a plain float."""
 
 
 # ---------------------------------------------------------------------------------------------------------------- the kinds
@@ -138,58 +129,146 @@ def _finite(operation, result, *operands):
     return result
 
 
-def _operate(operation, function, a, b):
+def _single(operation, exact, a, b):
+    """The single-float nearest to ``exact``, the result of ``operation`` in doubles; an overflow where singles end."""
+    result = to_float32(exact)
+    if result - result != 0.0:
+        _finite(operation, result, a, b)
+    return new_single(result)
+
+
+def single_of(number):
+    """The real ``number`` as a single-float; too large a number is a floating-point-overflow."""
+    if number.__class__ is SingleFloat:
+        return number
+    try:
+        value = to_float32(number) if isinstance(number, float) else rational_to_float32(number)
+    except OverflowError:
+        return too_large_for(number, "SINGLE-FLOAT")
+    if value - value != 0.0 and (not isinstance(number, float) or math.isfinite(number)):
+        return too_large_for(number, "SINGLE-FLOAT")
+    return new_single(value)
+
+
+def too_large_for(number, kind):
+    """Signal that ``number`` does not fit into the kind of float that ``kind`` names."""
+    return error(FloatingPointOverflow(sym("FLOAT"), lisp_list(number, sym(kind))))
+
+
+_OPERATIONS = {
+    "+": (float.__add__, lambda a, b: a + b),
+    "-": (float.__sub__, lambda a, b: a - b),
+    "*": (float.__mul__, lambda a, b: a * b),
+    "/": (float.__truediv__, lambda a, b: a / b),
+}
+
+
+def _operate(operation, a, b):
+    """``operation`` for all classes of numbers and several values, but quotients of integers."""
     if a.__class__ is MultipleValues or b.__class__ is MultipleValues:
         return LISP_FUNCTIONS[operation](one(a), one(b))
-    a, b = _complex_operands(need_number(a), need_number(b))
+    of_floats, function = _OPERATIONS[operation]
+    need_number(a)
+    need_number(b)
     try:
-        return normal(function(a, b))
+        if isinstance(a, complex) or isinstance(b, complex):
+            return _OF_COMPLEX[operation](a, b)
+        if a.__class__ is SingleFloat:
+            if b.__class__ is SingleFloat or is_rational(b):
+                return _single(operation, of_floats(a, single_of(b)), a, b)
+        elif b.__class__ is SingleFloat and is_rational(a):
+            return _single(operation, of_floats(single_of(a), b), a, b)
+        result = normal(function(a, b))
+        return result if result.__class__ is not float else _finite(operation, result, a, b)
     except OverflowError:
         return overflow(operation, a, b)
+    except ZeroDivisionError:
+        return _zero_division(a, b)
 
 
-def _complex_operands(a, b):
-    # Two contagions that Python does not know: of a double to a complex of singles, and none of a ratio to an exact number.
-    for number, other in ((a, b), (b, a)):
-        if isinstance(number, complex):
-            if other.__class__ is DoubleFloat and number.__class__ is complex:
-                return (DoubleComplex(a), b) if number is a else (a, DoubleComplex(b))
-            if other.__class__ is Fraction and isinstance(number, ExactComplex):
-                return (a, ExactComplex(b, 0)) if number is a else (ExactComplex(a, 0), b)
-    return a, b
+def _complex_sum(a, b):
+    (x, y), (u, v) = parts(a), parts(b)
+    return of_parts(add2(x, u), add2(y, v))
+
+
+def _complex_difference(a, b):
+    (x, y), (u, v) = parts(a), parts(b)
+    return of_parts(sub2(x, u), sub2(y, v))
+
+
+def _complex_product(a, b):
+    (x, y), (u, v) = parts(a), parts(b)
+    if not isinstance(a, complex):
+        return of_parts(mul2(x, u), mul2(x, v))
+    if not isinstance(b, complex):
+        return of_parts(mul2(x, u), mul2(y, u))
+    return of_parts(sub2(mul2(x, u), mul2(y, v)), add2(mul2(x, v), mul2(y, u)))
+
+
+def _complex_quotient(a, b):
+    # Exactly for rationals, for floats in Smith's way, each step as SBCL goes it: so the parts have its last digits.
+    (x, y), (u, v) = parts(a), parts(b)
+    if not isinstance(b, complex):
+        return of_parts(div2(x, u), div2(y, u))
+    if b.__class__ is ExactComplex:
+        size = add2(mul2(u, u), mul2(v, v))
+        return of_parts(div2(add2(mul2(x, u), mul2(y, v)), size), div2(sub2(mul2(y, u), mul2(x, v)), size))
+    if abs(u) > abs(v):
+        ratio = div2(v, u)
+        size = mul2(u, add2(1, mul2(ratio, ratio)))
+        if not isinstance(a, complex):
+            return of_parts(div2(x, size), div2(-mul2(x, ratio), size))
+        return of_parts(div2(add2(x, mul2(y, ratio)), size), div2(sub2(y, mul2(x, ratio)), size))
+    ratio = div2(u, v)
+    size = mul2(v, add2(1, mul2(ratio, ratio)))
+    if not isinstance(a, complex):
+        return of_parts(div2(mul2(x, ratio), size), div2(-x, size))
+    return of_parts(div2(add2(mul2(x, ratio), y), size), div2(sub2(mul2(y, ratio), x), size))
+
+
+_OF_COMPLEX = {"+": _complex_sum, "-": _complex_difference, "*": _complex_product, "/": _complex_quotient}
 
 
 def add2(a, b):
     """``(+ a b)``"""
-    if a.__class__ in _PLAIN and b.__class__ in _PLAIN:
+    kind, other = a.__class__, b.__class__
+    if kind in _PLAIN and other in _PLAIN:
         try:
             return a + b
         except OverflowError:
             return overflow("+", a, b)
-    if a.__class__ is DoubleFloat and b.__class__ in _MACHINE:
-        return DoubleFloat(_float_add(a, b))
-    if b.__class__ is DoubleFloat and a.__class__ in _PLAIN:
-        return DoubleFloat(float(a) + float(b))
-    return _operate("+", lambda x, y: x + y, a, b)
+    if kind is SingleFloat and (other is SingleFloat or other is int and -_SMALL_INTEGERS <= b <= _SMALL_INTEGERS):
+        total = _add_floats(a, b)
+        if -LARGEST_SINGLE <= total <= LARGEST_SINGLE:  # a sum of singles that is a denormal is exact
+            product = total * SPLITTER
+            return new_single(product - (product - total))
+    elif kind is float and other is SingleFloat or kind is SingleFloat and other is float:
+        return float(a) + float(b)
+    return _operate("+", a, b)
 
 
 def sub2(a, b):
     """``(- a b)``"""
-    if a.__class__ in _PLAIN and b.__class__ in _PLAIN:
+    kind, other = a.__class__, b.__class__
+    if kind in _PLAIN and other in _PLAIN:
         try:
             return a - b
         except OverflowError:
             return overflow("-", a, b)
-    if a.__class__ is DoubleFloat and b.__class__ in _MACHINE:
-        return DoubleFloat(_float_subtract(a, b))
-    if b.__class__ is DoubleFloat and a.__class__ in _PLAIN:
-        return DoubleFloat(float(a) - float(b))
-    return _operate("-", lambda x, y: x - y, a, b)
+    if kind is SingleFloat and (other is SingleFloat or other is int and -_SMALL_INTEGERS <= b <= _SMALL_INTEGERS):
+        total = _subtract_floats(a, b)
+        if -LARGEST_SINGLE <= total <= LARGEST_SINGLE:
+            product = total * SPLITTER
+            return new_single(product - (product - total))
+    elif kind is float and other is SingleFloat or kind is SingleFloat and other is float:
+        return float(a) - float(b)
+    return _operate("-", a, b)
 
 
 def mul2(a, b):
     """``(* a b)``"""
-    if a.__class__ in _PLAIN and b.__class__ in _PLAIN:
+    kind, other = a.__class__, b.__class__
+    if kind in _PLAIN and other in _PLAIN:
         try:
             product = a * b
         except OverflowError:
@@ -197,10 +276,13 @@ def mul2(a, b):
         if product.__class__ is float and not -_LARGEST <= product <= _LARGEST:
             return _finite("*", product, a, b)
         return product
-    if a.__class__ in _MACHINE and b.__class__ in _MACHINE:
-        product = float(a) * float(b)
-        return DoubleFloat(product if -_LARGEST <= product <= _LARGEST else _finite("*", product, a, b))
-    return _operate("*", lambda x, y: x * y, a, b)
+    if kind is SingleFloat and (other is SingleFloat or other is int and -_SMALL_INTEGERS <= b <= _SMALL_INTEGERS):
+        product = to_float32(_multiply_floats(a, b))
+        if product - product == 0.0:
+            return new_single(product)
+    elif kind in _MACHINE and other is SingleFloat and kind is not int or kind is SingleFloat and other is float:
+        return _finite("*", float(a) * float(b), a, b)
+    return _operate("*", a, b)
 
 
 def div2(a, b):
@@ -211,31 +293,21 @@ def div2(a, b):
             if kind is int and other is int:
                 quotient, rest = divmod(a, b)
                 return Fraction(a, b) if rest else quotient
-            return a / b
+            quotient = a / b
         except ZeroDivisionError:
             return _zero_division(a, b)
         except OverflowError:
             return overflow("/", a, b)
-    if kind in _MACHINE and other in _MACHINE and b:
-        try:
-            return DoubleFloat(float(a) / float(b))
-        except OverflowError:
-            return overflow("/", a, b)
+        return quotient if -_LARGEST <= quotient <= _LARGEST else _finite("/", quotient, a, b)
     if kind is MultipleValues or other is MultipleValues:
         return div2(one(a), one(b))
-    a, b = _complex_operands(need_number(a), need_number(b))
-    try:
-        return normal(a / b if kind is not int or other is not int else Fraction(a, b))
-    except ZeroDivisionError:
-        return _zero_division(a, b)
-    except OverflowError:
-        return overflow("/", a, b)
+    return _operate("/", a, b)
 
 
 def _zero_division(a, b):
     # The operands are shown as the operation saw them, that is, after contagion.
     if isinstance(a, float) or isinstance(b, float):
-        kind = DoubleFloat if DoubleFloat in (a.__class__, b.__class__) else float
+        kind = float if float in (a.__class__, b.__class__) else SingleFloat
         a, b = kind(a), kind(b)
     return division_by_zero("/", a, b)
 
@@ -253,7 +325,7 @@ def add(*numbers):
 def subtract(number, *more):
     """``cl:-``"""
     if not more:
-        return sub2(0, number) if number.__class__ in _PLAIN and number else -need_number(number)
+        return sub2(0, number) if number.__class__ is int else -need_number(number)
     for other in more:
         number = sub2(number, other)
     return number
@@ -401,14 +473,14 @@ def oddp(integer):
 
 def abs_(number):
     size = abs(need_number(number))
-    return DoubleFloat(size) if isinstance(number, DoubleComplex) else size
+    return single_of(size) if isinstance(number, SingleComplex | ExactComplex) else size
 
 
 def signum(number):
     """-1, 0 or 1 of the kind of ``number``; for a complex number the one of length 1 with its direction."""
     need_number(number)
     if isinstance(number, complex):
-        return number / abs(number) if number else number
+        return div2(number, abs_(number)) if number else number
     if number == 0:
         return number
     sign = 1 if number > 0 else -1

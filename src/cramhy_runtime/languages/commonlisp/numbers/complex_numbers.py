@@ -1,22 +1,33 @@
-"""The three kinds of complex numbers: of singles (Python's ``complex``), of doubles, and of rationals.
+"""The three kinds of complex numbers: of doubles (Python's ``complex``), of singles, and of rationals.
 
-Python knows the first only. `DoubleComplex` keeps contagion of double-floats; `ExactComplex` has integers and ratios as parts,
-so ``(* #c(0 1) #c(0 1))`` is -1. Both are classes of ``complex``, and what knows only Python's numbers sees the nearest one of
-those. A rational result without an imaginary part is a rational. Source: ANSI 12.1.5.
+Python knows the first only. `SingleComplex` has single-floats as parts, `ExactComplex` has integers and ratios, so ``(* #c(0 1) #c(0 1))``
+is -1. Both are classes of ``complex``, and what knows only Python's numbers sees the nearest one of those. A rational result without an
+imaginary part is a rational. They are added and multiplied in ``arithmetic.py``, part by part. Source: ANSI 12.1.5.
 """
 
 from __future__ import annotations
 
-from fractions import Fraction
-
-from cramhy_runtime.ground.data import DoubleFloat
+from cramhy_runtime.ground.floats import SingleFloat
 
 
-class DoubleComplex(complex):
-    """A complex number of double-floats, as plain ``complex`` is one of single-floats."""
+class SingleComplex(complex):
+    """A complex number of single-floats, as plain ``complex`` is one of double-floats. ``SingleComplex(x, y)`` rounds the parts."""
 
     __slots__ = ()
-    double = True  # asked by the printer
+
+    def __new__(cls, real, imag=0.0):
+        if isinstance(real, complex):
+            real, imag = real.real, real.imag
+        return complex.__new__(cls, SingleFloat(real), SingleFloat(imag))
+
+    def __reduce__(self):
+        return SingleComplex, (self.real, self.imag)
+
+    def __neg__(self):
+        return complex.__new__(SingleComplex, -self.real, -self.imag)
+
+    def conjugate(self):
+        return complex.__new__(SingleComplex, self.real, -self.imag)
 
 
 class ExactComplex(complex):
@@ -69,62 +80,16 @@ def exact(real, imag):
     return ExactComplex(real, imag) if imag else real
 
 
+def of_parts(real, imag):
+    """The complex number of these parts, as ``cl:complex`` makes it: the floats among them decide of which kind it is."""
+    kinds = real.__class__, imag.__class__
+    if float in kinds:
+        return complex(real, imag)
+    return SingleComplex(real, imag) if SingleFloat in kinds else exact(real, imag)
+
+
 def parts(number):
-    """(real, imaginary) part of a complex ``number``, as Lisp sees them."""
-    kind = DoubleFloat if isinstance(number, DoubleComplex) else _same
-    return kind(number.real), kind(number.imag)
-
-
-def _same(part):
-    return part
-
-
-def exact_power(base, power):
-    """``base``, an `ExactComplex`, to the power of an integer, exactly."""
-    result, factor = 1, base if power >= 0 else 1 / base
-    power = abs(power)
-    while power:
-        if power & 1:
-            result = factor * result
-        factor, power = factor * factor, power >> 1
-    return result
-
-
-def _quotient(a, b, c, d):
-    size = Fraction(c * c + d * d)
-    return exact((a * c + b * d) / size, (b * c - a * d) / size)
-
-
-_EXACT = {
-    "add": lambda a, b, c, d: exact(a + c, b + d),
-    "sub": lambda a, b, c, d: exact(a - c, b - d),
-    "mul": lambda a, b, c, d: exact(a * c - b * d, a * d + b * c),
-    "truediv": _quotient,
-}
-_RATIONALS, _DOUBLES = (int, Fraction), (DoubleFloat, DoubleComplex)
-
-
-def _define(name):
-    exactly = _EXACT[name]
-    for reflected in (False, True):
-        inexactly = getattr(complex, f"__{'r' * reflected}{name}__")
-
-        def of_doubles(self, other, inexactly=inexactly):
-            result = inexactly(self, complex(other))
-            return result if result is NotImplemented else DoubleComplex(result)
-
-        def of_rationals(self, other, inexactly=inexactly, reflected=reflected):
-            if isinstance(other, (ExactComplex, *_RATIONALS)):
-                mine, its = (self.real, self.imag), (other.real, other.imag)
-                return exactly(*its, *mine) if reflected else exactly(*mine, *its)
-            kind = DoubleComplex if isinstance(other, _DOUBLES) else complex
-            return kind(inexactly(self, complex(other)))
-
-        setattr(DoubleComplex, f"__{'r' * reflected}{name}__", of_doubles)
-        setattr(ExactComplex, f"__{'r' * reflected}{name}__", of_rationals)
-
-
-for _name in _EXACT:
-    _define(_name)
-DoubleComplex.__neg__ = lambda self: DoubleComplex(complex.__neg__(self))
-DoubleComplex.conjugate = lambda self: DoubleComplex(complex.conjugate(self))
+    """(real, imaginary) part of the ``number``, as Lisp sees them; the imaginary part of a real is 0."""
+    if number.__class__ is SingleComplex:
+        return SingleFloat(number.real), SingleFloat(number.imag)
+    return (number.real, number.imag) if isinstance(number, complex) else (number, 0)

@@ -1,7 +1,7 @@
 """Roots, powers, logarithms, trigonometry, floats taken apart, and complex numbers.
 
-An integer, ratio or single-float argument gives a single-float, a double-float gives a double, and where the real line ends
-(``(sqrt -4)``, ``(acos 2)``) the result is complex. Source: ANSI 12.1.3 and 12.2.
+An integer, ratio or single-float argument gives a single-float, computed in doubles and rounded; a double-float gives a double. Where
+the real line ends (``(sqrt -4)``, ``(acos 2)``) the result is complex. Source: ANSI 12.1.3 and 12.2.
 """
 
 from __future__ import annotations
@@ -11,22 +11,30 @@ import math
 from fractions import Fraction
 
 from cramhy_runtime.ground.conditions import ArithmeticError_, DivisionByZero, FloatingPointOverflow, error, type_error
-from cramhy_runtime.ground.data import UNSUPPLIED, DoubleFloat, MultipleValues, lisp_list
+from cramhy_runtime.ground.data import UNSUPPLIED, MultipleValues, lisp_list
+from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.ground.floats import result_class
+from cramhy_runtime.ground.numbers import FIXNUM_LIMIT
 from cramhy_runtime.ground.packages import sym
 from .arithmetic import (
+    abs_,
     division_by_zero,
     is_integer,
     is_rational,
     is_real,
+    add2,
+    div2,
     mul2,
+    sub2,
     need_integer,
     need_number,
     need_real,
     normal,
     overflow,
-    single,
+    single_of,
+    too_large_for,
 )
-from .complex_numbers import DoubleComplex, ExactComplex, exact, exact_power, parts
+from .complex_numbers import ExactComplex, SingleComplex, of_parts, parts
 
 LISP_NAMES = """sqrt isqrt exp expt log sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh float rational rationalize
 complex realpart imagpart conjugate phase cis decode-float integer-decode-float scale-float float-digits float-precision
@@ -39,19 +47,14 @@ class ArgumentsOutOfDomain(ArithmeticError_):
     lisp_name = "SB-INT::ARGUMENTS-OUT-OF-DOMAIN-ERROR"
 
 
-_SINGLES_END = 2.0**128
-PI = DoubleFloat(math.pi)
-
-
-def result_kind(*numbers):
-    """The float class of a function of ``numbers``: `DoubleFloat` if one of them is a double, else ``float``."""
-    return DoubleFloat if any(number.__class__ is DoubleFloat for number in numbers) else float
+PI = math.pi
+_LOG_OF_TWO = math.log(2.0)
+MOST_POSITIVE_FIXNUM = FIXNUM_LIMIT - 1
 
 
 def complex_kind(*numbers):
     """The complex class of a function of ``numbers``, likewise."""
-    doubles = (DoubleFloat, DoubleComplex)
-    return DoubleComplex if any(number.__class__ in doubles for number in numbers) else complex
+    return complex if any(number.__class__ in (float, complex) for number in numbers) else SingleComplex
 
 
 def _float(number):
@@ -62,8 +65,14 @@ def _float(number):
         return too_large_for(number, "SINGLE-FLOAT")
 
 
-def too_large_for(number, kind):
-    return error(FloatingPointOverflow(sym("FLOAT"), lisp_list(number, sym(kind))))
+def _of_kind(kind, result, *operands):
+    """The float ``result`` of a function of ``operands`` as a float of ``kind``; an overflow where singles end."""
+    if kind is float:
+        return result
+    found = SingleFloat(result)
+    if found - found != 0.0 and result - result == 0.0:
+        return error(FloatingPointOverflow())
+    return found
 
 
 def _apply(name, real, complex_, number, domain=None):
@@ -74,7 +83,7 @@ def _apply(name, real, complex_, number, domain=None):
     if domain is not None and not domain(argument):
         return complex_kind(number)(complex_(complex(argument, 0.0)))
     try:
-        return result_kind(number)(real(argument))
+        return _of_kind(result_class(number), real(argument))
     except OverflowError:
         return error(FloatingPointOverflow())
     except ValueError:
@@ -95,8 +104,17 @@ def _function(name, domain=None):
 sin, cos, tan = _function("sin"), _function("cos"), _function("tan")
 sinh, cosh, tanh, asinh = _function("sinh"), _function("cosh"), _function("tanh"), _function("asinh")
 exp = _function("exp")
-acosh = _function("acosh", lambda x: x >= 1)
+_acosh = _function("acosh", lambda x: x >= 1)
 atanh = _function("atanh", lambda x: -1 <= x <= 1)
+
+
+def acosh(number):
+    """``cl:acosh``; imaginary between -1 and 1, in SBCL's way (Kahan's), which says something of the last digit."""
+    if not is_real(number) or not -1 < number < 1:
+        return _acosh(number)
+    kind = result_class(number)
+    angle = atan(div2(sqrt(sub2(1, number)), sqrt(add2(1, number))))
+    return complex_kind(number)(0.0, mul2(kind(2.0), angle))
 
 
 def asin(number):
@@ -124,7 +142,7 @@ def atan(number, x=UNSUPPLIED):
         return _apply("atan", math.atan, cmath.atan, number)
     need_real(number)
     need_real(x)
-    return result_kind(number, x)(math.atan2(number, x))
+    return result_class(number, x)(math.atan2(_float(number), _float(x)))
 
 
 def sqrt(number):
@@ -132,10 +150,9 @@ def sqrt(number):
     need_number(number)
     if isinstance(number, complex):
         return complex_kind(number)(cmath.sqrt(number))
-    kind = result_kind(number)
     if number < 0:
         return complex_kind(number)(0.0, math.sqrt(_float(-number)))
-    return kind(math.sqrt(_float(number)))
+    return result_class(number)(math.sqrt(_float(number)))
 
 
 def isqrt(natural):
@@ -156,7 +173,7 @@ def log(number, base=UNSUPPLIED):
         return complex_kind(number)(cmath.log(number))
     if number < 0:
         return complex_kind(number)(_natural_log(-number), math.pi)
-    return result_kind(number)(_natural_log(number))
+    return result_class(number)(_natural_log(number))
 
 
 def _natural_log(number):
@@ -166,19 +183,16 @@ def _natural_log(number):
 
 
 def _log_base(number, base):
-    if isinstance(number, complex) or isinstance(base, complex) or number <= 0 or base <= 0:
-        top, bottom = log(number), log(base)
-        return top / bottom
-    kind = result_kind(number, base)
-    if base == 2 and is_integer(number):
-        return kind(math.log2(number))
-    if base == 10 and is_integer(number):
-        return kind(math.log10(number))
-    bottom = _natural_log(base)
-    if bottom == 0:
-        return division_by_zero("/", kind(_natural_log(number)), kind(0))
-    quotient = _natural_log(number) / bottom
-    return kind(single(quotient) if kind is float else quotient)
+    # As SBCL goes: between integers and doubles by way of the binary logarithm, else each logarithm in its own kind of floats.
+    if base == 0:
+        return result_class(number, base)(0.0)
+    if is_integer(number) and is_integer(base) and max(number, base) > MOST_POSITIVE_FIXNUM and min(number, base) > 0:
+        return SingleFloat(_natural_log(number) / _natural_log(base))
+    if number.__class__ is float and is_integer(base):
+        return div2(div2(log(number), _LOG_OF_TWO), div2(log(to_double(base)), _LOG_OF_TWO))
+    if is_integer(number) and base.__class__ is float:
+        return div2(div2(log(to_double(number)), _LOG_OF_TWO), div2(log(base), _LOG_OF_TWO))
+    return div2(log(number), log(base))
 
 
 def expt(base, power):
@@ -189,31 +203,44 @@ def expt(base, power):
         return _integer_power(base, power)
     if base == 0:
         if isinstance(power, complex) or power > 0:
-            return mul2(base, power)
+            return mul2(base, power) if isinstance(power, complex) else result_class(base, power)(0.0)
+        if not isinstance(power, complex) and power < 0:
+            return error(DivisionByZero())
         return error(ArgumentsOutOfDomain(sym("EXPT"), lisp_list(base, power)))
-    kind = result_kind(base, power)
-    if isinstance(base, complex) or isinstance(power, complex) or base < 0:
+    kind = result_class(base, power)
+    if isinstance(base, complex) or isinstance(power, complex) or base < 0 and power != math.floor(power):
         result = complex(base) ** (complex(power) if isinstance(power, complex) else float(power))
         return complex_kind(base, power)(result)
     try:
-        return kind(math.pow(float(base), float(power)))
+        return _of_kind(kind, math.pow(float(base), float(power)))
     except OverflowError:
         return overflow("EXPT", base, power)
 
 
+def _exact_power(base, power):
+    """``base``, an `ExactComplex`, to the power of an integer."""
+    result, factor = 1, base if power >= 0 else div2(1, base)
+    power = abs(power)
+    while power:
+        if power & 1:
+            result = mul2(factor, result)
+        factor, power = mul2(factor, factor), power >> 1
+    return result
+
+
 def _integer_power(base, power):
     if power == 0:
-        return 1 if is_rational(base) or isinstance(base, ExactComplex) else base.__class__(1)
+        return 1 if is_rational(base) or isinstance(base, ExactComplex) else base.__class__(1.0)
     if base == 0 and power < 0:
         return division_by_zero("EXPT", base, power)
     try:
         if is_rational(base):
             return base**power if power > 0 and base.__class__ is int else normal(Fraction(base) ** power)
         if isinstance(base, ExactComplex):
-            return exact_power(base, power)
+            return _exact_power(base, power)
         if isinstance(base, complex):
-            return complex_kind(base)(complex(base) ** power)
-        return base.__class__(float(base) ** power)
+            return mul2(expt(abs_(base), power), cis(mul2(power, phase(base))))
+        return _of_kind(base.__class__, math.pow(base, power))
     except OverflowError:
         return overflow("EXPT", base, power)
 
@@ -221,20 +248,10 @@ def _integer_power(base, power):
 # ------------------------------------------------------------------------------------------------------------------- floats
 
 
-def to_single(number):
-    """The real ``number`` as a single-float, that is, a plain Python float."""
-    if number.__class__ is float:
-        return number
-    value = _float(number)
-    return value if abs(value) < _SINGLES_END or math.isinf(value) else too_large_for(number, "SINGLE-FLOAT")
-
-
 def to_double(number):
-    """The real ``number`` as a `DoubleFloat`; a single-float brings the 24 bits that it has."""
-    if number.__class__ is float:
-        return DoubleFloat(single(number))
+    """The real ``number`` as a double-float."""
     try:
-        return DoubleFloat(number)
+        return float(number)
     except OverflowError:
         return too_large_for(number, "DOUBLE-FLOAT")
 
@@ -243,25 +260,21 @@ def float_(number, prototype=UNSUPPLIED):
     """``number`` as a float of the kind of ``prototype``; without one, floats stay and rationals become singles."""
     need_real(number)
     if prototype is UNSUPPLIED:
-        return number if isinstance(number, float) else to_single(number)
+        return number if isinstance(number, float) else single_of(number)
     _need_float(prototype)
     if prototype.__class__ is number.__class__:
         return number
-    return to_double(number) if prototype.__class__ is DoubleFloat else to_single(number)
+    return to_double(number) if prototype.__class__ is float else single_of(number)
 
 
 def _need_float(obj):
     return obj if isinstance(obj, float) else type_error(obj, sym("FLOAT"))
 
 
-def _exact(number):
-    return float(number) if number.__class__ is DoubleFloat else single(number)
-
-
 def rational(number):
     """The rational that is exactly the float ``number``."""
     need_real(number)
-    return normal(Fraction(_exact(number))) if isinstance(number, float) else number
+    return normal(Fraction(float(number))) if isinstance(number, float) else number
 
 
 def rationalize(number):
@@ -269,25 +282,31 @@ def rationalize(number):
     need_real(number)
     if not isinstance(number, float):
         return number
-    if number.__class__ is DoubleFloat:
-        return normal(_simplest(float(number), float))
-    return normal(_simplest(single(number), lambda value: single(float(value))))
+    return _simplest(number)
 
 
-def _simplest(value, back):
-    # Walk down the continued fraction of the exact value until a convergent reads back as the same float.
-    exact = Fraction(value)
-    if exact.denominator == 1:
-        return exact
-    h0, h1, k0, k1 = 0, 1, 1, 0
-    rest = exact
+def _simplest(number):
+    """The rational with the least denominator between the two middles of the float ``number`` and its neighbours.
+
+    Both bounds are walked down their continued fractions as long as these agree. The neighbours are taken to be as far as they are above,
+    which is SBCL's way.
+    """
+    digits = float_digits(number)
+    significand, exponent = math.frexp(abs(number))
+    whole, exponent = int(math.ldexp(significand, digits)), exponent - digits
+    if exponent >= 0 or not whole:
+        return int(number)
+    half = Fraction(1, 2 << -exponent)
+    low, high = (2 * whole - 1) * half, (2 * whole + 1) * half
+    before, bottom_before, last, bottom_last = 0, 1, 1, 0
     while True:
-        whole = math.floor(rest)
-        h0, h1, k0, k1 = h1, whole * h1 + h0, k1, whole * k1 + k0
-        candidate = Fraction(h1, k1)
-        if back(candidate) == value or rest == whole:
-            return candidate
-        rest = 1 / (rest - whole)
+        least = math.ceil(low)
+        if least < high:
+            found = Fraction(least * last + before, least * bottom_last + bottom_before)
+            return normal(-found if number < 0 else found)
+        step = least - 1
+        before, bottom_before, last, bottom_last = last, bottom_last, step * last + before, step * bottom_last + bottom_before
+        low, high = 1 / (high - step), 1 / (low - step)
 
 
 def decode_float(number):
@@ -300,7 +319,7 @@ def decode_float(number):
 def integer_decode_float(number):
     """Three values: significand as an integer of 24 or 53 bits, exponent, sign (1 or -1)."""
     digits = float_digits(number)
-    significand, exponent = math.frexp(abs(_exact(number)))
+    significand, exponent = math.frexp(abs(number))
     return MultipleValues((int(significand * 2**digits), exponent - digits if significand else 0, int(math.copysign(1, number))))
 
 
@@ -308,18 +327,18 @@ def scale_float(number, exponent):
     """``number * 2**exponent``"""
     _need_float(number)
     try:
-        return number.__class__(math.ldexp(float(number), need_integer(exponent)))
+        return _of_kind(number.__class__, math.ldexp(float(number), need_integer(exponent)))
     except OverflowError:
         return overflow("SCALE-FLOAT", number, exponent)
 
 
 def float_digits(number):
-    return 53 if _need_float(number).__class__ is DoubleFloat else 24
+    return 24 if _need_float(number).__class__ is SingleFloat else 53
 
 
 def float_precision(number):
-    digits, exponent = float_digits(number), math.frexp(_exact(number))[1]
-    least = -1074 if number.__class__ is DoubleFloat else -149
+    digits, exponent = float_digits(number), math.frexp(number)[1]
+    least = -149 if number.__class__ is SingleFloat else -1074
     return max(0, min(digits, exponent - least)) if number else 0
 
 
@@ -331,7 +350,7 @@ def float_radix(number):
 def float_sign(number, magnitude=UNSUPPLIED):
     """A float with the sign of the first and the size of the second argument (1 by default)."""
     _need_float(number)
-    kind = result_kind(number) if magnitude is UNSUPPLIED else _need_float(magnitude).__class__
+    kind = result_class(number) if magnitude is UNSUPPLIED else _need_float(magnitude).__class__
     return kind(math.copysign(1.0 if magnitude is UNSUPPLIED else abs(float(magnitude)), number))
 
 
@@ -342,9 +361,7 @@ def complex_(realpart, imagpart=0):
     """``cl:complex``; with rational parts and imaginary part 0 just the real part."""
     need_real(realpart)
     need_real(imagpart)
-    if is_rational(realpart) and is_rational(imagpart):
-        return exact(realpart, imagpart)
-    return complex_kind(realpart, imagpart)(realpart, imagpart)
+    return of_parts(realpart, imagpart)
 
 
 def realpart(number):
@@ -365,9 +382,9 @@ def phase(number):
     """The angle of ``number`` in the complex plane, in radians."""
     need_number(number)
     if isinstance(number, complex):
-        return (DoubleFloat if isinstance(number, DoubleComplex) else float)(cmath.phase(number))
-    kind = result_kind(number)
-    return kind(math.pi) if number < 0 else kind(0.0)
+        return (float if number.__class__ is complex else SingleFloat)(cmath.phase(number))
+    kind = result_class(number)
+    return kind(math.pi) if number < 0 or isinstance(number, float) and math.copysign(1.0, number) < 0 else kind(0.0)
 
 
 def cis(radians):
@@ -381,7 +398,7 @@ def _limits():
     for names, kind, largest, normalized, least, epsilon, negative in (
         (
             ("SINGLE-FLOAT", "SHORT-FLOAT"),
-            float,
+            SingleFloat,
             (2 - 2.0**-23) * 2.0**127,
             2.0**-126,
             2.0**-149,
@@ -390,7 +407,7 @@ def _limits():
         ),
         (
             ("DOUBLE-FLOAT", "LONG-FLOAT"),
-            DoubleFloat,
+            float,
             (2 - 2.0**-52) * 2.0**1023,
             2.0**-1022,
             2.0**-1074,
@@ -407,5 +424,5 @@ def _limits():
     return table
 
 
-CONSTANTS = {"PI": PI, "MOST-POSITIVE-FIXNUM": 2**62 - 1, "MOST-NEGATIVE-FIXNUM": -(2**62), **_limits()}
+CONSTANTS = {"PI": PI, "MOST-POSITIVE-FIXNUM": MOST_POSITIVE_FIXNUM, "MOST-NEGATIVE-FIXNUM": -(2**62), **_limits()}
 """The constants among the numbers, by Lisp name."""

@@ -11,10 +11,10 @@ from __future__ import annotations
 import random as python_random
 
 from cramhy_runtime.ground.conditions import SimpleTypeError, error, type_error
-from cramhy_runtime.ground.data import DoubleFloat
+from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.packages import sym
-from .arithmetic import is_integer, single
+from .arithmetic import is_integer
 
 LISP_NAMES = "random make-random-state random-state-p"
 EXTENSION_NAMES = "seed-random-state"
@@ -71,7 +71,7 @@ def random(limit, state=None):
     if is_integer(limit) and limit > 0:
         return _integer(limit, state)
     if isinstance(limit, float) and limit > 0:
-        return _double(limit, state) if limit.__class__ is DoubleFloat else _single(limit, state)
+        return _single(limit, state) if limit.__class__ is SingleFloat else _double(limit, state)
     return error(
         SimpleTypeError(
             "Argument is neither a positive integer nor a positive float:~%  ~S",
@@ -99,7 +99,7 @@ def _integer(limit, state):
 
 def _single(limit, state):
     while True:
-        number = single(limit * ((state.chunk() >> 8 & 0x7FFFFF) * 2.0**-23))
+        number = limit * SingleFloat((state.chunk() >> 8 & 0x7FFFFF) * 2.0**-23)
         if number != limit:
             return number
 
@@ -107,7 +107,7 @@ def _single(limit, state):
 def _double(limit, state):
     while True:
         high = state.chunk() >> 11 & 0xFFFFF
-        number = DoubleFloat(float(limit) * ((high << 32 | state.chunk()) * 2.0**-52))
+        number = float(limit) * ((high << 32 | state.chunk()) * 2.0**-52)
         if number != limit:
             return number
 

@@ -1,96 +1,84 @@
 """Division with rest: ``floor``, ``ceiling``, ``truncate``, ``round`` and their float cousins.
 
-Each returns two values, quotient and rest, with ``quotient * divisor + rest = number``. For floats the quotient is computed
-first and then rounded, as SBCL does it; a quotient of singles is rounded to a single before, so ``(floor 1.0 0.1)`` is 10
-although a double would have it at 9.99. Source: ANSI 12.2 (FLOOR).
+Each returns two values, quotient and rest, with ``quotient * divisor + rest = number``. Floats go SBCL's way: both become floats of one
+kind, their quotient is truncated, the rest computed from that, and then both are moved by one where another rounding asks for it. So
+``(floor 1.0 0.1)`` is 10 although a double would have it at 9.99. Source: ANSI 12.2 (FLOOR).
 """
 
 from __future__ import annotations
 
 import math
-from fractions import Fraction
 
-from cramhy_runtime.ground.data import DoubleFloat, MultipleValues
-from .arithmetic import division_by_zero, need_real, normal, overflow, single
+from cramhy_runtime.ground.data import MultipleValues
+from cramhy_runtime.ground.floats import SingleFloat, result_class
+from .arithmetic import div2, need_real, normal, overflow, single_of
+from .irrational import to_double
 
 LISP_NAMES = "floor ceiling truncate round ffloor fceiling ftruncate fround"
 
-_EXACT_SINGLES = 2.0**24
 
-
-def _quotient(number, divisor):
-    """number / divisor, exact for rationals; of floats rounded to a single unless one is a double."""
+def _truncated(number, divisor):
+    """(quotient, rest, divisor as it was used) of the division that rounds towards zero."""
     if isinstance(number, float) or isinstance(divisor, float):
-        if divisor == 0:
-            kind = DoubleFloat if DoubleFloat in (number.__class__, divisor.__class__) else float
-            return division_by_zero("/", kind(number), kind(divisor))
-        quotient = number / divisor
-        if quotient.__class__ is float and abs(quotient) < _EXACT_SINGLES and divisor != 1:
-            quotient = single(quotient)
-        return quotient
-    if divisor == 0:
-        return division_by_zero("/", number, divisor)
-    return Fraction(number, divisor)
-
-
-def _whole(rounding, number, divisor):
-    quotient = _quotient(number, divisor)
+        convert = single_of if result_class(number, divisor) is SingleFloat else to_double
+        number, divisor = convert(number), convert(divisor)
     try:
-        return rounding(quotient)
+        quotient = math.trunc(div2(number, divisor))
+        return quotient, normal(number - quotient * divisor), divisor
     except (OverflowError, ValueError):  # infinity, or not a number
-        return overflow("/", number, divisor)
+        return overflow("/", number, divisor), 0, divisor
 
 
-def _rest(number, quotient, divisor):
-    rest = number - quotient * divisor
-    if rest.__class__ is Fraction:
-        return normal(rest)
-    return rest
-
-
-def _rounder(name, rounding):
-    def function(number, divisor=1):
-        need_real(number)
-        need_real(divisor)
-        quotient = _whole(rounding, number, divisor)
-        return MultipleValues((quotient, _rest(number, quotient, divisor)))
-
-    function.__name__ = function.__qualname__ = name
-    function.__doc__ = f"``cl:{name.rstrip('_')}``: quotient and rest."
-    return function
-
-
-_general_floor = _rounder("floor", math.floor)
-_general_truncate = _rounder("truncate", math.trunc)
-ceiling = _rounder("ceiling", math.ceil)
-round_ = _rounder("round_", round)
+def truncate(number, divisor=1):
+    """``cl:truncate``: quotient rounded towards zero, and rest."""
+    quotient, rest, _ = _truncated(need_real(number), need_real(divisor))
+    return MultipleValues((quotient, rest))
 
 
 def floor(number, divisor=1):
     """``cl:floor``: quotient rounded towards minus infinity, and rest."""
     if number.__class__ is int and divisor.__class__ is int and divisor:
         return MultipleValues(divmod(number, divisor))
-    return _general_floor(number, divisor)
+    quotient, rest, divisor = _truncated(need_real(number), need_real(divisor))
+    if rest and (rest < 0) != (divisor < 0):
+        quotient, rest = quotient - 1, rest + divisor
+    return MultipleValues((quotient, rest))
 
 
-def truncate(number, divisor=1):
-    """``cl:truncate``: quotient rounded towards zero, and rest."""
-    return _general_truncate(number, divisor)
+def ceiling(number, divisor=1):
+    """``cl:ceiling``: quotient rounded towards infinity, and rest."""
+    quotient, rest, divisor = _truncated(need_real(number), need_real(divisor))
+    if rest and (rest < 0) == (divisor < 0):
+        quotient, rest = quotient + 1, rest - divisor
+    return MultipleValues((quotient, rest))
+
+
+def round_(number, divisor=1):
+    """``cl:round``: quotient rounded to the nearest integer, from the middle to the even one, and rest."""
+    quotient, rest, divisor = _truncated(need_real(number), need_real(divisor))
+    half = div2(abs(divisor), 2)
+    if abs(rest) > half or abs(rest) == half and quotient % 2:
+        step = 1 if (rest < 0) == (divisor < 0) else -1
+        quotient, rest = quotient + step, rest - step * divisor
+    return MultipleValues((quotient, rest))
 
 
 def _float_rounder(name, rounder):
     def function(number, divisor=1):
         quotient, rest = rounder(number, divisor)
-        kind = DoubleFloat if DoubleFloat in (number.__class__, divisor.__class__) else float
-        result = kind(quotient)
-        # Minus zero is kept: (fceiling -0.5) is -0.0.
-        if quotient == 0 and (number < 0) != (divisor < 0) and number != 0:
-            result = kind(-0.0)
-        return MultipleValues((result, rest))
+        kind = result_class(number, divisor)
+        # Minus zero is kept: (fceiling -0.5) is -0.0. Rationals, and fround, know none.
+        if quotient == 0 and rounder is not round_ and isinstance(rest, float) and _negative(number) != _negative(divisor):
+            return MultipleValues((kind(-0.0), rest))
+        return MultipleValues((kind(quotient), rest))
 
     function.__name__ = function.__qualname__ = name
     function.__doc__ = f"``cl:{name}``: as the function without f, the quotient as a float."
     return function
+
+
+def _negative(number):
+    return math.copysign(1.0, number) < 0 if isinstance(number, float) else number < 0
 
 
 ffloor = _float_rounder("ffloor", floor)

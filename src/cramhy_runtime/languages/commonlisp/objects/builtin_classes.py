@@ -15,7 +15,8 @@ from pathlib import PurePath
 from cramhy_runtime.ground.arrays import BitVector, LispArray, SimpleArray, SimpleBitVector, TypedVector, Vector
 from cramhy_runtime.ground.classes import BigInteger
 from cramhy_runtime.ground.conditions import Condition, Restart
-from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol
+from cramhy_runtime.ground.data import Character, Cons, Keyword, LispString, Symbol
+from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.packages import Package, sym
 from cramhy_runtime.kernel.images import Cell
 
@@ -59,8 +60,8 @@ _make_classes()
 _MAP = {
     int: "FIXNUM",
     bool: "SYMBOL",
-    float: "SINGLE-FLOAT",
-    DoubleFloat: "DOUBLE-FLOAT",
+    float: "DOUBLE-FLOAT",
+    SingleFloat: "SINGLE-FLOAT",
     Fraction: "RATIO",
     complex: "COMPLEX",
     type(None): "NULL",

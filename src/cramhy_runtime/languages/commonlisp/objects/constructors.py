@@ -9,13 +9,13 @@ from __future__ import annotations
 from functools import cache
 
 from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.data import UNSUPPLIED, Character, DoubleFloat, Keyword, one
+from cramhy_runtime.ground.data import FLOATS, UNSUPPLIED, Character, Keyword, one
 from cramhy_runtime.ground.dispatch.keyword_checks import ALLOW_OTHER_KEYS
 from cramhy_runtime.ground.keyword_calls import GIVEN, name_of_key
 from cramhy_runtime.ground.packages import symbol_name
 from cramhy_runtime.utilities.generated_functions import generated_function
 
-_CONSTANTS = frozenset({int, float, DoubleFloat, bool, type(None), str, Keyword, Character})
+_CONSTANTS = frozenset({int, *FLOATS, bool, type(None), str, Keyword, Character})
 """Classes of forms that are their own value."""
 
 

@@ -15,7 +15,7 @@ from fractions import Fraction
 
 from cramhy_runtime.ground.condition_types import Condition, ProgramError, shown
 from cramhy_runtime.ground.conditions import SimpleError, error, program_error, type_error
-from cramhy_runtime.ground.data import UNBOUND, Character, Cons, DoubleFloat, Keyword, LispString, Symbol, list_from, one, python_list
+from cramhy_runtime.ground.data import FLOATS, UNBOUND, Character, Cons, Keyword, LispString, Symbol, list_from, one, python_list
 from cramhy_runtime.ground.packages import is_symbol, keyword, symbol_name
 from .builtin_classes import BuiltInClass, lisp_mro
 from .class_definition import default_initargs
@@ -259,11 +259,11 @@ def _child(cls, base):
 
 
 def _python_init(cls, slots):
-    """(the ``__init__`` of the runtime class behind ``cls``, or None; its parameters by initarg)"""
+    """(the ``lisp_init`` or ``__init__`` of the runtime class behind ``cls``, or None; its parameters by initarg)"""
     for base in cls.__mro__:
         if base in (object, BaseException, Exception, StandardObject):
             continue
-        init = vars(base).get("__init__")
+        init = getattr(base, "lisp_init", None) or vars(base).get("__init__")
         if init is None or "lisp_direct_slots" in vars(base):
             continue
         import inspect  # 5 ms, and most programs make no instance of a Python class
@@ -354,9 +354,7 @@ def _plan_or_error(cls):
     return plan_for(cls)
 
 
-_NO_INSTANCES = frozenset(
-    {int, float, complex, bool, str, list, type(None), Fraction, DoubleFloat, Symbol, Keyword, Cons, Character, LispString}
-)
+_NO_INSTANCES = frozenset({int, *FLOATS, complex, bool, str, list, type(None), Fraction, Symbol, Keyword, Cons, Character, LispString})
 """Classes of objects that have no slots, so that the functions here have no method for them."""
 
 

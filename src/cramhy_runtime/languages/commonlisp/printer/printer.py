@@ -25,13 +25,13 @@ from cramhy_runtime.ground.data import (
     WRITABLE_STRINGS,
     Character,
     Cons,
-    DoubleFloat,
     FreshString,
     Keyword,
     LispString,
     MultipleValues,
     Symbol,
 )
+from cramhy_runtime.ground.floats import SingleFloat
 from ..streams.streams import BroadcastStream, Stream, StringOutputStream, output_stream
 from cramhy_runtime.ground.plain_answers import printers, printers_found
 from cramhy_runtime.ground.plain_answers import printer_for as nearest_printer
@@ -39,7 +39,7 @@ from cramhy_runtime.ground.printing import SUPPRESS, bounded, define_printer, pr
 from cramhy_runtime.kernel.looking_on import only_looked_at
 from cramhy_runtime.kernel.images import Cell
 from . import print_controls as controls
-from cramhy_runtime.ground.float_printing import float_text
+from .float_printing import float_text
 from .pprint_dispatch import PRINT_PPRINT_DISPATCH
 from .components import COMPONENTS
 from .flat_lists import flat_text
@@ -102,7 +102,7 @@ _ATOMS = {
     Symbol: symbol_text,
     Keyword: symbol_text,
     float: lambda obj, escape: float_text(obj),
-    DoubleFloat: lambda obj, escape: float_text(obj),
+    SingleFloat: lambda obj, escape: float_text(obj),
     Fraction: lambda obj, escape: ratio_text(obj),
     Character: lambda obj, escape: character_text(obj.char) if escape else obj.char,
 }

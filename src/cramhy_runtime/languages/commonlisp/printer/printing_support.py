@@ -10,7 +10,7 @@ from cramhy_runtime.ground.data import LispString
 from cramhy_runtime.ground.packages import COMMON_LISP_USER, sym
 from ..streams.streams import STANDARD_OUTPUT, TERMINAL_IO, StringOutputStream, output_stream
 from . import print_controls, printer
-from cramhy_runtime.ground.float_printing import READ_DEFAULT_FLOAT_FORMAT
+from .float_printing import READ_DEFAULT_FLOAT_FORMAT
 from .pprint_dispatch import INITIAL, PRINT_PPRINT_DISPATCH
 from .pretty import call_logical_block
 

@@ -2,8 +2,8 @@
 
 Source: ANSI 2.3. A token is a number when it has the syntax of one in the current radix; otherwise, unless it consists of dots
 only, it names a symbol. Floats without an exponent marker, or with ``e``, have the format that
-``*read-default-float-format*`` says; ``d`` and ``l`` make doubles, ``f`` and ``s`` singles, which keep the digits of their
-literal (see ``ground/data.py``) but not a magnitude that a single-float cannot have.
+``*read-default-float-format*`` says; ``d`` and ``l`` make doubles, ``f`` and ``s`` singles, which are
+rounded once from their digits.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ import re
 import unicodedata
 from fractions import Fraction
 
-from cramhy_runtime.ground.data import DoubleFloat, LispString, MultipleValues
+from cramhy_runtime.ground.data import LispString, MultipleValues
+from cramhy_runtime.ground.floats import SingleFloat, to_float32
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.kernel.active import checkpoint
@@ -31,8 +32,6 @@ DIGITS = "0123456789abcdefghijklmnopqrstuvwxyz"
 _rationals: dict = {}
 SINGLE_LIMIT = 3.4028235677973366e38
 """The smallest magnitude that rounds to no single-float."""
-SINGLE_ZERO = 2.0**-150
-"""The largest magnitude that rounds to the single-float zero."""
 
 READ_BASE = special("*READ-BASE*", 10)
 FLOAT_FORMAT = special("*READ-DEFAULT-FLOAT-FORMAT*", sym("SINGLE-FLOAT"))
@@ -121,13 +120,15 @@ def _float(token, mantissa, marker, exponent):
     if double:
         if value in (float("inf"), float("-inf")):
             raise NumberError(f"failed to build float from {token}", "The largest double-float is about 1.8d308.")
-        return DoubleFloat(value)
+        return value
     if not -SINGLE_LIMIT < value < SINGLE_LIMIT:
         raise NumberError(
             f"failed to build float from {token}",
             "The largest single-float is about 3.4e38; write the exponent with d for a double-float: 1d39.",
         )
-    return value if abs(value) > SINGLE_ZERO else math.copysign(0.0, value)
+    if to_float32(math.nextafter(value, -math.inf)) == to_float32(math.nextafter(value, math.inf)):
+        return SingleFloat(value)
+    return SingleFloat(Fraction(mantissa) * Fraction(10) ** int(exponent or 0))  # near the middle of two singles: else rounded twice
 
 
 # -------------------------------------------------------------------------------------------------------------------- names

@@ -1,8 +1,7 @@
 """``coerce``: an object as one of another type.
 
 Sequences become other sequences (``collections/sequence_types.py``), reals become floats or complex numbers, strings and symbols of one
-character become characters, symbols and lambda expressions become functions. A single-float that becomes a double brings the 24
-bits that it has: ``(coerce 0.1 'double-float)`` is 0.10000000149011612d0. Source: ANSI COERCE; texts are SBCL's.
+character become characters, symbols and lambda expressions become functions. Source: ANSI COERCE; texts are SBCL's.
 """
 
 from __future__ import annotations
@@ -10,9 +9,9 @@ from __future__ import annotations
 from cramhy_runtime.ground.conditions import SimpleTypeError, error
 from cramhy_runtime.ground.data import Cons, LispString, Symbol
 from cramhy_runtime.ground.functions import fdefinition, function_named, functionp
-from ..numbers.arithmetic import is_real
+from ..numbers.arithmetic import is_real, single_of
 from ..numbers.complex_numbers import parts
-from ..numbers.irrational import complex_, to_double, to_single
+from ..numbers.irrational import complex_, to_double
 from cramhy_runtime.ground.packages import is_symbol, sym
 from cramhy_runtime.ground.ports import PORTS
 from .types import expand_type, type_predicate
@@ -35,7 +34,7 @@ def coerce(object, output_type_spec):
     if name in _DOUBLES and is_real(object):
         return _checked(to_double(object), object, specifier)
     if name in _SINGLES and is_real(object):
-        result = object if name == "FLOAT" and isinstance(object, float) else to_single(object)
+        result = object if name == "FLOAT" and isinstance(object, float) else single_of(object)
         return _checked(result, object, specifier)
     if name == "COMPLEX":
         return _to_complex(object, specifier)
@@ -74,7 +73,7 @@ def _to_complex(obj, specifier):
         return _cannot(obj, specifier)
     if part is not sym("*") and part not in (sym("REAL"), sym("RATIONAL"), sym("INTEGER")):
         return complex_(*(coerce(each, part) for each in (parts(obj) if isinstance(obj, complex) else (obj, 0))))
-    return complex_(obj, 0.0) if isinstance(obj, float) else obj
+    return complex_(obj, obj.__class__(0.0)) if isinstance(obj, float) else obj
 
 
 def _to_function(obj):

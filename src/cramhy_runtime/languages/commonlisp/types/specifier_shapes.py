@@ -7,7 +7,8 @@ and the pages of the type specifiers.
 from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import SimpleError, SimpleTypeError, error
-from cramhy_runtime.ground.data import Cons, DoubleFloat, Symbol, lisp_list, list_from
+from cramhy_runtime.ground.data import Cons, Symbol, lisp_list, list_from
+from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.functions import check_shape
 from cramhy_runtime.ground.packages import is_symbol, sym
 from ..numbers.arithmetic import is_integer, is_rational, is_real
@@ -17,8 +18,8 @@ _REALS = {
     "RATIONAL": ("a rational", "rational", is_rational),
     "REAL": ("a real", "real", is_real),
     "FLOAT": ("a real", "real", is_real),
-    "SINGLE-FLOAT": ("a single-float", "single-float", lambda limit: isinstance(limit, float) and limit.__class__ is not DoubleFloat),
-    "DOUBLE-FLOAT": ("a double-float", "double-float", lambda limit: limit.__class__ is DoubleFloat),
+    "SINGLE-FLOAT": ("a single-float", "single-float", lambda limit: limit.__class__ is SingleFloat),
+    "DOUBLE-FLOAT": ("a double-float", "double-float", lambda limit: isinstance(limit, float) and limit.__class__ is not SingleFloat),
 }
 _REALS |= {"SHORT-FLOAT": _REALS["SINGLE-FLOAT"], "LONG-FLOAT": _REALS["DOUBLE-FLOAT"]}
 _SHAPES = {

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from cramhy_runtime.ground.data import Cons, DoubleFloat, Symbol, lisp_list, list_from, python_list
+from cramhy_runtime.ground.data import Cons, Symbol, lisp_list, list_from, python_list
+from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.numbers import FIXNUM_LIMIT
 from cramhy_runtime.ground.packages import sym
 from .types import expand_type
@@ -27,7 +28,7 @@ def simplified_type(specifier):
     if name == "INTEGER":
         return _integer(*(*arguments, STAR, STAR)[:2], specifier)
     if name in ("FLOAT", "REAL") and any(bound is not STAR for bound in arguments):
-        parts = [_range("SINGLE-FLOAT", float, arguments), _range("DOUBLE-FLOAT", DoubleFloat, arguments)]
+        parts = [_range("SINGLE-FLOAT", SingleFloat, arguments), _range("DOUBLE-FLOAT", float, arguments)]
         if name == "REAL":
             parts.append(_range("RATIONAL", _exact, arguments))
         return Cons(sym("OR"), list_from(parts))

@@ -23,7 +23,8 @@ from math import copysign, inf
 from cramhy_runtime.kernel.typing_names import NamedTuple
 from cramhy_runtime.ground.arrays import dimensions, element_type, is_simple
 from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Keyword, Symbol
+from cramhy_runtime.ground.data import Character, Cons, Keyword, Symbol
+from cramhy_runtime.ground.floats import SingleFloat
 from ..numbers.complex_numbers import parts
 from ..objects.builtin_classes import CLASSES, BuiltInClass, lisp_mro
 from ..objects.classes import StructureClass
@@ -433,7 +434,7 @@ def line_of(obj):
     if obj.__class__ is int:
         return "integers"
     if isinstance(obj, float):
-        return "doubles" if obj.__class__ is DoubleFloat else "singles"
+        return "singles" if obj.__class__ is SingleFloat else "doubles"
     return "ratios" if isinstance(obj, Fraction) else None
 
 

@@ -26,7 +26,8 @@ from cramhy_runtime.ground.arrays import (
     is_simple,
 )
 from cramhy_runtime.ground.conditions import SimpleError, error
-from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol, UndefinedFunction, lisp_list, one, truth
+from cramhy_runtime.ground.data import Character, Cons, Keyword, LispString, Symbol, UndefinedFunction, lisp_list, one, truth
+from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.equality import eql, equal
 from ..pathnames.pathname_objects import Pathname
 from ..numbers.arithmetic import is_integer, is_number, is_rational, is_real
@@ -132,9 +133,9 @@ _ATOMIC = {
     "*": lambda obj: True,
 }
 for _name in ("SINGLE-FLOAT", "SHORT-FLOAT"):
-    _ATOMIC[_name] = lambda obj: isinstance(obj, float) and obj.__class__ is not DoubleFloat
+    _ATOMIC[_name] = lambda obj: obj.__class__ is SingleFloat
 for _name in ("DOUBLE-FLOAT", "LONG-FLOAT"):
-    _ATOMIC[_name] = lambda obj: obj.__class__ is DoubleFloat
+    _ATOMIC[_name] = lambda obj: isinstance(obj, float) and obj.__class__ is not SingleFloat
 _BUILT_IN = {sym(name): predicate for name, predicate in _ATOMIC.items()}
 _predicates = dict(_BUILT_IN)
 _compound: dict = {}

@@ -9,13 +9,12 @@ from __future__ import annotations
 from cramhy_runtime.ground.packages import sym
 from .. import nodes
 from ..core import expression, word
-from .operations import AND, DOUBLE_CLASS, FLOAT_CLASS, IF, INT_CLASS, IS, LARGEST, OR
+from .operations import AND, FLOAT_CLASS, IF, INT_CLASS, IS, LARGEST, OR, SINGLE_CLASS, rounded
 from .quotients import QuotientGenerator
 from ..kinds import (
     ABS,
     COERCE,
     DOUBLE,
-    DOUBLE_TYPES,
     FEW_BITS,
     FLOAT,
     FLOATS,
@@ -97,45 +96,41 @@ class NumberGenerator(QuotientGenerator):
     def smooth(self, node, symbol, arguments):
         (operand,) = self.operands(arguments)
         name, inside = SMOOTH_RANGES[symbol]
-        is_raw = raw(kind_of(node)) and operand.raw
+        is_raw = raw(kind_of(node))
         slow = self.called(node, symbol, [operand])
         if is_raw:
             slow = self.unwrapped(slow, 0)
-        if not operand.kind & (MACHINE | THING) or not operand.kind:
+        single = not operand.kind & DOUBLE
+        if not operand.kind & (MACHINE | THING) or not operand.kind or operand.kind & (INT | DOUBLE) == INT | DOUBLE and operand.known:
             self.settle([operand])
             return slow, is_raw
-        if exactly(operand.kind, MACHINE) and operand.known and operand.size < FEW_BITS:
-            if operand.kind & DOUBLE and (operand.kind & INT or not is_raw):  # of an integer it would be a single
-                self.settle([operand])
-                return slow, is_raw
+        if operand.known and operand.size < FEW_BITS:
             sure = symbol is SQRT and never_negative(arguments[0]) and exactly(operand.kind, INT)
             test = None if sure else inside(operand.first)
             model = self.call(name, operand.first if test is None else operand.later)
+            if single:
+                model = rounded(model)
+                model = model if is_raw else self.call("new_single", model)
             return (model if test is None else expression(IF, test, model, slow)), is_raw
-        noted, again = self.noted_class(operand.first)
-        test = inside(operand.later)
+        model = self.call(name, operand.later)
         if operand.raw:
-            test = [expression(IS, noted, FLOAT_CLASS)] + ([test] if test else [])
-            if operand.kind & INT or not is_raw:
+            if operand.kind & INT:
                 self.settle([operand])
                 return slow, is_raw
-            return expression(IF, expression(AND, *test) if len(test) > 1 else test[0], self.call(name, operand.later), slow), is_raw
-        model = self.call(name, operand.later)
-        both = expression(
-            IF,
-            expression(IS, again, FLOAT_CLASS),
-            model,
-            expression(IF, expression(IS, again, DOUBLE_CLASS), self.call("double", model), slow),
-        )
+            noted, _ = self.noted_class(operand.first)
+            tests = [expression(IS, noted, FLOAT_CLASS), inside(operand.later)]
+            model = rounded(model) if is_raw else self.call("new_single", rounded(model))
+            return self.behind(tests, model, slow), is_raw
+        noted, again = self.noted_class(operand.first)
+        test = inside(operand.later)
+        single = self.call("new_single", rounded(model))
         if test is None:
-            both[1][1] = noted
-            if noted is not again:
-                both[3][1][1] = again
-            return both, False
+            both = expression(IF, expression(IS, again, SINGLE_CLASS), single, slow)
+            return expression(IF, expression(IS, noted, FLOAT_CLASS), model, both), False
         # the class once more after the range, which must not be asked of what is no number
-        single = expression(AND, expression(IS, noted, FLOAT_CLASS), test)
-        double = expression(AND, expression(IS, self.class_of(operand.later), DOUBLE_CLASS), test)
-        return expression(IF, single, model, expression(IF, double, self.call("double", model), slow)), False
+        one = expression(AND, expression(IS, noted, FLOAT_CLASS), test)
+        other = expression(AND, expression(IS, self.class_of(operand.later), SINGLE_CLASS), test)
+        return expression(IF, one, model, expression(IF, other, single, slow)), False
 
     def angle(self, node, symbol, arguments):
         operands = self.operands(arguments)
@@ -145,9 +140,9 @@ class NumberGenerator(QuotientGenerator):
         one, other = operands
         model = self.call("atan2", one.later, other.later)
         if known and exactly(kind, SINGLE):
-            return model, False
+            return rounded(model), True
         if known and exactly(kind, DOUBLE) and not (one.kind | other.kind) & INT:
-            return model, True
+            return model, False
         slow = self.called(node, symbol, operands)
         if one.raw or other.raw:
             return (self.unwrapped(slow, 0), True) if raw(kind) else (slow, False)
@@ -162,7 +157,7 @@ class NumberGenerator(QuotientGenerator):
         model = expression(IF, better, other.later, one.later)
         slow = self.called(node, symbol, operands)
         if all(exactly(operand.kind, MACHINE) for operand in operands):
-            if one.raw == other.raw or exactly(one.kind | other.kind, INT | DOUBLE):
+            if one.raw == other.raw or exactly(one.kind | other.kind, INT | SINGLE):
                 return model, one.raw or other.raw
         is_raw = raw(kind_of(node))
         if is_raw:
@@ -245,27 +240,33 @@ class NumberGenerator(QuotientGenerator):
             return self.behind([self.integers(operands), rest[0].later], quotient, slow), False
         if not rest and not one.raw and one.kind & FLOATS and symbol is not ROUND:
             name = {FLOOR: "floor", CEILING: "ceil", TRUNCATE: "int"}[symbol]
-            tests = [expression(IS, self.class_of(one.later), FLOAT_CLASS), _finite(one.later)]
+            of_float = [expression(IS, self.class_of(one.later), each) for each in (FLOAT_CLASS, SINGLE_CLASS)]
+            tests = [expression(OR, *of_float), _finite(one.later)]
             return self.behind(tests, self.call(name, one.later), slow), False
         return slow, False
 
     def floated(self, node, symbol, arguments):
-        """``(float i)``, ``(float i 1d0)`` and ``(coerce i 'double-float)`` of a small integer."""
-        if not arguments or len(arguments) > 2 or not exactly(kind_of(arguments[0]), INT):
+        """``(float i)``, ``(float i 1d0)``, ``(coerce i 'double-float)`` and their like, of a small integer or a float."""
+        if not arguments or len(arguments) > 2 or not exactly(kind_of(arguments[0]), MACHINE):
             return None
-        if symbol is COERCE:
-            if arguments[-1].__class__ is not nodes.Constant or arguments[-1].value not in DOUBLE_TYPES:
-                return None
-        elif len(arguments) == 2 and arguments[1].__class__ is not nodes.Constant:
+        if len(arguments) == 2 and arguments[1].__class__ is not nodes.Constant or symbol is COERCE and len(arguments) != 2:
             return None
         kind = kind_of(node)
+        if kind not in (SINGLE, DOUBLE):
+            return None
         (operand,) = self.operands(arguments[:1])
-        if kind not in (SINGLE, DOUBLE) or operand.size > 100:
-            slow = self.positioned(
-                expression(word(self.constants.name("function", symbol)), operand.first, *map(self.value, arguments[1:])), node
-            )
+        if not operand.known or operand.size > 100 or kind == SINGLE and operand.kind & DOUBLE:
+            slow = self.called(node, symbol, [operand]) if len(arguments) == 1 else None
+            if slow is None:
+                more = self.value(arguments[1])
+                slow = self.positioned(expression(word(self.constants.name("function", symbol)), self.generic(operand), more), node)
+                self.settle([operand])
             return slow, False
-        return self.call("float", operand.first), kind == DOUBLE
+        if kind == DOUBLE:
+            return (operand.first if operand.kind in (SINGLE, DOUBLE) else self.call("float", operand.first)), False
+        if not operand.kind & INT:
+            return operand.first, True
+        return self.call("in_single" if operand.size > 24 or operand.kind & SINGLE else "float", operand.first), True
 
 
 NUMBER_FUNCTIONS = {*SMOOTH_RANGES, *WHOLE, MAX, MIN, ABS, MINUS, MOD, REM, FLOAT, COERCE}

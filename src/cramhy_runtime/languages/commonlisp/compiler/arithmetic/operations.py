@@ -6,14 +6,15 @@ ratios, complex numbers, errors and several values are their business. Numbers s
 Python's ``True`` is, a quotient of integers is a ratio, and a product of floats that became infinite is an error, unless it is a
 term of a sum of singles.
 
-Doubles are raw wherever it is known that a float must be a double, and wrapped where they leave the expression.
+Singles are raw wherever it is known that a float must be a single. Each operation with them is done in doubles and rounded in place
+(`rounded`), and they are wrapped where they leave the expression.
 """
 
 from __future__ import annotations
 
 import sys
 
-from cramhy_runtime.ground.data import DoubleFloat
+from cramhy_runtime.ground.floats import LARGEST_SINGLE, SPLITTER, SingleFloat
 from cramhy_runtime.ground.packages import sym
 from .. import nodes
 from ..core import NONE, TRUE, Symbol, expression, word
@@ -31,7 +32,6 @@ from ..kinds import (
     MACHINE,
     MINUS,
     NUMBER,
-    ODD,
     PLUS,
     SINGLE,
     STEPS,
@@ -63,8 +63,10 @@ OPERATORS = {PLUS: word("+"), MINUS: word("-"), TIMES: word("*"), DIVIDE: word("
 COMPARISONS = {sym(name): word(name) for name in ("<", ">", "<=", ">=", "=")}
 
 LARGEST = sys.float_info.max
-INT_CLASS, FLOAT_CLASS, DOUBLE_CLASS = word("Lint"), word("Lfloat"), word("Ldouble")
-CLASS, CLASSES, RESULT = word("__class__"), word("Lc"), word("Lr")
+LEAST_SQUARE, LARGEST_SQUARE = 2.0**-252, LARGEST_SINGLE**2
+BELOW, TIMES_SIGN, MINUS_SIGN = word("<="), word("*"), word("-")
+INT_CLASS, FLOAT_CLASS, SINGLE_CLASS = word("Lint"), word("Lfloat"), word("Lsingle")
+CLASS, CLASSES, RESULT, PRODUCT = word("__class__"), word("Lc"), word("Lr"), word("Lp")
 IS, IS_NOT, AND, OR, IF, DOT, SETX = map(word, "is is-not and or if . setx".split())
 MOST_LEAVES, MOST_OPERATIONS = 5, 8
 FIXNUM = 1 << 10
@@ -98,7 +100,7 @@ class Operand:
     @property
     def known(self):
         """Whether Python's operators may be used without a look at the class."""
-        return exactly(self.kind, INT | SINGLE) or exactly(self.kind, INT | DOUBLE | ODD)
+        return exactly(self.kind, INT | SINGLE) or exactly(self.kind, INT | DOUBLE)
 
 
 class Operation:
@@ -115,11 +117,27 @@ def bare(symbol, one, other, size, other_size):
     if symbol is DIVIDE and one & other & INT:
         return 0
     both = one | other
-    if both & (FLOATS | ODD) and max(size, other_size) > FEW_BITS:
+    if both & FLOATS and max(size, other_size) > FEW_BITS:
         return 0
-    if both & SINGLE and both & (DOUBLE | ODD) and (one if one & (DOUBLE | ODD) else other) & INT:
-        return 0  # of an integer or a double and a single: nobody would know what the float is
+    if both & SINGLE and (DOUBLE if both & DOUBLE else SINGLE) not in (one, other):
+        return 0  # nobody would know whether the result is to be rounded
     return combined(one, other)
+
+
+def rounded(model, product=True, slow=None):
+    """The single-float nearest to ``model``, a float that is a result of one operation with singles.
+
+    Veltkamp's splitting rounds what is within the range of singles that have all 24 bits. ``product``: whether the result may be smaller
+    than these and yet not be exact, which a sum is not. ``slow``: what computes the result with all that may be said about it.
+    """
+    noted = expression(SETX, RESULT, model)
+    if product:
+        inside = expression(BELOW, LEAST_SQUARE, expression(TIMES_SIGN, noted, RESULT), LARGEST_SQUARE)
+    else:
+        inside = expression(BELOW, -LARGEST_SINGLE, noted, LARGEST_SINGLE)
+    split = expression(SETX, PRODUCT, expression(TIMES_SIGN, RESULT, SPLITTER))
+    nearest = expression(MINUS_SIGN, split, expression(MINUS_SIGN, PRODUCT, RESULT))
+    return expression(IF, inside, nearest, slow or expression(word("Lrounded"), RESULT))
 
 
 class ArithmeticGenerator:
@@ -173,14 +191,14 @@ class ArithmeticGenerator:
     def wrapped(self, model, kind):
         """``model``, a raw value of ``kind``, as Lisp sees it."""
         if model.__class__ is float:
-            return self.constant(DoubleFloat(model))
-        return self.call("double" if kind == DOUBLE else "wrapped", model)
+            return self.constant(SingleFloat(model))
+        return self.call("new_single" if kind == SINGLE else "wrapped", model)
 
     def unwrapped(self, model, kind):
         """``model``, a value of ``kind`` as Lisp sees it, raw. 0 stands for a kind that is not known."""
-        if kind and not kind & DOUBLE:
+        if kind and not kind & SINGLE:
             return model
-        return self.call("float" if kind == DOUBLE else "unwrapped", model)
+        return self.call("float" if kind == SINGLE else "unwrapped", model)
 
     def generic(self, part):
         """The call of the generic functions that ``part`` means, with what Lisp sees."""
@@ -309,7 +327,7 @@ class ArithmeticGenerator:
             used = set()
             model = self.bare_model(operation, 0, used)
             if self.needs_check(operation, kind):
-                return self.finite(TRUE, model, slow, kind)
+                return self.finite(TRUE, model, slow)
             return model
         if len(operation.parts) == 2 and operation.parts[0].__class__ is operation.parts[1].__class__ is Operand:
             model = self.sum_of_numbers(operation, operands)
@@ -324,21 +342,23 @@ class ArithmeticGenerator:
 
     def worlds(self, operation, operands, unknown, is_raw):
         """The classes that all ``unknown`` operands may be of so that Python's operators do: (class bits, kind of the result)."""
+        if any(operand.raw for operand in unknown):  # a float is a single, which no test of all their classes says at once
+            return [(SINGLE, SINGLE)] if len(unknown) == 1 and self.kind_in(operation, SINGLE) == SINGLE else []
         known = 0
         for operand in operands:
             if operand.known and operand.later.__class__ is not int:
                 known |= operand.kind
         count = sum(1 for _ in operations_of(operation))
         products = any(each.symbol is TIMES for each in operations_of(operation))
-        if known & (FLOATS | ODD):
-            order = (DOUBLE if known & (DOUBLE | ODD) else SINGLE,)
+        if known & FLOATS:
+            order = (DOUBLE,) if known & DOUBLE else (SINGLE, DOUBLE)
             if len(unknown) == 1:
                 order = (*order, FIXNUM)
         elif known:
             order = (INT,)
         else:
             simple = all(operand.first is operand.later for operand in operands)
-            order = (SINGLE, INT, DOUBLE) if products and count > 1 and simple else (INT, SINGLE, DOUBLE)
+            order = (DOUBLE, INT, SINGLE) if products and count > 1 and simple else (INT, DOUBLE, SINGLE)
         found = []
         for assumed in order:
             kind = self.kind_in(operation, assumed)
@@ -350,7 +370,7 @@ class ArithmeticGenerator:
         """The bare expression of the first of ``worlds`` that the classes of ``unknown`` make, or ``slow``."""
         tests = [self.class_of(operand.first) for operand in unknown]
         again = [self.class_of(operand.later) for operand in unknown]
-        both = [assumed for assumed, _ in worlds[:2]] == [INT, SINGLE]  # in this order: see `worlds`
+        both = [assumed for assumed, _ in worlds[:2]] == [INT, DOUBLE]  # in this order: see `worlds`
         checked = [self.needs_check(operation, kind) for _, kind in worlds]
         if both and not any(checked[:2]):
             noted = expression(SETX, CLASSES, tests[0])
@@ -369,16 +389,16 @@ class ArithmeticGenerator:
             return slow
         (assumed, kind), *others = worlds
         rest = self.chosen_from(operation, unknown, others, again, again, slow, is_raw)
-        if assumed == SINGLE and tests is again and operation.symbol is not TIMES:
+        if assumed == DOUBLE and tests is again and operation.symbol is not TIMES:
             certain = [each for each, operand in zip(tests, unknown) if not exactly(operand.kind, NUMBER)]
             tests = certain or tests  # what is a number becomes a float with floats
-        elif assumed == SINGLE and operation.symbol is not TIMES and all(operand.first is operand.later for operand in unknown):
+        elif assumed == DOUBLE and operation.symbol is not TIMES and all(operand.first is operand.later for operand in unknown):
             certain = [each for each, operand in zip(tests, unknown) if not exactly(operand.kind, NUMBER)]
             tests = certain or tests
         guard = self.world_test(assumed, tests, unknown)
         model = self.bare_model(operation, assumed, None)
         if self.needs_check(operation, kind):
-            inside = self.finite_test(model, kind)
+            inside = self.finite_test(model)
             model = RESULT if not raw(kind) or is_raw else self.wrapped(RESULT, kind)
             return expression(IF, expression(AND, guard, *inside), model, rest)
         if raw(kind) and not is_raw:
@@ -390,7 +410,8 @@ class ArithmeticGenerator:
         """A test that the ``classes`` of the ``unknown`` operands are the assumed one."""
         if assumed == FIXNUM:
             return expression(AND, expression(IS, *classes, INT_CLASS), fixnum_test(unknown[0].later))
-        return expression(IS, *classes, {INT: INT_CLASS, SINGLE: FLOAT_CLASS, DOUBLE: DOUBLE_CLASS}[assumed])
+        of_class = FLOAT_CLASS if unknown[0].raw else {INT: INT_CLASS, SINGLE: SINGLE_CLASS, DOUBLE: FLOAT_CLASS}[assumed]
+        return expression(IS, *classes, of_class)
 
     def kind_in(self, part, assumed):
         """The kind of ``part`` when all unknown operands are of the class ``assumed`` and Python's operators give it; else 0."""
@@ -413,14 +434,22 @@ class ArithmeticGenerator:
             else:
                 used.add(part)
                 model = part.first
-            return self.call("float", model) if assumed == DOUBLE and not part.known else model
-        return expression(OPERATORS[part.symbol], *(self.bare_model(each, assumed, used) for each in part.parts))
+            return self.call("float", model) if assumed == SINGLE and not part.known and not part.raw else model
+        models = [self.bare_model(each, assumed, used) for each in part.parts]
+        if self.kind_in(part, assumed) != SINGLE:
+            return expression(OPERATORS[part.symbol], *models)
+        for index, each in enumerate(part.parts):
+            kind, size = self._kind_and_size(each, assumed)
+            if kind & INT and size > 24:
+                models[index] = self.call("in_single", models[index])
+        slow = None
+        if part.parts[0].__class__ is part.parts[1].__class__ is Operand and used is None:
+            slow = self.unwrapped(self.generic(part), SINGLE)
+        return rounded(expression(OPERATORS[part.symbol], *models), part.symbol is TIMES or part.symbol is DIVIDE, slow)
 
     def needs_check(self, operation, kind):
         """Whether a result of ``kind`` may be infinite because of a product."""
-        if not kind & FLOATS:
-            return False
-        if not kind & (DOUBLE | ODD) and operation.symbol not in (TIMES, DIVIDE):
+        if not kind & DOUBLE:
             return False
         products = [each for each in operations_of(operation) if each.symbol is TIMES]
         if len(products) == 1 and all(each.__class__ is Operand for each in products[0].parts):
@@ -428,16 +457,13 @@ class ArithmeticGenerator:
         return bool(products)
 
     @staticmethod
-    def finite_test(model, kind):
+    def finite_test(model):
         """The tests that ``model``, which they note as the result, is finite."""
-        noted = expression(SETX, RESULT, model)
-        if kind & ODD:
-            return [expression(IS, class_of(noted), FLOAT_CLASS), expression(word("<="), -LARGEST, RESULT, LARGEST)]
-        return [expression(word("<="), -LARGEST, noted, LARGEST)]
+        return [expression(BELOW, -LARGEST, expression(SETX, RESULT, model), LARGEST)]
 
-    def finite(self, guard, model, slow, kind=SINGLE):
+    def finite(self, guard, model, slow):
         """``model`` if ``guard`` holds and it is finite, else what the generic functions say to it."""
-        tests = self.finite_test(model, kind)
+        tests = self.finite_test(model)
         if guard is not TRUE:
             tests.insert(0, guard)
         return expression(IF, tests[0] if len(tests) == 1 else expression(AND, *tests), RESULT, slow)
@@ -491,7 +517,7 @@ class ArithmeticGenerator:
         noted, again = self.noted_class(operand.first)
         classes = [INT_CLASS, FLOAT_CLASS] if operand.kind & INT or not operand.raw else [FLOAT_CLASS]
         if not operand.raw:
-            classes.append(DOUBLE_CLASS)
+            classes.append(SINGLE_CLASS)
         tests = [expression(IS, noted if index == 0 else again, each) for index, each in enumerate(classes)]
         return tests[0] if len(tests) == 1 else expression(OR, *tests)
 
@@ -504,7 +530,7 @@ class ArithmeticGenerator:
             first, second = expression(SETX, CLASSES, self.class_of(one.first)), self.class_of(second)
         else:
             first, second = self.class_of(one.first), expression(SETX, CLASSES, self.class_of(second))
-        classes = (INT_CLASS, FLOAT_CLASS, DOUBLE_CLASS)
+        classes = (INT_CLASS, FLOAT_CLASS, SINGLE_CLASS)
         return expression(AND, expression(IS, first, second), expression(OR, *(expression(IS, CLASSES, each) for each in classes)))
 
 
@@ -521,7 +547,7 @@ def _never_ratio(node, divisor):
 
 
 def _certain_divisor(node):
-    return node.__class__ is nodes.Constant and node.value.__class__ in (int, float, DoubleFloat) and node.value != 0
+    return node.__class__ is nodes.Constant and node.value.__class__ in (int, float, SingleFloat) and node.value != 0
 
 
 def operations_of(part):

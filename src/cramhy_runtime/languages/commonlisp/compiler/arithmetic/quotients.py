@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..core import expression, word
 from .operations import AND, ARITHMETIC, FIXNUM, IF, INT_CLASS, IS, ArithmeticGenerator, Operand
-from ..kinds import DIVIDE, DOUBLE, FLOATS, INT, NUMBER, ODD, OTHER, SINGLE, THING, exactly, raw
+from ..kinds import DIVIDE, DOUBLE, FLOATS, INT, NUMBER, SINGLE, THING, exactly, raw
 
 OVER, WHOLE_OVER, REST, NOT = map(word, "/ // % not".split())
 
@@ -40,10 +40,11 @@ class QuotientGenerator(ArithmeticGenerator):
                 known |= operand.kind
         if not unknown:
             return slow
-        declared = any(exactly(operand.kind, FLOATS | OTHER) for operand in unknown)
-        worlds = (DOUBLE, SINGLE) if declared else (SINGLE, DOUBLE)
-        if known & (FLOATS | ODD):
-            worlds = (DOUBLE if known & (DOUBLE | ODD) else SINGLE, *((FIXNUM,) if len(unknown) == 1 else ()))
+        if any(operand.raw for operand in unknown):
+            return slow
+        worlds = (DOUBLE, SINGLE)
+        if known & FLOATS:
+            worlds = (*((DOUBLE,) if known & DOUBLE else (SINGLE, DOUBLE)), *((FIXNUM,) if len(unknown) == 1 else ()))
         for assumed in reversed(worlds):
             kind = self.kind_in(operation, assumed)
             if kind and raw(kind) >= is_raw:
@@ -73,6 +74,9 @@ class QuotientGenerator(ArithmeticGenerator):
 
     def known_quotient(self, operation, one, other, is_raw, slow):
         """A quotient of a float by what is not 0."""
+        if self.kind_in(operation, 0) == SINGLE:
+            self.settle([one, other])
+            return expression(IF, other.later, self.bare_model(operation, 0, None), slow)
         if one.first is not one.later and other.first is not other.later:
             self.settle([one, other])
         elif one.first is not one.later:  # the divisor is asked first; only one of the branches is run

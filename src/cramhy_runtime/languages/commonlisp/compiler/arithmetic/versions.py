@@ -15,7 +15,7 @@ from cramhy_runtime.ground.packages import sym
 from .. import nodes
 from ..facts import OPERANDS_OF, find_kinds, walk
 from .operations import COMPARISONS
-from ..kinds import DIVIDE, DOUBLE, FIXNUM_BITS, FLOATS, INFINITE, INT, MACHINE, NONE_YET, OTHER, SINGLE, SMOOTH, SQRT, exactly, kind_of
+from ..kinds import DIVIDE, DOUBLE, FIXNUM_BITS, FLOATS, INFINITE, INT, MACHINE, NONE_YET, SINGLE, SMOOTH, SQRT, exactly, kind_of
 
 WHOLE_ARGUMENTS = {sym(name) for name in "MOD REM EVENP ODDP LOGAND LOGIOR LOGXOR ASH GCD LCM ISQRT".split()}
 INDEXED = {sym(name) for name in "AREF SVREF ELT".split()}
@@ -30,7 +30,7 @@ def guesses(node):
     candidates = {
         variable: set()
         for variable in node.parameters.required
-        if variable.operand_uses and not variable.captured and (variable.proven is None or variable.proven == FLOATS | OTHER)
+        if variable.operand_uses and not variable.captured and (variable.proven in (None, FLOATS, SINGLE))
     }
     if not candidates or not node.scope.loops and sum(variable.operand_uses for variable in candidates) < FEW - 1:
         return {}
@@ -96,7 +96,7 @@ def _leaves(call):
 
 def _guess(variable, signs):
     if variable.proven is not None:
-        return DOUBLE
+        return variable.proven & DOUBLE or SINGLE
     if "whole" in signs:
         return INT
     if "double" in signs:

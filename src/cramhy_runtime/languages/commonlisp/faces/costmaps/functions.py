@@ -10,7 +10,7 @@ from typing import Any
 
 from cramhy_runtime.ground.classes import make_instance
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, DoubleFloat, lisp_list, list_from, one, python_list, truth
+from cramhy_runtime.ground.data import Cons, lisp_list, list_from, one, python_list, truth
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.numbers import is_real
 from cramhy_runtime.ground.packages import intern, keyword, sym
@@ -30,7 +30,7 @@ from ...numbers.random_state import random as random_number
 from .matrices import lisp_matrix, numpy_matrix, numpy_vector
 
 X, Y = keyword("X"), keyword("Y")
-ONE = DoubleFloat(1)
+ONE = 1.0
 
 
 def _reader(name, *classes):
@@ -92,7 +92,7 @@ def map_coordinate_to_array_index(coordinate: Any, resolution: Any, origin: Any)
 
 def array_index_to_map_coordinate(index: Any, resolution: Any, origin: Any) -> float:
     """The coordinate of a cell."""
-    return DoubleFloat(grids.coordinate_of(_real(index, "INDEX"), _real(resolution, "RESOLUTION"), _real(origin, "ORIGIN")))
+    return float(grids.coordinate_of(_real(index, "INDEX"), _real(resolution, "RESOLUTION"), _real(origin, "ORIGIN")))
 
 
 def value_map_lookup(map: Any, x: Any, y: Any) -> Any:
@@ -134,7 +134,7 @@ def occupied(grid: Any, x: Any, y: Any) -> Any:
 def occupied_places(grid: Any) -> Any:
     """The places of the occupied cells, a list of lists (x y)."""
     places = _instance(grid, grids.OccupancyGrid, "GRID").places().tolist()
-    return list_from([lisp_list(DoubleFloat(x), DoubleFloat(y)) for x, y in places])
+    return list_from([lisp_list(float(x), float(y)) for x, y in places])
 
 
 def pad_grid(grid: Any, padding: Any, inverted: Any = None) -> Any:
@@ -423,7 +423,7 @@ def get_map_value(map: Any, x: Any, y: Any) -> float:
 def map_maximum(map: Any) -> float:
     """The greatest value of a costmap."""
     cost_array(map)
-    return DoubleFloat(map.maximum)
+    return float(map.maximum)
 
 
 def merge_costmaps(cm_1: Any, *costmaps: Any) -> Any:
@@ -463,7 +463,7 @@ def gen_costmap_sample_point(map: Any, *, sampling_function: Any = None) -> Vect
         column, row = _cell_of(one(_function(sampling_function, "SAMPLING-FUNCTION")(get_cost_map(map))))
     x = grids.coordinate_of(column, map.resolution, map.origin_x)
     y = grids.coordinate_of(row, map.resolution, map.origin_y)
-    heights = _heights(map, DoubleFloat(x), DoubleFloat(y)) if map.height_generators else ()
+    heights = _heights(map, float(x), float(y)) if map.height_generators else ()
     z = 0.0 if not heights else heights[0] if len(heights) == 1 else heights[random_number(len(heights), RANDOM_STATE.value)]
     return vector((x, y, _real(z, "HEIGHT")))
 
@@ -479,7 +479,7 @@ def orientations_at(map: Any, x: Any, y: Any) -> Any:
     """The orientations of a place: the generators in turn, each with what the one before gave; without any, the identity."""
     found = None
     for generate in _costmap(map).orientation_generators:
-        found = one(generate(DoubleFloat(x), DoubleFloat(y), found))
+        found = one(generate(float(x), float(y), found))
     return found or lisp_list(Quaternion())
 
 
@@ -513,9 +513,9 @@ def visible_cells(map: Any, threshold: Any) -> Any:
     return list_from(
         [
             lisp_list(
-                DoubleFloat(grids.coordinate_of(column, map.resolution, map.origin_x)),
-                DoubleFloat(grids.coordinate_of(row, map.resolution, map.origin_y)),
-                DoubleFloat(values[row, column]),
+                float(grids.coordinate_of(column, map.resolution, map.origin_x)),
+                float(grids.coordinate_of(row, map.resolution, map.origin_y)),
+                float(values[row, column]),
             )
             for row, column in cells.tolist()
         ]

@@ -6,7 +6,7 @@ from typing import Any
 
 from cramhy_runtime.ground.arrays import LispArray, SimpleArray
 from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Cons, DoubleFloat, python_list
+from cramhy_runtime.ground.data import Cons, python_list
 from cramhy_runtime.ground.numbers import is_real
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.robot_world.costmaps.arrays import np
@@ -17,7 +17,7 @@ DOUBLE = sym("DOUBLE-FLOAT")
 
 def lisp_matrix(array: Any) -> LispArray:
     """The Lisp matrix of double-floats with the elements of ``array``."""
-    return SimpleArray(array.shape, [DoubleFloat(value) for value in array.ravel().tolist()], DOUBLE)
+    return SimpleArray(array.shape, [float(value) for value in array.ravel().tolist()], DOUBLE)
 
 
 def numpy_matrix(matrix: Any) -> Any:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from cramhy_runtime.ground.conditions import Error, handler_case, type_error
-from cramhy_runtime.ground.data import UNBOUND, WRITABLE_STRINGS, Character, Cons, DoubleFloat
+from cramhy_runtime.ground.data import FLOATS, UNBOUND, WRITABLE_STRINGS, Character, Cons
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.classes import class_name
 from cramhy_runtime.ground.packages import is_symbol, symbol_name
@@ -95,7 +95,7 @@ class _Bare(dict):
         return text
 
 
-_SAFE = frozenset([int, float, DoubleFloat, Fraction, str, *WRITABLE_STRINGS, Character])
+_SAFE = frozenset([int, *FLOATS, Fraction, str, *WRITABLE_STRINGS, Character])
 
 
 def _safe(thing):

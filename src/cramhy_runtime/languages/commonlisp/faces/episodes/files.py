@@ -17,7 +17,7 @@ from cramhy_runtime.cpl.failures.failure_types import PlanFailure, opened
 from cramhy_runtime.cpl.statuses import ALL, FAILED
 from cramhy_runtime.cpl.tree.task_tree import Code, TaskTreeNode
 from cramhy_runtime.ground.conditions import SimpleError, error
-from cramhy_runtime.ground.data import UNSUPPLIED, DoubleFloat
+from cramhy_runtime.ground.data import UNSUPPLIED
 from cramhy_runtime.ground.keyword_calls import lispify
 from ...pathnames.pathnames import pathname
 from cramhy_runtime.ground.packages import keyword
@@ -224,4 +224,4 @@ def _read_node(form, reader, nodes, episode):
 
 
 def _time(seconds):
-    return None if seconds is None else DoubleFloat(float(seconds))
+    return None if seconds is None else float(seconds)

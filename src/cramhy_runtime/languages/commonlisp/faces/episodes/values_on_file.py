@@ -18,18 +18,8 @@ from fractions import Fraction
 from cramhy_runtime.ground.hash_tables import HashTable
 from cramhy_runtime.ground.arrays import LispArray, TypedVector
 from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import (
-    NO_VALUES,
-    UNBOUND,
-    WRITABLE_STRINGS,
-    Character,
-    Cons,
-    DoubleFloat,
-    MultipleValues,
-    Symbol,
-    lisp_list,
-    list_from,
-)
+from cramhy_runtime.ground.data import NO_VALUES, UNBOUND, WRITABLE_STRINGS, Character, Cons, MultipleValues, Symbol, lisp_list, list_from
+from cramhy_runtime.ground.floats import SingleFloat
 from ...numbers.irrational import complex_, imagpart, realpart
 from ...objects.class_objects import StandardObject, effective_slots, may_be_unbound
 from ...objects.classes import find_class
@@ -93,10 +83,10 @@ class Writer:
             return str(value)
         if isinstance(value, Symbol):
             return self._symbol(value)
-        if kind is DoubleFloat:
-            return {"double": self._number(float(value))}
         if kind is float:
-            return value if math.isfinite(value) else {"single": self._number(value)}
+            return {"double": self._number(value)}
+        if kind is SingleFloat:
+            return float(value) if math.isfinite(value) else {"single": self._number(value)}
         if depth > DEEPEST:
             return {"text": f"#<nested deeper than {DEEPEST} levels>"}
         if kind is Cons:
@@ -193,8 +183,10 @@ class Reader:
     def read(self, form):
         """The value that `Writer.write` made ``form`` of."""
         kind = form.__class__
-        if form is None or form is True or kind is int or kind is str or kind is float:
+        if form is None or form is True or kind is int or kind is str:
             return form
+        if kind is float:
+            return SingleFloat(form)
         if kind is list:
             return list_from([self.read(item) for item in form])
         if kind is dict:
@@ -230,10 +222,10 @@ class Reader:
         return found
 
     def _float(self, form):
-        return _number(form["single"])
+        return SingleFloat(_number(form["single"]))
 
     def _double(self, form):
-        return DoubleFloat(_number(form["double"]))
+        return _number(form["double"])
 
     def _list(self, form):
         return list_from([self.read(item) for item in _sequence(form["list"])], self.read(form.get("end")))

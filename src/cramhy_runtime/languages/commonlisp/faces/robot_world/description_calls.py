@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, DoubleFloat, FreshString, list_from, lisp_list, python_list
+from cramhy_runtime.ground.data import Cons, FreshString, list_from, lisp_list, python_list
 from cramhy_runtime.ground.packages import symbol_name
 from cramhy_runtime.robot_world import urdf, urdf_parts
 from cramhy_runtime.robot_world.mesh_files import Mesh
@@ -37,14 +37,14 @@ def description_parts(text: str, file: str = "") -> Cons:
     return lisp_list(
         list_from(map(_told_material, parts.materials)),
         list_from(lisp_list(link, told_shape(shape), material and _told_material(material)) for link, shape, material in parts.visuals),
-        list_from(lisp_list(joint, other, DoubleFloat(times), DoubleFloat(plus)) for joint, other, times, plus in parts.mimics),
+        list_from(lisp_list(joint, other, float(times), float(plus)) for joint, other, times, plus in parts.mimics),
     )
 
 
 def _told_material(material: urdf_parts.Material) -> Cons:
     return lisp_list(
         FreshString(material.name),
-        list_from(map(DoubleFloat, material.color)) if material.color else None,
+        list_from(map(float, material.color)) if material.color else None,
         FreshString(material.texture) if material.texture else None,
     )
 
@@ -97,7 +97,7 @@ def make_mesh(points: Cons | None, triangles: Cons | None) -> Mesh:
 
 
 def _point(point: Any) -> Cons:
-    return list_from(map(DoubleFloat, point))
+    return list_from(map(float, point))
 
 
 def mesh_points(mesh: Mesh) -> Cons | None:

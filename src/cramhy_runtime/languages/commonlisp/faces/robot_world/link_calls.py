@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from cramhy_runtime.ground.data import Cons, DoubleFloat, boolean, lisp_list, list_from
+from cramhy_runtime.ground.data import Cons, boolean, lisp_list, list_from
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.robot_world import reaching
 from cramhy_runtime.robot_world.descriptions import DescriptionError
@@ -38,7 +38,7 @@ def pan_and_tilt(machine: Machine, pan_link: str, tilt_link: str, place: Vector3
         if str(link) not in above:
             return error("~S has no link ~A that a joint moves.", machine.name, link)
     found = reaching.pan_and_tilt(machine, above[str(pan_link)], above[str(tilt_link)], (float(place.x), float(place.y), float(place.z)))
-    return lisp_list(*map(DoubleFloat, found))
+    return lisp_list(*map(float, found))
 
 
 def reach_with(machine: Machine, base: str, tip: str, pose: Pose) -> Cons | None:
@@ -50,7 +50,7 @@ def reach_with(machine: Machine, base: str, tip: str, pose: Pose) -> Cons | None
         found = reaching.reach(machine, str(base), str(tip), of_pose(pose))
     except DescriptionError as problem:
         return error("~a", str(problem))
-    return list_from(Cons(name, DoubleFloat(value)) for name, value in found.items()) if found else None
+    return list_from(Cons(name, float(value)) for name, value in found.items()) if found else None
 
 
 def joint_limits(machine: Machine, joint: str) -> Cons | None:
@@ -58,7 +58,7 @@ def joint_limits(machine: Machine, joint: str) -> Cons | None:
     found = machine.description.joints.get(str(joint))
     if found is None:
         return None
-    return lisp_list(*(DoubleFloat(limit) if abs(limit) < float("inf") else None for limit in (found.lower, found.upper)))
+    return lisp_list(*(float(limit) if abs(limit) < float("inf") else None for limit in (found.lower, found.upper)))
 
 
 def set_fixed(machine: Machine, fixed: Any) -> bool | None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cramhy_runtime.ground.data import Cons, DoubleFloat, boolean, list_from, lisp_list, python_list
+from cramhy_runtime.ground.data import Cons, boolean, list_from, lisp_list, python_list
 from cramhy_runtime.ground.packages import keyword
 from cramhy_runtime.robot_world.physical.robot import NotReached, NoWay, PhysicalRobot, Slipped
 from cramhy_runtime.robot_world.physical.world import PhysicalWorld
@@ -150,7 +150,7 @@ def move_tools(machine: Machine, parts: RobotParts, goals: Cons, *, lenient: Any
 def posture_for(machine: Machine, parts: RobotParts, arm: Symbol, pose: Pose) -> Cons | None:
     """A list of (joint position) with which the tool of an arm is at a pose in the frame of the base; nil, when it is out of reach."""
     posture = _robot(machine, parts).posture_for({arm: of_pose(pose)})
-    return None if posture is None else list_from(lisp_list(joint, DoubleFloat(value)) for joint, value in posture.items())
+    return None if posture is None else list_from(lisp_list(joint, float(value)) for joint, value in posture.items())
 
 
 def set_fingers(machine: Machine, parts: RobotParts, arm: Symbol, position: Any = None) -> None:

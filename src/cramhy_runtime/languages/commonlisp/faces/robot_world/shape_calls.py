@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from cramhy_runtime.ground.condition_types import SimpleError
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, DoubleFloat, FreshString, list_from, lisp_list, python_list
+from cramhy_runtime.ground.data import Cons, FreshString, list_from, lisp_list, python_list
 from cramhy_runtime.ground.packages import is_symbol, keyword, near_names, symbol_name
 from cramhy_runtime.robot_world import meshes, models
 from cramhy_runtime.robot_world.descriptions import Description, Frame, Shape
@@ -122,7 +122,7 @@ def object_size(type: Symbol) -> Any:
     except models.UnknownObject:
         return None
     lowest, highest = meshes.shape_box(shape)
-    return make_3d_vector(*map(DoubleFloat, highest - lowest))
+    return make_3d_vector(*map(float, highest - lowest))
 
 
 def read_mesh(address: Any) -> Mesh:
@@ -136,7 +136,7 @@ def read_mesh(address: Any) -> Mesh:
 def mesh_size(mesh: Any) -> Any:
     """The lengths of the box around a mesh, which is given as for `add_mesh`, a vector."""
     lowest, highest = (mesh if isinstance(mesh, Mesh) else read_mesh(mesh)).box
-    return make_3d_vector(*map(DoubleFloat, highest - lowest))
+    return make_3d_vector(*map(float, highest - lowest))
 
 
 def path_of_address(address: Any) -> str | None:
@@ -156,13 +156,12 @@ def description_name(description: Description) -> str:
 def description_links(description: Description) -> Cons | None:
     """A list (name mass shapes) for each link; a shape is (kind size pose file)."""
     return list_from(
-        lisp_list(link.name, DoubleFloat(link.mass), list_from(told_shape(shape) for shape in link.shapes))
-        for link in description.links.values()
+        lisp_list(link.name, float(link.mass), list_from(told_shape(shape) for shape in link.shapes)) for link in description.links.values()
     )
 
 
 def told_shape(shape: Shape) -> Cons:
-    return lisp_list(keyword(shape.kind.upper()), list_from(map(DoubleFloat, shape.size)), _pose(shape.frame), shape.mesh or None)
+    return lisp_list(keyword(shape.kind.upper()), list_from(map(float, shape.size)), _pose(shape.frame), shape.mesh or None)
 
 
 def _pose(frame: Frame) -> Pose:
@@ -178,9 +177,9 @@ def description_joints(description: Description) -> Cons | None:
             joint.parent,
             joint.child,
             _pose(joint.frame),
-            make_3d_vector(*map(DoubleFloat, joint.axis)),
-            *(DoubleFloat(limit) if abs(limit) < float("inf") else None for limit in (joint.lower, joint.upper)),
-            *(DoubleFloat(limit) if limit < float("inf") else None for limit in (joint.velocity, joint.effort)),
+            make_3d_vector(*map(float, joint.axis)),
+            *(float(limit) if abs(limit) < float("inf") else None for limit in (joint.lower, joint.upper)),
+            *(float(limit) if limit < float("inf") else None for limit in (joint.velocity, joint.effort)),
             joint.mimic or None,
         )
         for joint in description.joints.values()

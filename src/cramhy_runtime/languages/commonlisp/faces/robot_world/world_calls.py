@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, DoubleFloat, FreshString, MultipleValues, boolean, lisp_list, list_from
+from cramhy_runtime.ground.data import Cons, FreshString, MultipleValues, boolean, lisp_list, list_from
 from cramhy_runtime.ground.packages import is_symbol, keyword, symbol_name
 from cramhy_runtime.robot_world import description_files, models, remarks, xacro_files
 from cramhy_runtime.robot_world.descriptions import Description, DescriptionError
@@ -110,17 +110,17 @@ def thing_types(item: Item) -> Cons | None:
 
 def thing_mass(item: Item) -> float:
     """The mass of an item in kilograms."""
-    return DoubleFloat(item.mass)
+    return float(item.mass)
 
 
 def _box(lowest: Any, highest: Any) -> Cons:
     middle, size = (lowest + highest) / 2, highest - lowest
-    return lisp_list(*(make_3d_vector(*map(DoubleFloat, vector)) for vector in (middle, size)))
+    return lisp_list(*(make_3d_vector(*map(float, vector)) for vector in (middle, size)))
 
 
 def thing_color(thing: Thing) -> Cons:
     """Red, green, blue and opacity of a thing, each from 0 to 1."""
-    return list_from(map(DoubleFloat, thing.colour))
+    return list_from(map(float, thing.colour))
 
 
 def thing_bounds(thing: Thing) -> Cons:
@@ -141,7 +141,7 @@ def machine_joints(machine: Machine) -> Cons | None:
 def machine_joint(machine: Machine, joint: str) -> float | None:
     """The position of a joint; nil for one that there is not."""
     value = machine.joint(str(joint))
-    return None if value is None else DoubleFloat(value)
+    return None if value is None else float(value)
 
 
 def set_machine_joint(machine: Machine, joint: str, value: Any) -> bool | None:
@@ -195,7 +195,7 @@ def contacts(world: World, thing: Thing | None = None) -> Cons | None:
 
 def settle(world: World, seconds: Any, without: Machine | None = None) -> float:
     """Let free items fall for so long, or until they lie, past the machine ``without``; the seconds that it took."""
-    return DoubleFloat(world.simulate(float(seconds), None if without is None else without.name))
+    return float(world.simulate(float(seconds), None if without is None else without.name))
 
 
 def stuck_things(world: World) -> Cons | None:
@@ -223,7 +223,7 @@ def stable(item: Item) -> bool | None:
 def visibility(world: World, camera: Pose, thing: Thing) -> MultipleValues:
     """Two values: which part of a thing is seen from a camera, 0 to 1, and the list of the things that hide the rest."""
     part, hiding = seen(world.scene, of_pose(camera), thing)
-    return MultipleValues((DoubleFloat(part), list_from(hiding)))
+    return MultipleValues((float(part), list_from(hiding)))
 
 
 def read_description(text: str, file: str = "") -> Description:

@@ -73,7 +73,7 @@ def _direct_maker(cls, specs):
                     return None
             arguments.append(f"{field.attribute}={value}")
         name = f"c{len(scope)}"
-        scope[name] = part
+        scope[name] = messages.maker(part)
         return f"{name}({', '.join(arguments)})"
 
     text = call(cls, tree)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import DoubleFloat, lisp_list, truth
+from cramhy_runtime.ground.data import lisp_list, truth
 from ...packages.face_definition import define_face
 from cramhy_runtime.ground.classes import class_name
 from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
@@ -34,7 +34,7 @@ def numbers(components, kind, stream):
 def _print_vector(obj, stream):
     head(obj, stream)
     stream.write(" ")
-    numbers(obj.components, DoubleFloat, stream)
+    numbers(obj.components, float, stream)
     stream.write(">")
 
 

@@ -1,55 +1,35 @@
 """Floats as text: the shortest digits that read back as the same float, and digits up to a given place.
 
-A plain Python float stands for a single-float, held at double precision. It is rounded to the nearest IEEE single
-here, where it becomes text, and nowhere else; a `DoubleFloat` keeps its 53 bits. The law is that of Steele and White:
-free-format output reads back as the same number and has as few digits as that allows. `digits` is the algorithm of
-Burger and Dybvig with SBCL's extension for a cut-off place (SBCL, ``src/code/print.lisp``), on which ``~F``, ``~E``,
-``~G`` and ``~$`` build; `shortest` is the quick way to the same digits where no place is given.
-
-A plain float beyond the range of singles cannot be rounded to one; its double digits are shown.
+A Python float is a double-float and has 53 bits, a `SingleFloat` has 24. The law is that of Steele and White: free-format
+output reads back as the same number and has as few digits as that allows. `digits` is the algorithm of Burger and Dybvig with
+SBCL's extension for a cut-off place (SBCL, ``src/code/print.lisp``), on which ``~F``, ``~E``, ``~G`` and ``~$`` build; `shortest`
+is the quick way to the same digits where no place is given.
 """
 
 from __future__ import annotations
 
 import math
-import struct
 
-from .data import DoubleFloat
-from .dynamic import special
-from .packages import sym
+from cramhy_runtime.ground.floats import SingleFloat, to_float32
+from cramhy_runtime.ground.dynamic import special
+from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.ground.printing import NUMBERS_OF_PYTHON
 
 READ_DEFAULT_FLOAT_FORMAT = special("*READ-DEFAULT-FLOAT-FORMAT*", sym("SINGLE-FLOAT"))
 _DOUBLE_NAMES = (sym("DOUBLE-FLOAT"), sym("LONG-FLOAT"))
 _SMALLEST_SINGLE = 2.0**-126
 _SMALLEST_DOUBLE = 2.0**-1022
-_single = struct.Struct("<f")
-
-
-def to_single(x):
-    """``x`` rounded to the nearest IEEE single, as a Python float; infinite when it is out of range."""
-    try:
-        return _single.unpack(_single.pack(x))[0]
-    except OverflowError:
-        return math.copysign(math.inf, x)
-
-
-def _is_single(x):
-    """Whether ``x`` prints as a single: a plain float that a single can hold without becoming zero or infinite."""
-    if isinstance(x, DoubleFloat):
-        return False
-    rounded = to_single(x)
-    return not math.isinf(rounded) and (rounded != 0.0 or x == 0.0)
 
 
 def shortest(x):
     """(digits, k) of the positive float ``x``: 0.DIGITS times ten to the k, as short as reading back allows."""
-    if _is_single(x):
-        x = to_single(x)
+    if x.__class__ is SingleFloat:
         if x < _SMALLEST_SINGLE:
             return digits(x)
+        value = float(x)
         for precision in (5, 6, 7, 8):  # a decimal of 6 digits survives the way through a single, 9 tell all singles apart
-            text = f"{x:.{precision}e}"
-            if to_single(float(text)) == x:
+            text = f"{value:.{precision}e}"
+            if to_float32(float(text)) == value:
                 break
         if precision > 6:  # a tie in the last digit goes up in Lisp, to even in Python
             return digits(x)
@@ -74,10 +54,7 @@ def digits(x, position=None, relative=False):
     With ``relative`` the place counts from the first digit: ``position`` digits are wanted. Source: SBCL's
     FLONUM-TO-DIGITS.
     """
-    if _is_single(x):
-        x, precision, least = to_single(x), 24, -149
-    else:
-        precision, least = 53, -1074
+    precision, least = (24, -149) if x.__class__ is SingleFloat else (53, -1074)
     mantissa, exponent = math.frexp(x)
     f, e = (int(math.ldexp(mantissa, precision)), exponent - precision) if x else (0, least)
     low_ok = high_ok = f % 2 == 0
@@ -123,7 +100,9 @@ def digits(x, position=None, relative=False):
 
 def marker(x):
     """The exponent marker that ``x`` needs to be read back: ``e`` when it is of the default format."""
-    double = isinstance(x, DoubleFloat)
+    if READ_DEFAULT_FLOAT_FORMAT.value is NUMBERS_OF_PYTHON:
+        return "e"
+    double = x.__class__ is not SingleFloat
     if (READ_DEFAULT_FLOAT_FORMAT.value in _DOUBLE_NAMES) == double:
         return "e"
     return "d" if double else "f"
@@ -131,6 +110,8 @@ def marker(x):
 
 def float_text(x):
     """``x`` as ``prin1`` prints it: ``3.6666667``, ``1.0e7``, ``5.0d0``."""
+    if READ_DEFAULT_FLOAT_FORMAT.value is NUMBERS_OF_PYTHON:
+        return repr(x)
     if x != x or x in (math.inf, -math.inf):
         return _special_text(x)
     sign = "-" if math.copysign(1.0, x) < 0 else ""
@@ -150,7 +131,7 @@ def float_text(x):
 
 
 def _special_text(x):
-    kind = "DOUBLE" if isinstance(x, DoubleFloat) else "SINGLE"
+    kind = "SINGLE" if x.__class__ is SingleFloat else "DOUBLE"
     if x != x:
         return f"#<{kind}-FLOAT quiet NaN>"
     return f"#.SB-EXT:{kind}-FLOAT-{'POSITIVE' if x > 0 else 'NEGATIVE'}-INFINITY"
@@ -161,9 +142,8 @@ def _rounded(x, count):
 
     It decides where the float has not so many digits, and where its value is halfway between two texts, or nearly so.
     """
-    single = _is_single(x)
-    if single:
-        x = to_single(x)
+    single = x.__class__ is SingleFloat
+    x = float(x)
     units = x * 10.0**count
     if not 0.0 < units < (1 << 22 if single else 1 << 50) or abs(units % 1.0 - 0.5) < 1e-3:
         return None
@@ -209,8 +189,8 @@ def scaled(x):
     """
     if x == 0.0:
         return x, 1
-    single = _is_single(x)
-    value = to_single(x) if single else float(x)
+    single = x.__class__ is SingleFloat
+    value = float(x)
     power = round(math.frexp(value)[1] * 0.30102999566398114)  # SBCL's idea of the decimal logarithm of 2
     if power < 0:
         head = 1e16 if value < _SMALLEST_DOUBLE else 10.0
@@ -223,4 +203,4 @@ def scaled(x):
     factor, product = 10.0, quotient
     while product < 0.1:
         product, power, factor = quotient * factor, power - 1, factor * 10.0
-    return type(x)(to_single(product) if single else product), power
+    return (SingleFloat(product) if single else product), power
