@@ -16,6 +16,7 @@ AS_ASKED = "#+sbcl (push :as-sbcl cl-user::*log*) #-sbcl (push :as-another cl-us
     ("text", "read"),
     [
         ("#+sbcl (sb-ext:gc)", ":AS-SBCL"),
+        (f"'({'(' * 3000}a{')' * 3000}) #+sbcl (sb-ext:gc)", ":AS-SBCL"),
         ("#+sbcl (defun of-kernel () (sb-kernel:no-such-thing))", ":AS-ANOTHER"),
         ("#+sbcl (defun of-kernel () (sb-ext::no-such-thing))", ":AS-ANOTHER"),
         ("#-sbcl (defun of-kernel () (sb-kernel:no-such-thing))", ":AS-SBCL"),
@@ -29,13 +30,12 @@ AS_ASKED = "#+sbcl (push :as-sbcl cl-user::*log*) #-sbcl (push :as-another cl-us
     ],
     ids=lambda value: None,
 )
-def test_a_system_is_read_for_sbcl_if_it_then_names_only_what_is_here(write, run, text, read):
-    """It does so for each system by itself: those before and behind it say nothing of SBCL here, and see no feature."""
+def test_a_file_is_read_for_sbcl_if_it_then_names_only_what_is_here(write, run, text, read):
+    """Those before and behind it say nothing of SBCL here, and see no feature."""
     write("for-all.asd", '(defsystem "for-all" :depends-on ("for-one") :components ((:file "for-all-x")))')
-    write("for-one.asd", '(defsystem "for-one" :depends-on ("for-first") :components ((:file "for-one-x") (:file "for-one-y")))')
+    write("for-one.asd", '(defsystem "for-one" :depends-on ("for-first") :components ((:file "for-one-x")))')
     write("for-first.asd", '(defsystem "for-first" :components ((:file "for-first-x")))')
-    write("for-one-x.lisp", text)
-    write("for-one-y.lisp", AS_ASKED)
+    write("for-one-x.lisp", f"{text}\n{AS_ASKED}")
     for name in ("all", "first"):
         write(
             f"for-{name}-x.lisp",
@@ -87,7 +87,8 @@ def test_who_asks_for_sbcl_is_told_which_systems_are_read_without_it(write, run,
     write("without-x.lisp", f"#+sbcl (list 'sb-kernel::a 'sb-kernel::b 'sb-kernel::c 'sb-kernel::d 'sb-ext:gc) {AS_ASKED}")
     assert run("(let ((*features* (cons :sbcl *features*))) (asdf:load-system :without)) *log*") == "(:AS-ANOTHER)"
     assert capsys.readouterr().err == (
-        "; The system without is read without the feature SBCL: it would name SB-KERNEL:A, SB-KERNEL:B, SB-KERNEL:C and 1 more, not had here.\n"
+        "; without-x.lisp of the system without is read without the feature SBCL: SB-KERNEL:A, SB-KERNEL:B, SB-KERNEL:C and 1 more"
+        " cannot be had here.\n"
     )
 
 
@@ -265,3 +266,11 @@ def test_features_that_only_the_first_reading_of_a_definition_adds_are_gone(writ
 def test_the_slot_relative_pathname(write, run):
     write("lies.asd", '(defsystem "lies" :components ((:module "m" :pathname "in/there/" :components ((:file "l-a")))))')
     assert run('(namestring (slot-value (asdf:find-component :lies "m") \'asdf::relative-pathname))') == '"in/there"'
+    assert run("(equal (slot-value (asdf:find-system :lies) 'asdf::relative-pathname) (asdf:system-source-directory :lies))") == "T"
+
+
+def test_sizes_and_the_order_of_bytes_as_sbcl_has_them(run):
+    assert (
+        run("(list sb-vm:n-word-bits sb-vm:n-byte-bits (constantp 'sb-vm:n-word-bits) sb-c:*backend-byte-order*)")
+        == "(64 8 T :LITTLE-ENDIAN)"
+    )

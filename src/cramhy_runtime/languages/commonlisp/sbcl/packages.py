@@ -4,6 +4,8 @@ something of the package that is not there yet (`extension_packages.LatePackage`
 
 from __future__ import annotations
 
+import sys
+
 from cramhy_runtime.cpl.task_variables import define_task_state
 
 from cramhy_runtime.ground.data import lisp_list
@@ -163,6 +165,19 @@ def define_internals() -> None:
     _macros("SB-INT")
 
 
+def define_machine() -> None:
+    """What programs ask of SB-VM: sizes in bits."""
+    sizes = {"n-word-bits": 64, "n-byte-bits": 8, "n-word-bytes": 8}
+    define_face("SB-VM", variables=sizes)
+    for name in sizes:
+        sym(f"SB-VM::{name.upper()}").constant = True
+
+
+def define_compiler() -> None:
+    """What programs ask of SB-C: the order of bytes."""
+    define_face("SB-C", variables={"*backend-byte-order*": sym(f":{sys.byteorder.upper()}-ENDIAN")})
+
+
 def define_gray() -> None:
     """SB-GRAY."""
     from . import gray_streams
@@ -187,6 +202,8 @@ MAKERS = {
     "SB-GRAY": define_gray,
     "SB-MOP": define_metaobjects,
     "SB-PCL": define_metaobjects,
+    "SB-VM": define_machine,
+    "SB-C": define_compiler,
 }
 
 

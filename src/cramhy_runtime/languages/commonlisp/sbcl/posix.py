@@ -8,6 +8,7 @@ import stat
 from cramhy_runtime.ground.conditions import Error, error
 from cramhy_runtime.ground.data import list_from, truth
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+from ..evaluation.universal_time import UNIVERSAL_EPOCH, get_universal_time
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -68,6 +69,11 @@ def putenv(text: Any) -> int:
 def environ() -> object:
     """``sb-ext:posix-environ``: a list of ``"NAME=VALUE"``."""
     return list_from([f"{name}={value}" for name, value in os.environ.items()])
+
+
+def time() -> int:
+    """``sb-posix:time``: seconds since 1970, by the kernel's clock."""
+    return get_universal_time() - UNIVERSAL_EPOCH
 
 
 def getpid() -> int:
@@ -170,5 +176,5 @@ OF_FILES = {
 }
 """Functions whose names Python does not take, or that are made of one another."""
 CONSTANTS = {"R-OK": os.R_OK, "W-OK": os.W_OK, "X-OK": os.X_OK, "F-OK": os.F_OK, "ENOENT": 2, "EACCES": 13, "EEXIST": 17, "EINVAL": 22}
-NAMES = """getenv setenv unsetenv putenv getpid getppid getuid geteuid getgid getegid getcwd chdir mkdir rmdir unlink rename chmod access
-readlink lstat syscall-errno"""
+NAMES = """getenv setenv unsetenv putenv time getpid getppid getuid geteuid getgid getegid getcwd chdir mkdir rmdir unlink rename chmod
+access readlink lstat syscall-errno"""

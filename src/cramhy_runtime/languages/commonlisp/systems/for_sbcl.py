@@ -1,4 +1,4 @@
-"""Which systems are read with the feature SBCL: those that then name nothing of SBCL that is not here.
+"""Which files of systems are read with the feature SBCL: those that then name nothing of SBCL that is not here.
 
 A portable library says with ``#+sbcl`` and ``#-sbcl`` what it takes from SBCL and what it does on a Lisp that it does not know; some are
 only for Lisps that they know. The packages of SBCL are here to a part. So a system is read as for SBCL if it takes from these packages only
@@ -112,12 +112,12 @@ def _taken_by_package(form: Value) -> Iterator[str]:
         head, rest = form.car, form.cdr
         if isinstance(head, Cons):
             yield from _taken_by_package(head)
-        elif isinstance(head, str) and isinstance(rest, Cons):
-            items = [str(item).lstrip("#:").upper() for item in _elements(rest)]
+        elif isinstance(head, str) and head.lower() in (":use", ":import-from") and isinstance(rest, Cons):
+            names = [str(item).lstrip("#:").upper() for item in _elements(rest) if not isinstance(item, Cons)]
             if head.lower() == ":use":
-                yield from (f"{item}:" for item in items if item.startswith("SB-"))
-            elif head.lower() == ":import-from" and items[0].startswith("SB-"):
-                yield from (f"{items[0]}:{item}" for item in items[1:])
+                yield from (f"{name}:" for name in names if name.startswith("SB-"))
+            elif names and names[0].startswith("SB-"):
+                yield from (f"{names[0]}:{name}" for name in names[1:])
         form = rest
 
 

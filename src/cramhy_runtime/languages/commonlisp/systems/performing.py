@@ -65,8 +65,9 @@ def path_of(component: Component) -> Path:
 def load_components(system: System, chain: str, force: bool) -> str:
     """Load the components that have changed since, or ``force``. ``chain``: the fingerprint of what comes before; returns that of all."""
     components = [each for each in components_of(system) if isinstance(each, SourceFile) or has_methods(each)]
-    with _features_for(system, [path_of(each) for each in components if isinstance(each, SourceFile)]):
-        for component in components:
+    _tell_what_is_lacking(system, [path_of(each) for each in components if isinstance(each, SourceFile)])
+    for component in components:
+        with _features_for(component):
             chain = _load_component(component, chain, force)
     return chain
 
@@ -76,20 +77,26 @@ def has_methods(component: Component) -> bool:
     return is_of_program(component) or bool(component.methods)
 
 
-def _features_for(system: System, files: list[Path]) -> AbstractContextManager[None]:
-    """A context in which ``*features*`` has SBCL or not, as the ``files`` of a system need it. Who asked for the feature is told."""
-    lacks = None if is_library(str(system.file)) else lacking(files)
-    if lacks is None:
-        return nullcontext()
-    if lacks and holds(keyword("SBCL")) and not any(path in _loaded for path in files):
+def _features_for(component: Component) -> AbstractContextManager[None]:
+    """A context in which ``*features*`` has SBCL or not, as the file needs it."""
+    lacks = None if not isinstance(component, SourceFile) or is_library(str(component.system.file)) else lacking([path_of(component)])
+    return nullcontext() if lacks is None else read_for_sbcl(not lacks)
+
+
+def _tell_what_is_lacking(system: System, files: list[Path]) -> None:
+    """Tell who asked for the feature SBCL what the files of the system would name of SBCL that is not here."""
+    if not holds(keyword("SBCL")) or is_library(str(system.file)) or any(path in _loaded for path in files):
+        return
+    without = [path for path in files if lacking([path])]
+    if without:
+        names = lacking(without) or []
         stream = output_stream(ERROR_OUTPUT.value)
-        more = f" and {len(lacks) - 3} more" if len(lacks) > 3 else ""
         stream.fresh_line()
         stream.write(
-            f"; The system {system.name} is read without the feature SBCL: it would name {', '.join(lacks[:3])}{more}, not had here.\n"
+            f"; {', '.join(path.name for path in without)} of the system {system.name} {'is' if len(without) == 1 else 'are'} read without "
+            f"the feature SBCL: {', '.join(names[:3])}{f' and {len(names) - 3} more' if len(names) > 3 else ''} cannot be had here.\n"
         )
         stream.flush()
-    return read_for_sbcl(not lacks)
 
 
 def _load_component(component: Component, chain: str, force: bool) -> str:

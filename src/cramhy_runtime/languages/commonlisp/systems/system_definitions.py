@@ -150,6 +150,10 @@ class System(Module):
         return self.folder if self.path is None else self.folder / self.path
 
     @property
+    def relative_pathname(self):
+        return lisp_path(self.pathname)
+
+    @property
     def version(self):
         return self.options.get("VERSION")
 

@@ -133,13 +133,23 @@ OF_ALL_LISPS = {"alexandria", "cl-utilities", "split-sequence"}
 """Libraries that know nothing of CRAM, of which cramhy contains a rewritten form: a real one on ROS_PACKAGE_PATH comes first. All others
 depend on how cramhy is made; `prefer` takes them from there."""
 
+OF_EACH_GENERATION = frozenset(
+    "cram-robot-interfaces cram-common-failures cram-designator-specification cram-common-designators cram-plan-occasions-events cram-tf"
+    " cram-mobile-pick-place-plans cram-pr2-description cram-robot-pose-gaussian-costmap cram-bullet-reasoning-belief-state"
+    " cram-btr-spatial-relations-costmap".split()
+)
+"""CRAM's interfaces and plans, which cramhy contains as CRAM's branch master has them. The branch devel has others under the same names,
+and its demos are written for those. Where a checkout of devel is on ROS_PACKAGE_PATH, its own come first."""
+SIGN_OF_DEVEL = "cram-manipulation-interfaces.asd"
+"""A system that devel has, and master has not."""
+
 
 def _ask_registry(name):
     """If the user's central registry or ROS_PACKAGE_PATH has a system ``name`` that cramhy contains, too, take that one."""
     if name in preferred or not (name in built_in or f"{name}.asd" in libraries()):
         return
     path = next((folder / f"{name}.asd" for folder in central_registry() if os.path.isfile(folder / f"{name}.asd")), None)
-    if path is None and name in OF_ALL_LISPS:
+    if path is None and (name in OF_ALL_LISPS or name in OF_EACH_GENERATION and _find_below(SIGN_OF_DEVEL, True)):
         path = _find_below(f"{name}.asd", True)
     if path is not None:
         load_asd(path)
