@@ -274,3 +274,11 @@ def test_sizes_and_the_order_of_bytes_as_sbcl_has_them(run):
         run("(list sb-vm:n-word-bits sb-vm:n-byte-bits (constantp 'sb-vm:n-word-bits) sb-c:*backend-byte-order*)")
         == "(64 8 T :LITTLE-ENDIAN)"
     )
+
+
+def test_the_files_of_a_definition_that_is_read_for_another_lisp_are_so_too(write, run):
+    """The file that is only for SBCL is left out, and the others do not count on it."""
+    write("both-ways.asd", '(defsystem "both-ways" :components (#+sbcl (:file "of-c") (:file "both-x")))')
+    write("of-c.lisp", "(sb-kernel:no-such-thing)")
+    write("both-x.lisp", AS_ASKED)
+    assert run("(asdf:load-system :both-ways) *log*") == "(:AS-ANOTHER)"

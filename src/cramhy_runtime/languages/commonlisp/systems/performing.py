@@ -80,7 +80,7 @@ def has_methods(component: Component) -> bool:
 def _features_for(component: Component) -> AbstractContextManager[None]:
     """A context in which ``*features*`` has SBCL or not, as the file needs it."""
     lacks = None if not isinstance(component, SourceFile) or is_library(str(component.system.file)) else lacking([path_of(component)])
-    return nullcontext() if lacks is None else read_for_sbcl(not lacks)
+    return nullcontext() if lacks is None else read_for_sbcl(not lacks and not component.system.without_sbcl)
 
 
 def _tell_what_is_lacking(system: System, files: list[Path]) -> None:

@@ -144,6 +144,7 @@ class System(Module):
         super().__init__(name)
         self.folder, self.file = folder, None
         self.options, self.in_order_to = {}, {}
+        self.without_sbcl = False  # whether its definition was read as on a Lisp that it does not know; then its files are, too
 
     @property
     def pathname(self):

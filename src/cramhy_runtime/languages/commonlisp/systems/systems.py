@@ -362,6 +362,7 @@ def _read_definitions(path):
     for system in made:
         if system.file is None and system is not main:
             forget_system(system.name)
+        system.without_sbcl = system.file is not None
     if main.file is None:  # it is there for Lisps that it knows
         with read_for_sbcl(True):
             _evaluate_definitions(path, text)
