@@ -94,7 +94,10 @@ def _of_forms(folder: str, *names: str, **more) -> list[Recording]:
 RECORDINGS = [
     *_of_forms(
         "lisp/sbcl",
-        *(f"{name}.txt" for name in "arrays characters compiler equality hash_tables lists loop odds reader sequences strings".split()),
+        *(
+            f"{name}.txt"
+            for name in "arrays characters compiler corners equality hash_tables lists loop odds reader sequences strings".split()
+        ),
         comments=True,
     ),
     *_of_forms("lisp/symbols", *sorted(path.name for path in (TESTS / "lisp" / "symbols").glob("*.txt"))),
@@ -107,6 +110,11 @@ RECORDINGS = [
         library="/usr/share/common-lisp/source/alexandria",
     ),
     Recording(TESTS / "libraries" / "uiop.txt", (*SBCL, "record.lisp", "uiop"), comments=True),
+    Recording(
+        TESTS / "libraries" / "contributions.txt",
+        (*SBCL, "record.lisp", "sb-bsd-sockets", "sb-rotate-byte", "sb-rt", "sb-posix"),
+        comments=True,
+    ),
 ]
 
 

@@ -64,7 +64,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   form)
 
 (defn all-keys [clauses]
-  (list-from (sum (lfor clause clauses (if (listp clause.car) (elements clause.car) [clause.car])) [])))
+  (list-from (sum (lfor clause clauses (if (or (is clause.car None) (listp clause.car)) (elements clause.car) [clause.car])) [])))
 
 (defoperator case [key #* clauses]
   (check-clauses "CASE" clauses)
@@ -161,6 +161,13 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   "The parts (variable form result) of `dotimes` and its relatives; there is at most one result form."
   (if extra (raise (TypeError "takes at most three parts")) #(variable form result)))
 
+(defn specials [declarations]
+  "The declarations that variables are special: they hold for the result form, too."
+  (setv found (lfor declaration declarations specifier (elements declaration.cdr)
+                    :if (and (listp specifier) (is specifier.car (sym "SPECIAL")))
+                    specifier))
+  (if found [`(declare ~@found)] []))
+
 (defoperator dotimes [spec #* body]
   ; one variable for all turns, as in SBCL: closures share it, and a form that assigns it changes the turns
   (setv #(variable count result) (iteration-spec #* spec))
@@ -192,7 +199,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
          (setq ~rest (%cdr-of-cons ~rest))
          (go ~next)
          ~end))
-     ~(if (is result None) None `(let [[~variable nil]] (declare (ignorable ~variable)) ~result))))
+     ~(if (is result None) None `(let [[~variable nil]] (declare (ignorable ~variable)) ~@(specials declarations) ~result))))
 
 (defn step-parts [bindings]
   "(variables with their first values, pairs of variable and step form) of `do`."
@@ -247,13 +254,19 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 
 ;; ------------------------------------------------------------------------------------------------------ multiple values
 
-(defoperator multiple-value-setq [variables form]
+(defoperator multiple-value-setq [variables form environment]
+  (import cramhy_runtime.languages.commonlisp.syntax.macros [macroexpand-1])
   (setv names (elements variables) temporaries (lfor _ names (gensym "VALUE")))
-  (if names
-      `(multiple-value-bind ~temporaries ~form
-         ~@(lfor #(name value) (zip names temporaries) `(setf ~name ~value))
-         ~(get temporaries 0))
-      `(prog1 ~form)))
+  (for [name names]
+    (when (not (isinstance name LispSymbol))
+      (raise (ValueError "only variables can be assigned; use (setf (values place...) form)."))))
+  (cond
+    (not names) `(prog1 ~form)
+    ; the forms of a symbol macro are evaluated before the values (ANSI 5.1.2.3)
+    (any (gfor name names (get (macroexpand-1 name environment) 1))) `(values (setf (values ~@names) ~form))
+    True `(multiple-value-bind ~temporaries ~form
+            ~@(lfor #(name value) (zip names temporaries) `(setq ~name ~value))
+            ~(get temporaries 0))))
 
 (defoperator nth-value [n form]
   (if (and (is (type n) int) (<= 0 n 4))
@@ -396,8 +409,13 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   (when (and (listp form) (isinstance form.car LispSymbol) (in form.car (lfor name ["ERROR" "CERROR" "SIGNAL" "WARN"] (sym name))))
     form.car))
 
-(defoperator restart-case [form #* clauses]
+(defoperator restart-case [form #* clauses environment]
+  (import cramhy_runtime.languages.commonlisp.syntax.macros [macroexpand])
   (setv operator (signalling form))
+  (when (and (not operator) (listp form))
+    (setv expansion (get (macroexpand form environment) 0))  ; of a local macro, say
+    (setv operator (signalling expansion))
+    (when operator (setv form expansion)))
   `(%restart-case (list ~@(lfor clause clauses (restart-clause clause)))
                   (lambda [] ~(if operator `(%signal-with-restarts (quote ~operator) ~@(. form cdr)) form))))
 
@@ -421,9 +439,10 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 (defoperator with-output-to-string [spec #* body]
   (setv #(stream #* options) (elements spec))
   (setv target (if (or (not options) (isinstance (get options 0) Keyword)) None (get options 0)))
+  (setv keywords (if (or (not options) (isinstance (get options 0) Keyword)) options (cut options 1 None)))
   (if (is target None)
-      `(let [[~stream (make-string-output-stream)]] ~@body (get-output-stream-string ~stream))
-      `(let [[~stream (%make-fill-pointer-output-stream ~target)]] ~@body)))
+      `(let [[~stream (make-string-output-stream ~@keywords)]] ~@body (get-output-stream-string ~stream))
+      `(let [[~stream (%make-fill-pointer-output-stream ~(if keywords `(prog1 ~target ~@(cut keywords 1 None 2)) target))]] ~@body)))
 
 (defoperator with-input-from-string [spec #* body]
   (setv #(variable string #* options) spec)
@@ -463,12 +482,14 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 (defoperator pprint-logical-block [spec #* body]
   (setv #(stream items #* options) spec)
   (setv variable (if (and (isinstance stream LispSymbol)) stream (gensym "STREAM")))
+  (setv #(declarations forms) (split-declarations body))
   `(%pprint-logical-block
      (lambda [~variable]
        (declare (ignorable ~variable))
+       ~@declarations
        (macrolet [[pprint-pop [] (quote (%pprint-pop ~variable))]
                   [pprint-exit-if-list-exhausted [] (quote (if (%pprint-list-exhausted ~variable) (return nil) nil))]]
-         (block nil ~@body)))
+         (block nil ~@forms)))
      ~stream ~items ~@options))
 
 ;; ------------------------------------------------------------------------------------------------------------ the REPL's

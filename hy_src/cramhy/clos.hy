@@ -46,7 +46,7 @@
 
 (defn accessors-of [slot]
   "The names of the functions that a slot of `define-condition` gets."
-  (setv options (options-of (if (listp slot) slot.cdr [])))
+  (setv options (options-of (if (listp slot) (or slot.cdr []) [])))
   (setv names (lfor #(key name) options :if (and (in key ["READER" "WRITER" "ACCESSOR"]) (is-symbol name)) name))
   [#* names #* (lfor #(key name) options :if (and (= key "ACCESSOR") (is-symbol name)) #("setf" name))])
 
@@ -194,7 +194,12 @@
       True (.append seen name))))
 
 (defoperator defgeneric [name lambda-list #* options]
+  (import cramhy_runtime.languages.commonlisp.evaluation.forms [special-operator-p])
   (setv methods [] arguments [])
+  (when (and (is-symbol name) (special-operator-p name))
+    (program-error "~S is a special operator, so it cannot name a generic function." name))
+  (when (> (len (lfor option options :if (= (symbol-name option.car) "DOCUMENTATION") option)) 1)
+    (program-error "Duplicate option :DOCUMENTATION for the generic function ~S." name))
   (check-generic-lambda-list lambda-list)
   (for [option options]
     (match (symbol-name option.car)

@@ -28,8 +28,11 @@ def test_a_goal_is_sent_and_followed(client):
     assert client("(defvar *h* (send 2)) (list (typep *h* 'actionlib:goal-handle) (stringp (actionlib:goal-id *h*)))") == "(T T)"
     assert client("(list (actionlib:terminal-state *h*) (actionlib:result *h*))") == "(NIL NIL)"
     assert client("(wait-duration 0.5) (list (actionlib:comm-state *h*) (actionlib:goal-status *h*))") == "(:ACTIVE :ACTIVE)"
-    assert client("(actionlib:wait-for-result *h* 0.5)") == "NIL"
-    assert client("(actionlib:wait-for-result *h* 0)") == "T"
+    assert client("(multiple-value-list (actionlib:wait-for-result *h* 0.5))") == "(NIL :TIMEOUT)"
+    assert client("(multiple-value-list (actionlib:wait-for-result *h* 0))") == "(NIL :TIMEOUT)"
+    assert client("(multiple-value-bind (result state) (actionlib:wait-for-result *h*) (list (sequence-of result) state))") == (
+        "(#(2 2) :SUCCEEDED)"
+    )
     assert client("(list (actionlib:comm-state *h*) (actionlib:terminal-state *h*) (sequence-of (actionlib:result *h*)))") == (
         "(:DONE :SUCCEEDED #(2 2))"
     )
@@ -49,9 +52,9 @@ def test_two_goals_are_tracked_side_by_side(client):
     """The server preempts the first for the second, and each handle knows of its own."""
     client("(defvar *one* (send 9)) (wait-duration 1.5) (defvar *two* (send 1))")
     assert (
-        client("""(list (actionlib:wait-for-result *one* 0) (actionlib:terminal-state *one*)
-                           (actionlib:wait-for-result *two* 0) (actionlib:terminal-state *two*))""")
-        == "(T :PREEMPTED T :SUCCEEDED)"
+        client("""(list (nth-value 1 (actionlib:wait-for-result *one*)) (actionlib:terminal-state *one*)
+                           (nth-value 1 (actionlib:wait-for-result *two*)) (actionlib:terminal-state *two*))""")
+        == "(:PREEMPTED :PREEMPTED :SUCCEEDED :SUCCEEDED)"
     )
     assert client("(list (sequence-of (actionlib:result *one*)) (sequence-of (actionlib:result *two*)))") == "(#(3) #(1 1))"
 
@@ -74,26 +77,26 @@ def test_calls_of_two_branches_of_a_plan_on_one_client(client):
 
 def test_one_goal_is_cancelled_by_its_handle(client):
     client("(defvar *h* (send 9)) (wait-duration 1.5) (actionlib:cancel-goal *h*)")
-    assert client("(list (actionlib:wait-for-result *h* 5) (actionlib:terminal-state *h*))") == "(T :PREEMPTED)"
+    assert client("(list (nth-value 1 (actionlib:wait-for-result *h* 5)) (actionlib:terminal-state *h*))") == "(:PREEMPTED :PREEMPTED)"
 
 
 def test_goals_up_to_a_time_are_cancelled(client):
     client("(defvar *early* (send 9)) (wait-duration 1.5) (actionlib:cancel-at-before-time *client* (- (ros-time) 1)) (wait-duration 1)")
     client("(defvar *late* (send 1))")
     assert client(
-        """(list (actionlib:wait-for-result *late* 0) (actionlib:terminal-state *early*) (actionlib:terminal-state *late*))"""
-    ) == ("(T :PREEMPTED :SUCCEEDED)")
+        """(list (nth-value 1 (actionlib:wait-for-result *late*)) (actionlib:terminal-state *early*) (actionlib:terminal-state *late*))"""
+    ) == ("(:SUCCEEDED :PREEMPTED :SUCCEEDED)")
     assert client.error('(actionlib:cancel-at-before-time *client* "now")', "type-error")
 
 
 def test_all_goals_are_cancelled(client):
     client("(defvar *h* (send 9)) (wait-duration 1.5) (actionlib:cancel-all-goals *client*)")
-    assert client("(list (actionlib:wait-for-result *h* 5) (actionlib:terminal-state *h*))") == "(T :PREEMPTED)"
+    assert client("(list (nth-value 1 (actionlib:wait-for-result *h* 5)) (actionlib:terminal-state *h*))") == "(:PREEMPTED :PREEMPTED)"
 
 
 def test_the_client_stands_for_its_newest_goal(client):
     client("(send 1)")
-    assert client("(list (actionlib:wait-for-result *client* 0) (actionlib:terminal-state *client*))") == "(T :SUCCEEDED)"
+    assert client("(list (sequence-of (actionlib:wait-for-result *client*)) (actionlib:terminal-state *client*))") == "(#(1 1) :SUCCEEDED)"
     assert client("(stringp (actionlib:goal-id *client*))") == "T"
 
 
@@ -101,7 +104,9 @@ def test_a_handle_whose_server_falls_silent_is_lost(lisp):
     lisp("""(setf *client* (actionlib:make-action-client "nobody" "actionlib_tutorials/FibonacciAction"))
             (defvar *h* (actionlib:send-goal *client* (goal 1)))""")
     assert (
-        lisp("(list (actionlib:wait-for-result *h* 0) (actionlib:terminal-state *h*) (actionlib:is-connected *client*))") == "(T :LOST NIL)"
+        lisp("""(list (multiple-value-list (actionlib:wait-for-result *h*)) (actionlib:terminal-state *h*)
+                      (actionlib:is-connected *client*))""")
+        == "((NIL :LOST) :LOST NIL)"
     )
 
 
@@ -118,7 +123,7 @@ def test_the_simple_client_still_forgets_the_goal_before(lisp):
 
 def test_goals_that_are_over_are_not_kept(client):
     for _ in range(3):
-        client("(actionlib:wait-for-result (send 1) 0)")
+        client("(actionlib:wait-for-result (send 1))")
     assert len(client.value("*client*").tracked) == 0
 
 

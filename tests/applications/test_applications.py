@@ -122,6 +122,15 @@ def test_the_first_placing_of_demo_hard_coded_is_beyond_the_arm_of_the_pr2(towar
     assert np.hypot(tool - 0.18 * toward - x, 0.6 - y) > arm + 0.07
 
 
+@foreign
+@pytest.mark.parametrize("application", ["cram_bullet_world_tutorial", "cram_pick_place_tutorial"])
+def test_applications_of_crams_branch_devel_run(begin, application, capsys):
+    """Their robot and kitchen are known by other names, and CRAM's own interfaces and plans come from the checkout."""
+    assert run(begin(Path(CHECKOUTS) / "cram-devel"), f"devel/{application}") == []
+    printed = capsys.readouterr()
+    assert (printed.out + printed.err).count("undefined functor") == 0
+
+
 LESSONS = {
     "01-Lesson_01_Lisp_Introduction": {"UnboundVariable": 2, "UndefinedFunction": 1},
     "02-Lesson_02_CRAM_Basics": {"DesignatorError": 1},
@@ -167,3 +176,16 @@ def test_a_checkout_of_the_demo_comes_before_ours(begin, tmp_path):
     session = begin(tmp_path)
     description = '(asdf:system-description (asdf:find-system "cram-pr2-pick-place-demo"))'
     assert prin1_to_string(session.evaluate_text(description)[0]) == '"theirs"'
+
+
+@pytest.mark.parametrize("sign, description", [("cram-manipulation-interfaces", '"theirs"'), ("cram-object-interfaces", '"ours"')])
+def test_the_interfaces_of_a_checkout_of_devel_come_before_ours(begin, tmp_path, capsys, sign, description):
+    """Those of master do not: cramhy contains them, rewritten."""
+    for name in (sign, "cram-common-failures"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / f"{name}.asd").write_text(f'(defsystem {name} :description "theirs")')
+    session = begin(tmp_path)
+    session.evaluate_text('(asdf:load-system "cram-common-failures")')
+    found = '(if (equal (asdf:system-description (asdf:find-system "cram-common-failures")) "theirs") "theirs" "ours")'
+    assert prin1_to_string(session.evaluate_text(found)[0]) == description
+    assert ("The system cram-common-failures is that of" in capsys.readouterr().err) is (description == '"theirs"')

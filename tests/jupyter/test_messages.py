@@ -150,8 +150,12 @@ def test_a_cursor_outside_of_the_cell_is_moved_into_it(cells, cursor):
 
 
 def test_cells_behind_one_that_fails_are_not_run(cells):
+    """The first cell waits for a line, which is typed when the others have been sent: else it might end before they are there."""
     send = cells.client.execute
-    asked = [send(code) for code in ('(progn (cpl:sleep 1) (error "stop"))', "(defvar *never* 1)", "(defvar *never* 2)")]
+    asked = [send('(progn (read-line) (error "stop"))', allow_stdin=True)]
+    cells.client.get_stdin_msg(timeout=PATIENCE)
+    asked += [send("(defvar *never* 1)"), send("(defvar *never* 2)")]
+    cells.client.input("go on")
     statuses = {}
     while len(statuses) < 3:
         came = cells.client.get_shell_msg(timeout=PATIENCE)

@@ -5,36 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.systems import systems
-
-
-@pytest.fixture
-def write(tmp_path, session, monkeypatch):
-    """A function: write a file below the folder in which systems are found."""
-    monkeypatch.setattr("cramhy_runtime.ros.search_folders.extra_folders", [str(tmp_path)])
-    monkeypatch.delenv("ROS_PACKAGE_PATH", raising=False)
-    session.package = "CL-USER"
-    before = dict(systems.systems)
-    log = sym("CL-USER::*LOG*")
-    log.special, log.value = True, None
-
-    def writing(name, text):
-        path = tmp_path / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-        return path
-
-    yield writing
-    for name in set(systems.systems) - set(before):
-        systems.forget_system(name)
-
-
-@pytest.fixture
-def run(write, session):
-    """A function: the printed value of the last form of a text."""
-    return lambda text: prin1_to_string(session.evaluate_text(text, "<test>")[0])
 
 
 def logging(text):
@@ -341,14 +312,3 @@ def test_a_system_may_have_a_dot_in_its_name(write, run, name):
     write("net.example.dotted.asd", '(defsystem "net.example.dotted" :components ((:file "dotted-x")))')
     write("dotted-x.lisp", logging(":dotted"))
     assert run(f"(asdf:load-system {name!r}) *log*".replace("'", '"')) == "(:DOTTED)"
-
-
-def test_a_system_that_knows_no_other_lisp_is_read_as_for_sbcl(write, run, monkeypatch):
-    """The others, before and behind it, are not."""
-    monkeypatch.setattr(systems, "READ_AS_SBCL", {"for-sbcl"})
-    write("for-all.asd", '(defsystem "for-all" :depends-on ("for-sbcl") :components ((:file "for-all-x")))')
-    write("for-sbcl.asd", '(defsystem "for-sbcl" :depends-on ("for-first") :components ((:file "for-sbcl-x")))')
-    write("for-first.asd", '(defsystem "for-first" :components ((:file "for-first-x")))')
-    for name in ("all", "sbcl", "first"):
-        write(f"for-{name}-x.lisp", f"#+sbcl {logging(f':{name}-as-sbcl')} #-sbcl {logging(f':{name}')}")
-    assert run("(asdf:load-system :for-all) (reverse *log*)") == "(:FIRST :SBCL-AS-SBCL :ALL)"

@@ -120,3 +120,10 @@ def test_a_walk_along_a_circular_list_can_be_ended(session, form):
 def test_what_ends_ends(session, form, value):
     (found,) = session.evaluate_text(f"(let ((l '#1=(1 . #1#))) (prin1-to-string {form}))")
     assert found == value
+
+
+@pytest.mark.parametrize("long", ["(make-list 12000 :initial-element 1)", "'(1 (quote #1=(2 . #1#)))"], ids=["long", "quoted circle"])
+def test_code_without_a_circle_of_its_own_is_compiled(session, long):
+    """However long it is, and whatever its constants hold."""
+    form = f"(funcall (compile nil (list 'lambda () (cons 'list {long}))))"
+    assert session.evaluate_text(f"(car {form})") == [1]

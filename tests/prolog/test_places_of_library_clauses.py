@@ -29,7 +29,7 @@ def test_the_report_of_a_failed_grounding_names_the_files_of_libraries(session):
         session.evaluate_text("(desig:reference (desig:an action (type nonsense)))")
     report = hint_for(problem.value)
     assert re.search(r"clause 3 of \S*gripper-actions at \S*cram-mobile-pick-place-plans/atomic-actions\.lisp:\d+:3", report)
-    assert re.search(r"\S*any-property at \S*cram-designator-specification/property\.lisp:\d+:3", report)
+    assert re.search(r"\S*all-designator-specs at \S*cram-designator-specification/property\.lisp:\d+:3", report)
     assert "at <repl" not in report
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from .. import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.ground.data import MultipleValues
 from cramhy_runtime.ground.numbers import is_real
 from cramhy_runtime.ground.packages import keyword
 from ..ros.roslisp import logging
@@ -67,6 +68,18 @@ def send_goal_and_wait(client, goal, execute_timeout, preempt_timeout):
 def wait_for_result(client, timeout):
     """Wait until the goal is finished, at most ``timeout`` seconds (0: for ever); T, or NIL when it was not."""
     return True if _wait(_client_of(client), _goal(client), timeout) else None
+
+
+def wait_for_the_result(goal, timeout=None):
+    """``actionlib:wait-for-result``: wait until the goal is finished. Two values: its result message, or NIL, and the keyword of its state.
+
+    After ``timeout`` seconds, if they are given, they are NIL and :TIMEOUT.
+    """
+    sent = _goal(goal)
+    limit = None if timeout is None else kernel.now() + max(float(timeout), 0.0)
+    if _client_of(goal).waiting.wait(lambda: sent.done, f"the end of the goal {sent.id}", limit):
+        return MultipleValues((sent.result, keyword(sent.state)))
+    return MultipleValues((None, keyword("TIMEOUT")))
 
 
 def _wait(client, goal, timeout):

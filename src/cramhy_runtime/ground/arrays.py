@@ -14,11 +14,84 @@ from weakref import ref
 
 from .condition_types import TypeError_, formatted
 from .conditions import error
-from .data import LispString, lisp_list, list_from
+from .data import WRITABLE_STRINGS, Character, LispString, lisp_list, list_from
 from .packages import sym
 
 BIT = sym("BIT")
 CHARACTER = sym("CHARACTER")
+BASE_CHAR = sym("BASE-CHAR")
+STRING_KINDS = frozenset((CHARACTER, BASE_CHAR, None))
+"""The element types of the vectors that are strings; ``None`` is the type nil."""
+
+
+class SharedCharacters:
+    """The characters of a string that is displaced to the string ``target``, ``size`` of them from ``offset`` on: its ``chars``.
+
+    It is read and written as a list of this length; to add something to it gives a list of its own.
+    """
+
+    __slots__ = ("target", "offset", "size")
+
+    def __init__(self, target, offset, size):
+        self.target, self.offset, self.size = target, offset, size
+
+    def _chars(self):
+        return self.target.writable() if self.target.__class__ in WRITABLE_STRINGS else self.target
+
+    def __len__(self):
+        return max(0, min(self.size, len(self._chars()) - self.offset))
+
+    def __iter__(self):
+        return iter(self[:])
+
+    def __getitem__(self, index):
+        if index.__class__ is int:
+            return self._chars()[self.offset + index]
+        return list(self._chars()[self.offset : self.offset + self.size])[index]
+
+    def __setitem__(self, index, value):
+        if self.target.__class__ not in WRITABLE_STRINGS:
+            error(
+                "The string ~S is a constant and cannot be changed in place. Change a copy of it: (copy-seq ~S).", self.target, self.target
+            )
+        if index.__class__ is int:
+            self._chars()[self.offset + index] = value
+        else:
+            start, stop, _ = index.indices(len(self))
+            self._chars()[self.offset + start : self.offset + stop] = list(value)[: stop - start]
+
+    def __iadd__(self, more):
+        return [*self, *more]
+
+
+class CharactersOfArray(SharedCharacters):
+    """As `SharedCharacters`, of an array of more dimensions, whose storage has Lisp's characters."""
+
+    __slots__ = ()
+
+    def _chars(self):
+        return self.target.storage
+
+    def __getitem__(self, index):
+        found = self.target.storage[self.offset + index] if index.__class__ is int else super().__getitem__(index)
+        return found.char if index.__class__ is int else [item.char for item in found]
+
+    def __setitem__(self, index, value):
+        start, stop = (index, index + 1) if index.__class__ is int else index.indices(len(self))[:2]
+        self.target.storage[self.offset + start : self.offset + stop] = [Character(char) for char in value][: stop - start]
+
+
+class SharedCharacterObjects(SharedCharacters):
+    """As `SharedCharacters`, but of Lisp's characters: the storage of an array that is displaced to a string."""
+
+    __slots__ = ()
+
+    def __getitem__(self, index):
+        found = super().__getitem__(index)
+        return Character(found) if index.__class__ is int else [Character(char) for char in found]
+
+    def __setitem__(self, index, value):
+        super().__setitem__(index, value.char if index.__class__ is int else [item.char for item in value])
 
 
 class TypedVector(list):
@@ -206,7 +279,8 @@ def dimensions(array):
 def element_type(array):
     """The upgraded element type, ``True`` for T. Python's bytes count as a vector of octets."""
     if isinstance(array, (str, LispString)):
-        return CHARACTER
+        kind = getattr(array, "kind", False)
+        return CHARACTER if kind is False else kind
     if isinstance(array, (bytes, bytearray)):
         return lisp_list(sym("UNSIGNED-BYTE"), 8)
     return getattr(array, "element_type", True)
@@ -218,6 +292,8 @@ def array_type(array):
     if len(sizes) == 1:
         if kind is BIT:
             return lisp_list(sym("SIMPLE-BIT-VECTOR" if simple else "BIT-VECTOR"), *sizes)
+        if kind is BASE_CHAR:
+            return lisp_list(sym("SIMPLE-BASE-STRING" if simple else "BASE-STRING"), *sizes)
         if not simple:
             return lisp_list(sym("VECTOR"), kind, *sizes)
         if kind is True:

@@ -360,10 +360,12 @@ DoubleFloat.__abs__ = lambda self: DoubleFloat(float.__abs__(self))
 class FreshString(str):
     """A simple string that was made at run time, as ``format``, ``subseq`` or ``make-string`` make it: the program may store into it.
 
-    Until somebody does, it is a ``str`` like any other, for Python too. With the first store it becomes a `ChangedString`.
+    Until somebody does, it is a ``str`` like any other, for Python too. With the first store it becomes a `ChangedString`. ``kind`` is
+    ``False`` for the element type CHARACTER; see `KindString`.
     """
 
     __slots__ = ("_chars",)
+    kind: Any = False
 
     def writable(self) -> list[str]:
         """The list of the characters, to be changed in place. It keeps its length."""
@@ -410,7 +412,7 @@ def _of_now(name):
     operation = getattr(str, name)
 
     def method(self, *arguments, **keywords):
-        arguments = [str(each) if each.__class__ is ChangedString else each for each in arguments]
+        arguments = [str(each) if isinstance(each, ChangedString) else each for each in arguments]
         return operation(str(self), *arguments, **keywords)
 
     method.__name__ = name
@@ -424,18 +426,45 @@ for _name in ("__eq__", "__ne__", "__lt__", "__le__", "__gt__", "__ge__", "__has
     setattr(ChangedString, _name, _of_now(_name))
 
 
+class KindString(FreshString):
+    """A `FreshString` whose element type is ``kind``: the symbol BASE-CHAR, or ``None`` for the type nil."""
+
+    __slots__ = ("kind",)
+
+    def __new__(cls, text, kind):
+        made = super().__new__(cls, text)
+        made.kind = kind
+        return made
+
+    def writable(self):
+        self._chars = list(self)
+        self.__class__ = ChangedKindString
+        return self._chars
+
+    def __reduce__(self):
+        return KindString, (str(self), self.kind)
+
+
+class ChangedKindString(ChangedString, KindString):
+    """A `KindString` into which something was stored."""
+
+    __slots__ = ()
+
+
 class LispString:
     """A string with a fill pointer, or one that is adjustable: its length may change, so it is no ``str``.
 
-    Literals are plain ``str``, what functions make is a `FreshString`.
+    Literals are plain ``str``, what functions make is a `FreshString`. ``chars`` is a list, or the `SharedCharacters` of another string;
+    ``kind`` is as in a `FreshString`.
     """
 
-    __slots__ = ("chars", "fill_pointer", "adjustable")
+    __slots__ = ("chars", "fill_pointer", "adjustable", "kind")
 
     def __init__(self, chars="", fill_pointer=None, adjustable=False):
         self.chars = list(chars)
         self.fill_pointer = fill_pointer
         self.adjustable = adjustable
+        self.kind = False
 
     def writable(self):
         """The list of the characters, also of those beyond the fill pointer."""
@@ -466,7 +495,7 @@ class LispString:
         return str(text) in str(self)
 
 
-WRITABLE_STRINGS = frozenset((FreshString, ChangedString, LispString))
+WRITABLE_STRINGS = frozenset((FreshString, ChangedString, KindString, ChangedKindString, LispString))
 """The classes of strings that have ``writable``."""
-TEXTS = frozenset((str, FreshString))
+TEXTS = frozenset((str, FreshString, KindString))
 """The classes of strings whose characters Python's own functions see as they are."""

@@ -181,6 +181,7 @@ def _spread(lst):
         items, end = list_parts(lst)
         if end is None:
             return items
+        lst = end  # what should have been a list
     elif lst is None or lst is False:
         return ()
     return type_error(lst, "LIST")
@@ -222,7 +223,7 @@ def setf_function(symbol):
 
 def invalid_function_name(name):
     """The error that ``name`` names no function."""
-    return SimpleTypeError("Invalid function name: ~S", name, datum=name, expected_type="(SATISFIES SB-INT:LEGAL-FUNCTION-NAME-P)")
+    return SimpleTypeError("Invalid function name: ~S", name, datum=name, expected_type="SB-IMPL::FUNCTION-NAME")
 
 
 def function_named(name):

@@ -189,10 +189,10 @@ class World:
 
     # ------------------------------------------------------------------------------------------------------------------ grips
 
-    def attach(self, name: Hashable, item: Hashable, link: str, loose: bool = False) -> None:
-        """Let a link of a machine hold an item from now on, as it is now. loose: another link decides where the item goes."""
+    def attach(self, name: Hashable, item: Hashable, link: str, loose: bool = False, grasp: Hashable = None) -> None:
+        """Let a link of a machine hold an item from now on, as it is now. loose, grasp: see `Grip`."""
         machine, held = self.machine(name), self.item(item)
-        machine.holds.setdefault(item, []).append(Grip(link, self.link(name, link).inverse() @ held.placement, loose))
+        machine.holds.setdefault(item, []).append(Grip(link, self.link(name, link).inverse() @ held.placement, loose, grasp))
         self._scene = None
         self._tell()
 

@@ -24,6 +24,10 @@ class Queue:
     def __init__(self, name, items):
         self.name, self.items = name, deque(items)
 
+    def copy(self):
+        """A queue of the same objects, for another image."""
+        return Queue(self.name, self.items)
+
 
 def _queue(thing):
     return need(thing, Queue, "CRAM-UTILITIES:QUEUE")

@@ -44,7 +44,11 @@ class JoinThreadError(ThreadError):
 
 
 class Thread:
-    """What Lisp sees of a task of the kernel: ``values`` when its function has returned, ``failure`` when it left otherwise."""
+    """What Lisp sees of a task of the kernel: ``values`` when its function has returned, ``failure`` when it left otherwise.
+
+    ``returns`` says that it belongs to a task of a plan, which takes requests to end it itself. So such a thread returns also when its
+    task was evaporated, but not when `kill_thread` ended it.
+    """
 
     lisp_name = "SB-THREAD::THREAD"
 
@@ -53,13 +57,16 @@ class Thread:
         self.name = str(task.name)
         self.values = NO_VALUES
         self.failure = None
+        self.killed = False
+        self.returns = task.owner is not None
         task.local.thread = self
 
     @property
     def state(self):
         if not self.task.dead:
             return "RUNNING"
-        return "ABORTED" if self.failure is not None or self.task.cancelled_delivered else "FINISHED"
+        asked_to_end = self.killed or self.task.cancelled_delivered and not self.returns
+        return "ABORTED" if self.failure is not None or asked_to_end else "FINISHED"
 
     def run(self, function, arguments):
         """The life of a thread that was spawned here."""
@@ -122,6 +129,7 @@ def kill_thread(thread):
         return None
     if task is task.kernel.main:
         error("The main thread cannot be killed: it evaluates what is typed. To end the session call (quit).")
+    thread.killed = True
     task.cancel("it was killed")
     if task is kernel.current():
         kernel.checkpoint()

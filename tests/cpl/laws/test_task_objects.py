@@ -130,11 +130,11 @@ def test_outside_of_plans_current_task_is_a_fresh_dummy_that_is_running(lisp):
 
 def test_executed_tasks_are_saved_in_order_while_the_variable_says_so(lisp):
     assert lisp("""
-        (setf *tasks* nil)
+        (cpl-impl:clear-saved-tasks)
         (let ((*save-tasks* t)) (top-level (par 1 (par 2))))
         (top-level (par 1))
-        (let ((names (mapcar #'name (list-saved-tasks))) (same (equal *tasks* (list-saved-tasks))))
-          (setf *tasks* nil)
+        (let ((names (mapcar #'name (list-saved-tasks))) (same (equal (cut:list-queue-contents *tasks*) (list-saved-tasks))))
+          (cpl-impl:clear-saved-tasks)
           (list (mapcar (lambda (name) (subseq name 0 (position #\\- name :from-end t))) names) same (list-saved-tasks)))""") == (
         '(("[TOP-LEVEL]" "[PAR-CHILD-#1/2]" "[PAR-CHILD-#2/2]" "[PAR-CHILD-#1/1]") T NIL)'
     )
@@ -326,3 +326,52 @@ def test_a_failure_inside_of_without_scheduling_or_of_a_callback_is_a_failure(li
 def test_the_same_plan_function_may_be_called_twice_at_once(lisp):
     assert lisp("(def-cram-function f (x) (sleep 1) x) (multiple-value-list (top-level (par (f 1) (f 2) (f 3))))") == "(1)"
     assert kernel.now() == 1
+
+
+def test_the_saved_tasks_are_in_a_queue_that_a_binding_replaces(lisp):
+    assert (
+        lisp("""
+        (cpl-impl:clear-saved-tasks)
+        (let ((*save-tasks* t) (*tasks* (cut:make-queue :name "mine")))
+          (top-level (par 1))
+          (list (cut:queue-name *tasks*) (cut:queue-count *tasks*)))""")
+        == '("mine" 2)'
+    )
+    assert lisp("(list-saved-tasks)") == "NIL"
+
+
+def test_a_task_has_the_slots_of_the_original(lisp):
+    assert (
+        lisp("""
+        (top-level
+          (let ((task (make-instance 'task :thread-fun (lambda () 1) :run-thread nil :name "t")))
+            (list (slot-value task 'cpl-impl::name) (slot-value task 'cpl-impl::thread) (slot-value task 'cpl-impl::parent-task)
+                  (typep (slot-value task 'cpl-impl::status) 'fluent) (functionp (slot-value task 'cpl-impl::thread-fun))
+                  (slot-exists-p task 'cpl-impl::code))))""")
+        == '("t" NIL NIL T T T)'
+    )
+
+
+@pytest.mark.parametrize("body", ["(list 1)", "(fail)", "(progn (evaporate *current-task*) (sleep 1))"])
+def test_the_thread_of_a_task_returns_whatever_became_of_the_task(lisp, body):
+    assert (
+        lisp(f"""
+        (let (task)
+          (handler-case (top-level (par (progn (setf task *current-task*) {body})))
+            (plan-failure () nil))
+          (let ((thread (slot-value task 'cpl-impl::thread)))
+            (list (equal (cut:thread-name thread) (name task)) (cut:thread-alive-p thread) (multiple-value-list (cut:join-thread thread))
+                  (and (search "FINISHED" (princ-to-string thread)) t))))""")
+        == "(T NIL NIL T)"
+    )
+
+
+def test_the_thread_of_a_task_that_kill_thread_ended_is_aborted(lisp):
+    assert (
+        lisp("""
+        (let (thread)
+          (top-level (pursue (progn (setf thread (cut:current-thread)) (sleep 5))
+                             (progn (sleep 1) (cut:kill-thread thread) (sleep 1))))
+          (list (cut:join-thread thread :on-failure :gone) (and (search "ABORTED" (princ-to-string thread)) t)))""")
+        == "(:GONE T)"
+    )

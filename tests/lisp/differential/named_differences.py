@@ -65,8 +65,6 @@ def _without_value(question: str, theirs: str, ours: str) -> bool:
 
 
 def _base_characters(question: str, theirs: str, ours: str) -> bool:
-    if re.search(r"base-(char|string)|standard-char", question):
-        return not _types(theirs) and not _types(ours)
     return _same_but(theirs, ours, (r"\(SIMPLE-BASE-STRING (\d+)\)", r"(SIMPLE-ARRAY CHARACTER (\1))"), ("BASE-(CHAR|STRING)", "CHARACTER"))
 
 
@@ -156,7 +154,7 @@ NAMED = [
     Named("overflows where doubles do", lambda question, theirs, ours: "FLOATING-POINT-OVERFLOW" in _types(theirs) and not _types(ours)),
     Named("Single-floats are kept at double precision", _precision),
     Named("literals of the same characters may be `eq`", lambda question, theirs, ours: bool(re.search(r'#\d=\\?"', ours))),
-    Named("All strings are of characters, none of base characters", _base_characters),
+    Named("Names of symbols and texts of the reader are strings of characters", _base_characters),
     Named(
         "whose name reads as a float",
         lambda question, theirs, ours: _same_but(theirs, ours, (r"\|([+-]?\d*\.?\d+([ESFDL][+-]?\d+)?)\|", r"\1")),
@@ -187,7 +185,7 @@ NAMED = [
             "class-of" in question and ("SB-KERNEL:" in theirs or "SIMPLE-CHARACTER-STRING" in theirs or "COMPLEX-" in theirs)
         ),
     ),
-    Named("are structures in SBCL", _are_structures),
+    Named("are not of the type `structure-object`", _are_structures),
     Named(
         "`defmethod` without a lambda list",
         lambda question, theirs, ours: bool(re.search(r"\(defmethod \S+( [^\s()]+)*\)", question)) and "PROGRAM-ERROR" in _types(ours),
@@ -202,7 +200,10 @@ NAMED = [
         "A form that is a dotted list",
         lambda question, theirs, ours: " . " in question and "TYPE-ERROR" in _types(theirs) and _types(ours) == {"PROGRAM-ERROR", "ERROR"},
     ),
-    Named("Arrays of the element type nil", lambda question, theirs, ours: not _types(theirs) and _has_empty_type(question, ELEMENT_TYPE)),
+    Named(
+        "A vector of the element type nil is a string",
+        lambda question, theirs, ours: not _types(theirs) and _has_empty_type(question, ELEMENT_TYPE),
+    ),
     Named("A start behind the end is always an error", _bounds_pass),
     Named("An index behind the end of a list is always an error for `elt` and `subseq`", _behind_the_end),
     Named("`map` to a type of lists is an error", _map_to_lists),

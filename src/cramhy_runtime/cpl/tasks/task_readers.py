@@ -5,11 +5,12 @@ None of this waits, and none of it changes anything; a dead task answers as well
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import list_from, truth
+from cramhy_runtime.ground.data import list_from
 from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.utilities.queues import list_queue_contents, make_queue
 from ..fluents.operators import fl_funcall
 from ..statuses import ALIVE, DEAD, DONE, FAILED, status_list
-from .tasks import AbstractTask, saved_tasks
+from .tasks import SAVED_TASKS, AbstractTask
 
 status = generic("CPL-IMPL::STATUS", "(task)", documentation="The fluent of its status. Callbacks on it see each change in order.")
 status.method(AbstractTask)(lambda task: task.status_fluent)
@@ -89,10 +90,11 @@ def task_constraints(task):
 
 
 def list_saved_tasks():
-    """The tasks executed while ``*save-tasks*`` was true, in order of execution. ``*tasks*`` is the same list."""
-    return list_from(saved_tasks)
+    """The tasks in the queue ``*tasks*``: those that were executed while ``*save-tasks*`` was true, in order of execution."""
+    return list_queue_contents(SAVED_TASKS.value)
 
 
-def save_tasks(tasks):
-    """``(setf *tasks* list)``: let ``list``, or what is in a queue, be what `list_saved_tasks` returns."""
-    saved_tasks[:] = list(getattr(tasks, "items", tasks)) if truth(tasks) else []
+def clear_saved_tasks():
+    """Make ``*tasks*`` a new, empty queue, which is returned."""
+    SAVED_TASKS.value = make_queue()
+    return SAVED_TASKS.value

@@ -31,6 +31,8 @@ from cramhy_runtime.ground.data import NO_VALUES, Cons, Keyword, Symbol, truth
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.source_places import locate
 from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.utilities.queues import Queue, enqueue
+from cramhy_runtime.utilities.threads import thread_of
 from cramhy_runtime.kernel.looking_on import only_looked_at
 from cramhy_runtime.kernel.unstarted import UNSTARTED, ran
 from ..current import current_task
@@ -51,6 +53,7 @@ from .waiting import wait_for
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
+    from cramhy_runtime.utilities.threads import Thread
     from ..fluents.fluents import Fluent, ValueFluent
     from ..signatures import Request, Thunk
     from ..tree.task_tree import Code, TaskTreeNode
@@ -62,7 +65,7 @@ DEEPEST = 1000
 
 _count = itertools.count(1)
 SAVE_TASKS = inherit(sym("CPL-IMPL::*SAVE-TASKS*"), None)
-saved_tasks = per_image([])
+SAVED_TASKS = inherit(sym("CPL-IMPL::*TASKS*"), Queue(None, ()))
 RECORD = special(sym("CPL-IMPL::*RECORD-TASK-TREE*"), None)
 recorded = per_image(deque(maxlen=10))
 """The newest plans that began while ``*record-task-tree*`` was true."""
@@ -77,33 +80,16 @@ class AbstractTask(Generic[T]):
     """
 
     __slots__ = (
-        "_name",
-        "body",
-        "parent",
-        "children",
-        "status",
-        "_status_fluent",
-        "result",
-        "path",
-        "tree",
-        "node",
-        "code",
-        "kernel_task",
-        "constraints",
-        "ended",
-        "started_at",
-        "ended_at",
-        "observers",
-        "held",
-        "unschedulable",
-        "suspension_handlers",
-        "retry_level",
-        "depth",
-        "__weakref__",
-        "__dict__",
-    )
+        "_name", "body", "parent", "children", "status", "_status_fluent", "result", "path", "tree", "node", "code", "kernel_task",
+        "constraints", "ended", "started_at", "ended_at", "observers", "held", "unschedulable", "suspension_handlers", "retry_level",
+        "depth", "__weakref__", "__dict__",
+    )  # fmt: skip
     __class_getitem__ = subscripted
     lisp_name = "CRAM-LANGUAGE-IMPLEMENTATION::ABSTRACT-TASK"
+    lisp_slots = {
+        "NAME": "name", "THREAD": "thread", "PARENT-TASK": "parent", "STATUS": "status_fluent", "THREAD-FUN": "body", "PATH": "path",
+        "CODE": "code",
+    }  # fmt: skip
     threads: tuple[kernel.Task[object], ...] | list[kernel.Task[object]] = ()
     """The kernel's tasks that its body started with ``cut:spawn-thread``."""
     predecessors: tuple[AbstractTask[object], ...] | list[AbstractTask[object]] = ()
@@ -173,6 +159,15 @@ class AbstractTask(Generic[T]):
         """Its name, without the number if `name` has not been asked for yet. So a report does not change the numbers of names."""
         name = self._name
         return name() if callable(name) else name or "UNKNOWN"
+
+    @property
+    def thread(self) -> Thread | None:
+        """What Lisp calls the thread in which it runs, or ran. None until it is executed."""
+        if self.kernel_task is None:
+            return None
+        thread = thread_of(self.kernel_task)
+        thread.name, thread.returns = str(self.name), True
+        return thread  # type: ignore[no-any-return]  # the utilities are not annotated
 
     @property
     def alive(self) -> bool:
@@ -261,7 +256,7 @@ class AbstractTask(Generic[T]):
             task.interject(lambda: obey(self))
         self.started_at = task.kernel.clock.now()
         if SAVE_TASKS.value is not None and truth(SAVE_TASKS.value):
-            saved_tasks.append(self)
+            enqueue(self, SAVED_TASKS.value)
         return self
 
     def _parent_in(self, me: kernel.Task[object]) -> AbstractTask[object] | None:

@@ -52,7 +52,7 @@ HELPERS = {
     "ground.source_places": "source-position",
     "evaluation.setf_places": "define-modifier define-setf-function define-setf-form define-expander",
     "evaluation.expansion_support": """next-values check-shape key-table key-given-p key-value case-failure ask-for-value check-type-failed
-        handler-case restart-report restart-case restart-bind with-simple-restart
+        handler-bind handler-case restart-report restart-case restart-bind with-simple-restart
         signal-with-restarts with-condition-restarts hash-table-iterator
         remove-property next-method-exists""",
     "packages.package_definition": "define-package set-package package-symbols all-symbols package-iterator call-unlocked",
@@ -84,6 +84,7 @@ def fill():
             function = sym(lisp_name).setf_function = lispify(setter)
             if not hasattr(function, "__lisp_name__"):
                 function.__lisp_name__ = lisp_list(sym("SETF"), sym(lisp_name))
+    _module("objects.protocol").open_functions()
     for name in ("printer.clos_printing", "printer.file_printers"):  # teach the printer about classes, pathnames, streams
         _module(name)
     for name, names in HELPERS.items():

@@ -5,7 +5,7 @@
 (defun container-type-p (type)
   (and (prolog `(cram-object-interfaces:object-type-subtype :container ,type)) t))
 
-(def-fact-group spatial-relations (location-costmap:desig-costmap)
+(def-fact-group spatial-relations-costmap (location-costmap:desig-costmap)
 
   (<- (thing-at ?designator ?key ?thing)
     (desig:desig-prop ?designator (?key ?object))
@@ -95,7 +95,7 @@
     (once (location-costmap:costmap ?costmap))
     (location-costmap:costmap-add-function slot-generator (make-slots-cost ?thing ?for ?count) ?costmap)))
 
-(def-fact-group item-locations (desig:location-grounding)
+(def-fact-group object-designators (desig:location-grounding)
   (<- (desig:location-grounding ?designator ?pose)
     (desig:loc-desig? ?designator)
     (desig:current-designator ?designator ?current)

@@ -27,7 +27,7 @@
   (let ((object (or (desig:desig-prop-value designator :object) (desig:desig-prop-value designator :obj))))
     (and object (btr-belief:get-designator-object (desig:current-desig object)))))
 
-(def-fact-group visibility-costmap (location-costmap:desig-costmap)
+(def-fact-group bullet-reasoning-location-desig (location-costmap:desig-costmap)
   (<- (location-costmap:desig-costmap ?designator ?costmap)
     (cram-robot-interfaces:visibility-designator ?designator)
     (desig:desig-prop ?designator (:visible-for ?robot))

@@ -55,7 +55,7 @@
   "A location designator that stands for POSE."
   (desig:make-designator :location `((:pose ,pose))))
 
-(def-fact-group btr-occasions (cpoe:object-in-hand cpoe:object-picked cpoe:object-placed-at cpoe:loc object-designator-name)
+(def-fact-group occasions (cpoe:object-in-hand cpoe:object-picked cpoe:object-placed-at cpoe:loc object-designator-name)
   (<- (object-designator-name ?designator ?name)
     (lisp-type ?designator symbol)
     (== ?designator ?name))

@@ -2,7 +2,7 @@
 
 (in-package #:cram-bullet-reasoning-utilities)
 
-(def-fact-group scenario-objects (scenario-objects-init-pose scenario-objects-default-color scenario-object-color
+(def-fact-group scenario-objects-database (scenario-objects-init-pose scenario-objects-default-color scenario-object-color
                                    scenario-object-shape scenario-object-extra-attributes)
   (<- (scenario-objects-init-pose ((2 0 0) (0 0 0 1))))
   (<- (scenario-objects-default-color (0.5 0.5 0.5)))
@@ -22,7 +22,7 @@
     (once (and (bagof ?shape (scenario-object-shape ?type ?shape) ?shapes)
                (== ?shapes (:mesh))))))
 
-(def-fact-group poses-of-objects ()
+(def-fact-group bullet-reasoning-utilities ()
   (<- (assert-object-pose ?name ?pose)
     (bullet-world ?world)
     (assert ?world (object-pose ?name ?pose)))

@@ -30,7 +30,7 @@
     (let ((up (- (z (origin pose)) (z (origin (bottom-pose object))))))
       (setf (pose object) (copy-pose pose :origin (v+ (origin pose) (make-3d-vector 0 0 up)))))))
 
-(def-fact-group bullet-worlds (bullet-world clear-bullet-world simulate simulate-realtime step debug-window debug-costmap)
+(def-fact-group bullet-world-facts (bullet-world clear-bullet-world simulate simulate-realtime step debug-window debug-costmap)
   (<- (bullet-world ?world)
     (not (bound ?world))
     (lisp-fun get-current-world ?world))
@@ -45,6 +45,10 @@
 
   (<- (clear-bullet-world)
     (lisp-fun clear-world ?))
+
+  (<- (clear-bullet-world ?world)
+    (not (bound ?world))
+    (lisp-fun robot-world:make-world ?world))
 
   (<- (simulate ?world ?seconds)
     (bullet-world ?world)
@@ -153,6 +157,10 @@
     (lisp-fun item-types ?object ?types)
     (member ?type ?types))
 
+  (<- (item ?world ?name)
+    (%object ?world ?name ?object)
+    (lisp-type ?object item))
+
   (<- (object-type ?world ?name ?type)
     (item-type ?world ?name ?type))
 
@@ -174,6 +182,9 @@
 
   (<- (pose ?world ?name ?pose)
     (object-pose ?world ?name ?pose))
+
+  (<- (%pose ?object ?pose)
+    (lisp-fun pose ?object ?pose))
 
   (<- (pose ?world ?name ?position ?orientation)
     (object-pose ?world ?name ?pose)
@@ -197,7 +208,7 @@
     (and (< (v-dist (origin pose) (origin other-pose)) 0.005)
          (< (angle-between-quaternions (orientation pose) (orientation other-pose)) 0.15))))
 
-(def-fact-group bullet-contacts (contact object-not-in-collision stable stable-items above below supported-by supporting)
+(def-fact-group force-dynamic-states (contact object-not-in-collision stable stable-items above below supported-by supporting)
   (<- (contact ?world ?name ?other-name)
     (%object ?world ?name ?object)
     (lisp-fun find-objects-in-contact ?world ?object ?others)
@@ -247,7 +258,7 @@
     (lisp-fun set-robot-state-from-joints ?joint-states ?robot ?_)
     (forall (contact ?copy ?robot-name ?name ?link)
             (or (attached ?copy ?robot-name ?_ ?name)
-                (cram-robot-interfaces:gripper-link ?robot-name ?_ ?link))))
+                (link-of-hand ?robot-name ?link))))
 
   (<- (stable ?world ?name)
     (%object ?world ?name ?object)
@@ -329,7 +340,7 @@
           unless (member (var-value '?link solution) holding :test #'equal)
             collect (var-value '?arm solution))))
 
-(def-fact-group bullet-robots (link link-pose joint-state attached available-arms)
+(def-fact-group robot-model (link link-pose joint-state attached available-arms)
   (<- (available-arms ?object ?arms)
     (lisp-fun free-arms ?arms)
     (lisp-pred identity ?arms))
@@ -351,15 +362,20 @@
   (<- (joint-state ?world ?robot ?joint ?state)
     (%object ?world ?robot ?object)
     (lisp-type ?object robot-object)
-    (lisp-fun joint-states ?object ?states)
+    (lisp-fun joint-list ?object ?states)
     (member (?joint . ?state) ?states))
 
   (<- (attached ?world ?robot ?link ?name)
+    (attached ?world ?robot ?link ?name ?_))
+
+  (<- (attached ?world ?robot ?link ?name ?grasp)
     (%object ?world ?robot ?object)
     (lisp-type ?object robot-object)
     (lisp-fun attached-objects ?object ?attached)
-    (member (?name . ?links) ?attached)
-    (member ?link ?links)))
+    (member (?name . ?_) ?attached)
+    (%object ?world ?name ?item)
+    (lisp-fun robot-world:grips ?object ?item ?grips)
+    (member (?link ?_ ?grasp) ?grips)))
 
 (defun point-head (robot pan-joint pan tilt-joint tilt)
   (set-robot-state-from-joints `((,pan-joint ,pan) (,tilt-joint ,tilt)) robot))
@@ -367,8 +383,7 @@
 (def-fact-group bullet-heads (head-pointing-at)
   (<- (head-pointing-at ?world ?robot ?pose)
     (%object ?world ?robot ?object)
-    (robot-pan-tilt-links ?robot ?pan-link ?tilt-link)
-    (robot-pan-tilt-joints ?robot ?pan-joint ?tilt-joint)
+    (%neck ?robot ?pan-link ?tilt-link ?pan-joint ?tilt-joint)
     (lisp-fun calculate-pan-tilt ?object ?pan-link ?tilt-link ?pose (?pan ?tilt))
     (lisp-fun point-head ?object ?pan-joint ?pan ?tilt-joint ?tilt ?)))
 
@@ -381,7 +396,7 @@
               when pose collect pose)
         (and (not (symbolp robot-or-pose)) (list (ensure-pose robot-or-pose))))))
 
-(def-fact-group bullet-vision (visible visible-from occluding-objects occluding-object)
+(def-fact-group visibility (visible visible-from occluding-objects occluding-object)
   (<- (visible ?world ?robot ?name)
     (%object ?world ?robot ?machine)
     (lisp-type ?machine robot-object)

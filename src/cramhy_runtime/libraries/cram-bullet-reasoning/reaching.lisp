@@ -51,7 +51,22 @@ is no posture."
                                                    :test #'equal))
                      #'< :key #'length)))))
 
-(def-fact-group reachability (reachable point-reachable pose-reachable blocking)
+(def-fact-group reachability (object-grasp valid-grasp grasp side reachable point-reachable pose-reachable blocking)
+  (<- (object-grasp ?world ?object ?grasp (?side))
+    (item-type ?world ?object ?type)
+    (%grasp-of-type ?type ?grasp)
+    (robot ?robot)
+    (arm ?robot ?side))
+
+  (<- (valid-grasp ?world ?object ?grasp ?sides)
+    (object-grasp ?world ?object ?grasp ?sides))
+
+  (<- (valid-grasp ?world ?object ?grasp (?side))
+    (not (object-grasp ?world ?object ?_ ?_))
+    (robot ?robot)
+    (grasp ?robot ?grasp)
+    (side ?robot ?side))
+
   (<- (reachable ?world ?robot ?object)
     (once (reachable ?world ?robot ?object ?)))
 

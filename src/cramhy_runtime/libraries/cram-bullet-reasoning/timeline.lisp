@@ -3,14 +3,19 @@
 (in-package #:cram-bullet-reasoning)
 
 (defclass event ()
-  ((event :initarg :event :initarg :pattern :reader event :reader event-pattern)
-   (timestamp :initarg :timestamp :reader event-timestamp)
-   (world-state :initarg :world-state :reader event-world-state))
+  ((event :initarg :event :initarg :pattern :initform nil :reader event :reader event-pattern)
+   (timestamp :initarg :timestamp :initform 0.0 :reader timestamp :reader event-timestamp)
+   (world-state :initarg :world-state :initform nil :reader event-world-state))
   (:documentation "What happened, when, and a copy of the world as it was then."))
 
 (defclass timeline ()
-  ((events :initarg :events :accessor timeline-events))
+  ((events :initarg :events :initform nil :accessor events :reader timeline-events)
+   (last-event :initform nil :documentation "The last cons of EVENTS."))
   (:documentation "Events, the first one first."))
+
+(defgeneric last-event (timeline)
+  (:documentation "The list whose first element is the last event of TIMELINE, nil when there is none.")
+  (:method ((timeline timeline)) (setf (slot-value timeline 'last-event) (last (events timeline)))))
 
 (defun make-event (world pattern &optional (timestamp (current-timestamp)))
   "An event PATTERN, such as (location-change robot), which happened in WORLD."
@@ -22,8 +27,8 @@
 
 (defun timeline-advance (timeline event)
   "Note EVENT; later ones stay behind it. The timeline."
-  (setf (timeline-events timeline)
-        (merge 'list (timeline-events timeline) (list event) #'< :key #'event-timestamp))
+  (setf (events timeline) (merge 'list (events timeline) (list event) #'< :key #'event-timestamp))
+  (last-event timeline)
   timeline)
 
 (defun timeline-lookup (timeline stamp)
@@ -62,30 +67,43 @@
             do (setf answers (loop for answer in answers append (solutions-in world (list ?occasion) answer)))
             finally (return answers)))))
 
-(def-fact-group timeline (timeline coe:occurs coe:holds)
+(def-fact-group timeline-predicates (timeline coe:occurs coe:holds)
   (<- (timeline ?timeline)
+    (not (bound ?timeline))
     (symbol-value *current-timeline* ?timeline))
 
-  (<- (coe:occurs ?event (coe:at ?time))
+  (<- (timeline ?timeline)
+    (bound ?timeline)
+    (lisp-type ?timeline timeline))
+
+  (<- (coe:occurs ?timeline ?event ?time)
     (timeline ?timeline)
     (lisp-fun patterns-and-stamps ?timeline ?events)
     (member (?event ?time) ?events))
 
+  (<- (coe:occurs ?event (coe:at ?time))
+    (coe:occurs ?timeline ?event ?time))
+
   (<- (coe:occurs ?event (coe:during ?from ?until))
     (bound ?from)
     (bound ?until)
-    (coe:occurs ?event (coe:at ?time))
+    (coe:occurs ?timeline ?event ?time)
     (<= ?from ?time)
     (< ?time ?until))
 
-  (<- (coe:holds ?occasion (coe:at ?time))
+  (<- (coe:holds ?timeline ?occasion (coe:at ?time))
     (bound ?time)
     (timeline ?timeline)
     (lisp-fun timeline-lookup ?timeline ?time ?world)
     (lisp-pred identity ?world)
     (with-world ?world ?occasion))
 
-  (<- (coe:holds ?occasion (coe:during ?from ?until))
+  (<- (coe:holds ?timeline ?occasion (coe:at ?time))
+    (not (bound ?time))
+    (coe:occurs ?timeline ?event ?time)
+    (coe:holds ?timeline ?occasion (coe:at ?time)))
+
+  (<- (coe:holds ?timeline ?occasion (coe:during ?from ?until))
     (bound ?from)
     (bound ?until)
     (timeline ?timeline)
@@ -93,9 +111,13 @@
     (member (?time ?world) ?moments)
     (with-world ?world ?occasion))
 
-  (<- (coe:holds ?occasion (coe:throughout ?from ?until))
+  (<- (coe:holds ?timeline ?occasion (coe:throughout ?from ?until))
     (bound ?from)
     (bound ?until)
     (timeline ?timeline)
     (lisp-fun moments ?timeline ?from ?until ?moments)
-    (holds-in-all ?occasion ?moments)))
+    (holds-in-all ?occasion ?moments))
+
+  (<- (coe:holds ?occasion ?time)
+    (bound ?time)
+    (coe:holds ?timeline ?occasion ?time)))

@@ -32,15 +32,15 @@
                                            `((,slot-name :initarg ,initarg :initform nil :reader ,reader))))))))))
 
 (defun report-description (failure stream)
-  (princ (failure-description failure) stream))
+  (princ (error-description failure) stream))
 
 (define-condition low-level-failure (simple-plan-failure)
-  ((description :initarg :description :initform "Low-level failure happened" :reader failure-description))
+  ((description :initarg :description :initform "Low-level failure happened" :reader error-description))
   (:documentation "A process module could not do what it was told.")
   (:report report-description))
 
 (define-condition high-level-failure (simple-plan-failure)
-  ((description :initarg :description :initform "High-level failure happened" :reader failure-description))
+  ((description :initarg :description :initform "High-level failure happened" :reader error-description))
   (:documentation "A plan has tried all that it knows.")
   (:report report-description))
 
@@ -49,7 +49,7 @@
    actionlib-action-timed-out
    (navigation-low-level-failure (location :location navigation-failure-location))
    perception-low-level-failure
-   (ptu-low-level-failure (location :location ptu-failure-location))
+   (ptu-low-level-failure (target :location ptu-failure-target))
    manipulation-low-level-failure)
   (navigation-low-level-failure navigation-pose-unreachable navigation-goal-not-reached)
   (perception-low-level-failure (perception-object-not-found (object :object object-not-found-object)))
@@ -58,7 +58,7 @@
    manipulation-goal-not-reached
    manipulation-pose-unreachable
    (gripper-low-level-failure (action :object gripper-failure-action))
-   (torso-low-level-failure (location :location torso-failure-location)))
+   (torso-low-level-failure (torso :location torso-failure-target)))
   (gripper-low-level-failure gripper-closed-completely gripper-goal-not-reached)
   (torso-low-level-failure torso-goal-unreachable torso-goal-not-reached)
   (high-level-failure

@@ -11,7 +11,7 @@
 
 (in-package #:cram-designator-specification)
 
-(def-fact-group any-property (property)
+(def-fact-group all-designator-specs (property)
 
   (<- (property ?designator (?key ?value))
     (assert-type ?designator desig:designator "PROPERTY-MEMBER")
@@ -21,7 +21,7 @@
 
 (defmacro define-properties (class &body types)
   "Say which entries designators of CLASS, such as MOTION, have: each of TYPES is (TYPE KEY...)."
-  (let ((group (intern (format nil "~A-PROPERTIES" class)))
+  (let ((group (intern (format nil "~A-DESIGNATOR-SPECS" class)))
         (test (find-symbol (ecase class ((motion action) (format nil "~A-DESIG?" class)) (location "LOC-DESIG?") (object "OBJ-DESIG?"))
                            :desig))
         (tag (format nil "~A SPEC:PROPERTY" class)))

@@ -73,7 +73,7 @@
    (cram-tf:ensure-pose-in-frame target-pose (base-frame) :use-zero-time t)
    (roslisp-utilities:rosify-underscores-lisp-name object-name)))
 
-(def-fact-group pick-and-place-actions (desig:action-grounding)
+(def-fact-group pick-and-place-plans (desig:action-grounding)
 
   (<- (desig:action-grounding ?designator (pick-up ?current-object ?arm ?gripper-opening ?effort ?grasp
                                                    ?left-reach-poses ?right-reach-poses

@@ -15,7 +15,7 @@
   "Where an object was seen: the transform from the robot's base to it, or nil."
   (seen object-designator :transform))
 
-(def-fact-group places-of-objects (desig:location-grounding desig:desig-location-prop)
+(def-fact-group object-designators (desig:location-grounding desig:desig-location-prop)
 
   (<- (desig:desig-location-prop ?object ?pose)
     (desig:obj-desig? ?object)

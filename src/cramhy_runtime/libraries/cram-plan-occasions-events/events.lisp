@@ -4,10 +4,11 @@
 
 (defmacro define-event (name parent documentation &rest slots)
   "Define the class NAME of events. Each of SLOTS is (SLOT READER WHAT), where WHAT, such as \"an object\", is said to be missing when the
-slot is not given, or (SLOT READER :DEFAULT VALUE)."
+slot is not given, or (SLOT READER :DEFAULT VALUE). A slot (SLOT INITARG) has another keyword than its name."
   `(defclass ,name (,parent)
      ,(loop for (slot reader what default) in slots
-            collect `(,slot :initarg ,(intern (symbol-name slot) :keyword)
+            collect `(,(if (listp slot) (first slot) slot)
+                            :initarg ,(if (listp slot) (second slot) (intern (symbol-name slot) :keyword))
                             :reader ,reader
                             :initform ,(if (eq what :default) default `(error "~A requires ~A." ',name ,what))))
      (:documentation ,documentation)))
@@ -46,8 +47,8 @@ slot is not given, or (SLOT READER :DEFAULT VALUE)."
 (define-event environment-manipulation-event event
   "A joint of the furniture was moved by so many metres."
   (joint-name environment-event-joint-name "a joint name")
-  (side environment-event-arm "a side")
-  (environment environment-event-object "an environment")
+  ((arm :side) environment-event-arm "a side")
+  ((object :environment) environment-event-object "an environment")
   (distance environment-event-distance "a distance"))
 
 (define-event container-opening-event environment-manipulation-event

@@ -28,7 +28,7 @@
 (defvar *left-parking-pose* (parking-pose 0.3))
 (defvar *right-parking-pose* (parking-pose -0.3))
 
-(def-fact-group pr2-arms (arm arm-joints arm-links arm-base-joints arm-base-links arm-tool-joints hand-links
+(def-fact-group pr2-arm-kinematics-facts (arm arm-joints arm-links arm-base-joints arm-base-links arm-tool-joints hand-links
                           end-effector-link robot-tool-frame gripper-joint gripper-link planning-group
                           standard-to-particular-gripper-transform tcp-in-ee-pose gripper-meter-to-joint-multiplier)
 

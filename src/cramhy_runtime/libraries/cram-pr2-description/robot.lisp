@@ -2,7 +2,7 @@
 
 (in-package #:cram-pr2-description)
 
-(def-fact-group pr2 (robot robot-base-frame robot-odom-frame robot-torso-link-joint robot-description-file)
+(def-fact-group pr2-metadata (robot robot-base-frame robot-odom-frame robot-torso-link-joint robot-description-file)
 
   (<- (robot pr2))
 

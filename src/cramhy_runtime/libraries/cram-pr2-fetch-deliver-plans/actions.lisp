@@ -7,7 +7,7 @@
   (let ((free (btr::free-arms)))
     (if (or (null free) (member :left free)) :left (first free))))
 
-(def-fact-group fetch-and-deliver-actions (desig:action-grounding)
+(def-fact-group fetch-and-deliver-designators (desig:action-grounding)
 
   (<- (entry-or-nil ?designator ?key ?value)
     (once (or (spec:property ?designator (?key ?value))

@@ -11,7 +11,7 @@
 (defparameter *debug-long-sleep-duration* 0.0
   "Seconds to wait after a long motion, for who wants to look on.")
 
-(def-fact-group action-durations (action-duration)
+(def-fact-group action-facts (action-duration)
   (<- (action-duration ?action ?seconds)
     (fail)))
 

@@ -2,7 +2,7 @@
 
 (in-package #:cram-robot-interfaces)
 
-(def-fact-group places-for-robots (reachability-designator visibility-designator designator-reach-pose)
+(def-fact-group reachability-designators (reachability-designator visibility-designator designator-reach-pose)
 
   (<- (reachability-designator ?designator)
     (loc-desig? ?designator)
@@ -32,7 +32,7 @@
     (current-designator ?location ?current)
     (desig-reference ?current ?pose)))
 
-(def-fact-group kinds-of-actions (trajectory-desig? constraints-desig?)
+(def-fact-group manipulation-designators (trajectory-desig? constraints-desig?)
 
   (<- (trajectory-desig? ?designator)
     (action-desig? ?designator)

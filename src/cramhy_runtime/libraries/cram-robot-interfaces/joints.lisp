@@ -46,7 +46,7 @@
   "The name of the link that a joint moves."
   (eighth (joint-figures joint-name)))
 
-(def-fact-group joints ()
+(def-fact-group urdf-joint-facts ()
 
   (<- (joint-lower-limit ?robot ?joint ?limit)
     (robot ?robot)

@@ -41,7 +41,7 @@
   (end-effector-parking-pose ?robot ?pose ?arm)
   (robot-pre-grasp-joint-states ?robot ?states))
 
-(define-unknown neck
+(define-unknown ptu
   (camera-frame ?robot ?frame)
   (camera-minimal-height ?robot ?height)
   (camera-maximal-height ?robot ?height)

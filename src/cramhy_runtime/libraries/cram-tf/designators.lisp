@@ -2,24 +2,34 @@
 
 (in-package #:cram-tf)
 
+(defun position-of (pose)
+  "The place of POSE, or of a vector, as a list (x y z)."
+  (let ((vector (if (typep pose '3d-vector) pose (origin pose))))
+    (list (x vector) (y vector) (z vector))))
+
+(defun orientation-of (pose)
+  "The orientation of POSE, or a quaternion, as a list (x y z w)."
+  (let ((quaternion (if (typep pose 'quaternion) pose (orientation pose))))
+    (list (x quaternion) (y quaternion) (z quaternion) (w quaternion))))
+
+(defun pose-from (position orientation)
+  "The pose of two lists, or of a vector and a quaternion."
+  (make-pose (if (listp position) (apply #'make-3d-vector position) position)
+             (if (listp orientation) (apply #'make-quaternion orientation) orientation)))
+
 (def-fact-group poses (pose pose-stamped position orientation poses-equal)
 
-  (<- (position ?vector (?x ?y ?z))
-    (bound ?vector)
-    (lisp-fun x ?vector ?x)
-    (lisp-fun y ?vector ?y)
-    (lisp-fun z ?vector ?z))
+  (<- (position ?pose ?position)
+    (bound ?pose)
+    (lisp-fun position-of ?pose ?position))
 
   (<- (position ?vector (?x ?y ?z))
     (not (bound ?vector))
     (lisp-fun make-3d-vector ?x ?y ?z ?vector))
 
-  (<- (orientation ?quaternion (?x ?y ?z ?w))
-    (bound ?quaternion)
-    (lisp-fun x ?quaternion ?x)
-    (lisp-fun y ?quaternion ?y)
-    (lisp-fun z ?quaternion ?z)
-    (lisp-fun w ?quaternion ?w))
+  (<- (orientation ?pose ?orientation)
+    (bound ?pose)
+    (lisp-fun orientation-of ?pose ?orientation))
 
   (<- (orientation ?quaternion (?x ?y ?z ?w))
     (not (bound ?quaternion))
@@ -27,12 +37,18 @@
 
   (<- (pose ?pose ?position ?orientation)
     (bound ?pose)
-    (lisp-fun origin ?pose ?position)
-    (lisp-fun orientation ?pose ?orientation))
+    (lisp-type ?pose pose)
+    (position ?pose ?position)
+    (orientation ?pose ?orientation))
 
   (<- (pose ?pose ?position ?orientation)
     (not (bound ?pose))
-    (lisp-fun make-pose ?position ?orientation ?pose))
+    (ground ?position)
+    (ground ?orientation)
+    (lisp-fun pose-from ?position ?orientation ?pose))
+
+  (<- (pose ?pose (?position ?orientation))
+    (pose ?pose ?position ?orientation))
 
   (<- (pose-stamped ?pose ?frame ?stamp ?position ?orientation)
     (bound ?pose)
@@ -43,14 +59,15 @@
 
   (<- (pose-stamped ?pose ?frame ?stamp ?position ?orientation)
     (not (bound ?pose))
-    (lisp-fun make-pose-stamped ?frame ?stamp ?position ?orientation ?pose))
+    (pose ?plain ?position ?orientation)
+    (lisp-fun pose->pose-stamped ?frame ?stamp ?plain ?pose))
 
   (<- (poses-equal ?pose-1 ?pose-2 (?dist-sigma ?ang-sigma))
     (lisp-type ?pose-1 pose)
     (lisp-type ?pose-2 pose)
     (lisp-pred poses-equal-p ?pose-1 ?pose-2 ?dist-sigma ?ang-sigma)))
 
-(def-fact-group locations (location-pose location-grounding)
+(def-fact-group desig-tf-solutions (location-pose location-grounding)
 
   (<- (location-pose ?location ?pose)
     (loc-desig? ?location)

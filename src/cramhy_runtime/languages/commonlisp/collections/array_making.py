@@ -13,14 +13,25 @@ import math
 from itertools import product
 
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import UNSUPPLIED, Character, Cons, LispString
+from cramhy_runtime.ground.data import UNSUPPLIED, Character, Cons, KindString, LispString
 from cramhy_runtime.ground.heap import check_room
 from .arrays import array_element_type, dimensions_of, without_fill_pointer
 from .element_types import check_element, upgraded_element_type
 from .element_types import initial_element as default_element
 from .lists import items_of
 from .sequence_types import DIMENSION_LIMIT, INDEX_TYPE, char_of, elements, text
-from cramhy_runtime.ground.arrays import CHARACTER, LispArray, SimpleArray, TypedVector, Vector, take_storage
+from cramhy_runtime.ground.arrays import (
+    CHARACTER,
+    STRING_KINDS,
+    CharactersOfArray,
+    LispArray,
+    SharedCharacterObjects,
+    SharedCharacters,
+    SimpleArray,
+    TypedVector,
+    Vector,
+    take_storage,
+)
 
 LISP_NAMES = "make-array vector adjust-array"
 
@@ -90,13 +101,23 @@ def make_array(
     items = _contents(dimensions, size, element_type, initial_element, initial_contents)
     if len(dimensions) != 1:
         return (LispArray if adjustable else SimpleArray)(dimensions, items, element_type, adjustable)
-    if element_type is CHARACTER:
-        if fill_pointer is None and not adjustable:
+    if element_type in STRING_KINDS:
+        if element_type is CHARACTER and fill_pointer is None and not adjustable:
             return text(items)
-        return LispString([char_of(item) for item in items], fill_pointer, adjustable)
+        return _string(items, element_type, fill_pointer, adjustable)
     if fill_pointer is not None or adjustable:
         return Vector(items, fill_pointer, element_type, adjustable)
     return items if element_type is True else TypedVector(items, element_type)
+
+
+def _string(items, kind, fill_pointer=None, adjustable=False):
+    """A string of the characters ``items``, of the element type ``kind``."""
+    if fill_pointer is None and not adjustable:
+        return text(items) if kind is CHARACTER else KindString(text(items), kind)
+    made = LispString(map(char_of, items), fill_pointer, adjustable)
+    if kind is not CHARACTER:
+        made.kind = kind
+    return made
 
 
 def _contents(dimensions, size, element_type, element, contents):
@@ -151,7 +172,7 @@ def _displaced(dimensions, size, element_type, adjustable, fill_pointer, target,
     if offset.__class__ is not int or offset < 0:
         type_error(offset, INDEX_TYPE, "\nwhen binding SB-VM::DISPLACED-INDEX-OFFSET")
     if isinstance(target, (str, LispString)):
-        return _displaced_string(dimensions, size, adjustable, fill_pointer, target, offset)
+        return _displaced_string(dimensions, size, fill_pointer, target, offset)
     storage = target.storage if isinstance(target, LispArray) else target
     available = target.total_size if isinstance(target, LispArray) else len(target)
     if offset + size > available:
@@ -159,18 +180,23 @@ def _displaced(dimensions, size, element_type, adjustable, fill_pointer, target,
     start = offset + (target.offset if isinstance(target, LispArray) else 0)
     if len(dimensions) != 1:
         return LispArray(dimensions, storage, element_type, adjustable, target, start)
+    if element_type in STRING_KINDS:
+        made = _string((), element_type, fill_pointer, adjustable=True)
+        made.chars = CharactersOfArray(target, start, size)
+        return made
     return Vector(storage, fill_pointer, element_type, adjustable, target, start, size)
 
 
-def _displaced_string(dimensions, size, adjustable, fill_pointer, target, offset):
-    # Strings keep their characters in Python's way, so a displaced string is a copy; SBCL shares.
-    chars = target.chars if isinstance(target, LispString) else list(target)
+def _displaced_string(dimensions, size, fill_pointer, target, offset):
+    chars = target.chars if isinstance(target, LispString) else target
     if offset + size > len(chars):
         error("The :DISPLACED-TO array is too small.")
-    part = chars[offset : offset + size]
+    kind = array_element_type(target)
     if len(dimensions) != 1:
-        return LispArray(dimensions, [Character(char) for char in part], CHARACTER, adjustable)
-    return LispString(part, fill_pointer, adjustable)
+        return LispArray(dimensions, SharedCharacterObjects(target, offset, size), kind, True)
+    made = _string((), kind, fill_pointer, adjustable=True)
+    made.chars = SharedCharacters(target, offset, size)
+    return made
 
 
 def adjust_array(
@@ -210,7 +236,7 @@ def adjust_array(
         _keep_old(array, old_dimensions, dimensions, items)
     if isinstance(array, (str, LispString)):
         if isinstance(array, str):
-            return text(items)
+            return _string(items, kind)
         return _became(array, LispString([item.char for item in items], pointer, array.adjustable))
     if isinstance(array, list):
         return TypedVector(items, kind) if isinstance(array, TypedVector) else items

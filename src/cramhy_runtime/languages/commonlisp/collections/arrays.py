@@ -19,6 +19,7 @@ from .element_types import check_element, upgraded_element_type
 from .sequence_types import char_of, constant_changed
 from cramhy_runtime.ground.arrays import InvalidArray, InvalidArrayIndex, followers_moved, wrong_rank
 from cramhy_runtime.ground.arrays import (
+    SharedCharacters,
     BIT,
     LispArray,
     SimpleArray,
@@ -264,6 +265,9 @@ def upgraded_array_element_type(specifier, environment=None):
 def array_displacement(array):
     """``array-displacement``: two values, the target of a displaced array (or nil) and the offset into it."""
     dimensions_of(array)
+    shared = getattr(array, "chars", getattr(array, "storage", None))
+    if isinstance(shared, SharedCharacters):
+        return MultipleValues((shared.target, shared.offset - getattr(shared.target, "offset", 0)))
     target = getattr(array, "displaced_to", None)
     if target is None:
         return MultipleValues((None, 0))

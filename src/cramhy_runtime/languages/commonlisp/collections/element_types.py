@@ -10,13 +10,13 @@ from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Symbol, lisp_list
 from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.arrays import BIT, CHARACTER
+from cramhy_runtime.ground.arrays import BASE_CHAR, BIT, CHARACTER, STRING_KINDS
 
 _SINGLE, _DOUBLE, _FIXNUM = sym("SINGLE-FLOAT"), sym("DOUBLE-FLOAT"), sym("FIXNUM")
 _NAMES = {
     "CHARACTER": CHARACTER,
-    "BASE-CHAR": CHARACTER,
-    "STANDARD-CHAR": CHARACTER,
+    "BASE-CHAR": BASE_CHAR,
+    "STANDARD-CHAR": BASE_CHAR,
     "EXTENDED-CHAR": CHARACTER,
     "BIT": BIT,
     "FIXNUM": _FIXNUM,
@@ -37,6 +37,8 @@ def upgraded_element_type(specifier):
         name, parameters = specifier.car.name, list(specifier.cdr or ())
         if name in ("SINGLE-FLOAT", "DOUBLE-FLOAT", "SHORT-FLOAT", "LONG-FLOAT"):
             return _NAMES[name]
+        if name in ("MEMBER", "EQL") and parameters and all(parameter.__class__ is Character for parameter in parameters):
+            return _for_characters(parameters)
         if parameters and parameters[0].__class__ is int or name in ("INTEGER", "MEMBER", "EQL"):
             limits = _integer_limits(name, parameters)
             return _for_integers(*limits) if limits else True
@@ -49,7 +51,12 @@ def upgraded_element_type(specifier):
             error("Undefined type: ~S", specifier)
     elif specifier is not None and specifier is not True:
         error("bad thing to be a type specifier: ~S", specifier)
-    return True
+    return specifier is not None or None
+
+
+def _for_characters(characters):
+    """The element type for strings that have only ``characters``."""
+    return BASE_CHAR if all(character.char < "\x80" for character in characters) else CHARACTER
 
 
 def _integer_limits(name, parameters):
@@ -88,7 +95,7 @@ def _for_integers(low, high):
 
 def initial_element(element_type):
     """What the elements of a new array are when the program does not say: SBCL's zero of the type."""
-    if element_type is CHARACTER:
+    if element_type in STRING_KINDS:
         return Character("\0")
     if element_type is _SINGLE:
         return 0.0
@@ -103,6 +110,10 @@ def check_element(element, element_type, context=None):
         return element
     if element_type is CHARACTER:
         fits = element.__class__ is Character
+    elif element_type is BASE_CHAR:
+        fits = element.__class__ is Character and element.char < "\x80"
+    elif element_type is None:
+        fits = False
     elif element_type is BIT:
         fits = element.__class__ is int and 0 <= element <= 1
     elif element_type is _SINGLE or element_type is _DOUBLE:
@@ -127,6 +138,6 @@ def _in_range(integer, element_type):
 
 def printed_type(element_type):
     """``element_type`` as it is printed."""
-    if element_type is True:
-        return "T"
+    if element_type is True or element_type is None:
+        return "T" if element_type else "NIL"
     return f"({element_type.car.name} {element_type.cdr.car})" if isinstance(element_type, Cons) else element_type.name

@@ -382,8 +382,9 @@ def tree_equal(first, second, *, test=None, test_not=None):
 # ----------------------------------------------------------------------------------------------------------- property lists
 
 
-def _malformed(plist):
-    return error(SimpleTypeError("malformed property list: ~S.", plist, datum=plist, expected_type="LIST"))
+def _malformed(plist, tail):
+    """Signal that ``plist`` is no property list: ``tail`` stands where a cons with a value should."""
+    return error(SimpleTypeError("malformed property list: ~S.", plist, datum=tail, expected_type="CONS"))
 
 
 def property_cell(plist, indicator, context=""):
@@ -394,7 +395,7 @@ def property_cell(plist, indicator, context=""):
             if cell.__class__ is not Cons:
                 return None if cell is None or cell is False else not_a_list(cell, context)
             if not isinstance(cell.cdr, Cons):
-                _malformed(plist)
+                _malformed(plist, cell.cdr)
             if cell.car is indicator or eql(cell.car, indicator):
                 return cell
             cell = cell.cdr.cdr
@@ -424,7 +425,7 @@ def without_property(plist, indicator):
             if not isinstance(cell, Cons):
                 return plist, False
             if not isinstance(cell.cdr, Cons):
-                _malformed(plist)
+                _malformed(plist, cell.cdr)
             if cell.car is indicator or eql(cell.car, indicator):
                 rest = cell.cdr.cdr
                 if previous is None:
@@ -441,13 +442,13 @@ def get_properties(plist, indicators):
     cell = plist
     while isinstance(cell, Cons):
         if not isinstance(cell.cdr, Cons):
-            _malformed(plist)
+            _malformed(plist, cell.cdr)
         if any(same(cell.car) for same in wanted):
             return MultipleValues((cell.car, cell.cdr.car, cell))
         cell = cell.cdr.cdr
         checkpoint()
     if cell is not None and cell is not False:
-        not_a_list(cell) if cell is plist else _malformed(plist)
+        not_a_list(cell) if cell is plist else _malformed(plist, cell)
     return MultipleValues((None, None, None))
 
 

@@ -251,7 +251,9 @@ def copy_alist(alist):
     if not isinstance(alist, Cons):
         return alist if alist is None else not_a_list(alist, "\nwhen binding SB-IMPL::ALIST")
     items, tail = list_parts(alist)
-    return list_from([Cons(item.car, item.cdr) if isinstance(item, Cons) else item for item in items], tail)
+    if tail is not None:
+        not_a_list(tail)
+    return list_from([Cons(item.car, item.cdr) if isinstance(item, Cons) else item for item in items])
 
 
 def acons(key, value, alist):

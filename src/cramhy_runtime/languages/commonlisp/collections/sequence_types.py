@@ -11,14 +11,14 @@ Law: what is no sequence is a ``type-error`` with SBCL's text, and bounds outsid
 from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import SimpleTypeError, TypeError_, formatted
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import CHARACTERS, WRITABLE_STRINGS, Character, Cons, FreshString, LispString, Symbol, list_from
+from cramhy_runtime.ground.conditions import error, program_error, type_error
+from cramhy_runtime.ground.data import CHARACTERS, WRITABLE_STRINGS, Character, Cons, FreshString, KindString, LispString, Symbol, list_from
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.kernel.active import checkpoint
 from .element_types import check_element, upgraded_element_type
 from .lists import items_of
-from cramhy_runtime.ground.arrays import BIT, CHARACTER, LispArray, TypedVector, Vector, array_type, is_simple
+from cramhy_runtime.ground.arrays import BASE_CHAR, BIT, CHARACTER, STRING_KINDS, LispArray, TypedVector, Vector, array_type, is_simple
 
 DIMENSION_LIMIT = 4611686018427387901
 INDEX_TYPE = f"(MOD {DIMENSION_LIMIT})"
@@ -30,7 +30,7 @@ class BoundingIndicesBad(TypeError_):
     lisp_name = "SB-KERNEL::BOUNDING-INDICES-BAD-ERROR"
 
     def __init__(self, start=None, end=None, length=None, **slots):
-        super().__init__((start, end), f"(CONS (INTEGER 0 {length}) (INTEGER 0 {length}))", **slots)
+        super().__init__(Cons(start, end), f"(CONS (INTEGER 0 {length}) (INTEGER 0 {length}))", **slots)
         self.start, self.end, self.length = start, end, length
 
     def report(self):
@@ -129,12 +129,26 @@ def text(items):
         return FreshString("".join([char_of(item) for item in items]))
 
 
+def string_of_kind(items, kind):
+    """A simple string of the characters ``items``, of the element type ``kind``: BASE-CHAR, or ``None`` for nil."""
+    if kind is BASE_CHAR:
+        for item in items:
+            check_element(item, BASE_CHAR)
+    return KindString(text(items), kind)
+
+
+def string_like(string, text):
+    """A new string of the characters of ``text``, of the element type of ``string``."""
+    kind = getattr(string, "kind", False)
+    return FreshString(text) if kind is False else KindString(text, kind)
+
+
 def same_kind(sequence, items):
     """A new sequence of ``items`` of the kind of ``sequence``: list, vector with its element type, or string."""
     if sequence is None or isinstance(sequence, Cons):
         return list_from(items)
     if is_string(sequence):
-        return text(items)
+        return text(items) if getattr(sequence, "kind", False) is False else string_of_kind(items, sequence.kind)
     if isinstance(sequence, (TypedVector, Vector)) and sequence.element_type is not True:
         return typed_vector(items, sequence.element_type)
     return list(items)
@@ -146,6 +160,8 @@ def typed_vector(items, element_type):
         return list(items)
     if element_type is CHARACTER:
         return text(items)
+    if element_type in STRING_KINDS:
+        return string_of_kind(items, element_type)
     for item in items:
         check_element(item, element_type)
     return TypedVector(items, element_type)
@@ -258,7 +274,7 @@ class SequenceType:
                     length,
                     self.specifier,
                     datum=length,
-                    expected_type=self.length,
+                    expected_type="(INTEGER 1)" if self.length is None else f"(EQL {self.length})",
                 )
             )
 
@@ -278,10 +294,16 @@ def sequence_type(specifier):
     found = _read_type(specifier, specifier)
     if found is None:
         named = PORTS.types.expand(specifier)
-        return error(SimpleTypeError("~S is a bad type specifier for sequences.", named, datum=named, expected_type=sym("SEQUENCE")))
+        expected = "(SATISFIES SB-IMPL::IS-A-VALID-SEQUENCE-TYPE-SPECIFIER-P)"
+        return error(SimpleTypeError("~S is a bad type specifier for sequences.", named, datum=named, expected_type=expected))
     if isinstance(specifier, Symbol) and specifier.package is sym("LIST").package:
         _known_types[specifier] = found
     return found
+
+
+def is_sequence_type(specifier):
+    """Whether sequences of the type can be made."""
+    return isinstance(specifier, (Cons, Symbol, type)) and _read_type(specifier, specifier) is not None
 
 
 def _read_type(specifier, original):
@@ -299,13 +321,15 @@ def _read_type(specifier, original):
         if kind in _LISTS and (kind == "CONS" or not isinstance(specifier, Cons)):
             return SequenceType(original, None, _length_of_list(specifier), kind == "CONS")
         if kind in _STRINGS:
-            return SequenceType(original, CHARACTER, given[0], simple=simple)
+            return SequenceType(original, BASE_CHAR if "BASE" in kind else CHARACTER, given[0], simple=simple)
         if kind in _BITS:
             return SequenceType(original, BIT, given[0], simple=simple)
         if kind == "SIMPLE-VECTOR":
             return SequenceType(original, True, given[0], simple=simple)
         if kind in _GENERAL:
             element_type = True if given[0] is None else upgraded_element_type(given[0])
+            if element_type is None:  # NIL; here it would mean lists
+                element_type = True
             if given[1].__class__ is int and kind in ("ARRAY", "SIMPLE-ARRAY"):  # a rank
                 return SequenceType(original, element_type, simple=simple) if given[1] == 1 else None
             if kind in ("ARRAY", "SIMPLE-ARRAY") and not (isinstance(given[1], Cons) and given[1].cdr is None):
@@ -315,6 +339,8 @@ def _read_type(specifier, original):
             found = [_read_type(parameter, original) for parameter in parameters]
             if kind == "OR" and len({None if one is None else one.element_type is None for one in found}) > 1:
                 return None  # lists and vectors: it does not say which to make
+            if kind == "OR" and len({one.element_type for one in found if one is not None and one.element_type is not None}) > 1:
+                return program_error("~S is too hairy for sequence functions.", original)
             return next((one for one in found if one is not None), None)
     expansion = PORTS.types.expand(specifier)
     return None if expansion is specifier else _read_type(expansion, expansion)
@@ -345,8 +371,11 @@ def to_sequence_type(sequence, specifier):
             return sequence
     elif wanted.simple and not is_simple(sequence):
         return wanted.make(items)
+    elif wanted.element_type is BASE_CHAR and is_string(sequence) and getattr(sequence, "kind", None) is BASE_CHAR:
+        wanted.check_length(len(items))
+        return sequence
     elif wanted.element_type is CHARACTER:
-        if is_string(sequence):
+        if is_string(sequence) and getattr(sequence, "kind", False) is False:
             wanted.check_length(len(items))
             return sequence
     elif (

@@ -26,6 +26,7 @@ from .sequence_types import (
     not_a_sequence,
     part,
     same_kind,
+    string_like,
     sequence_type,
     store_all,
 )
@@ -91,7 +92,7 @@ def subseq(sequence, start, end=None):
     if isinstance(sequence, (str, LispString)):
         string = sequence if sequence.__class__ in TEXTS else str(sequence)
         start, end = bounds(start, end, len(string))
-        return FreshString(string[start:end])
+        return string_like(sequence, string[start:end])
     items = part(sequence, start, end)
     return same_kind(sequence, items)
 
@@ -105,7 +106,7 @@ def set_subseq(value, sequence, start, end=None):
 def copy_seq(sequence):
     """``copy-seq``: a new sequence with the same elements."""
     if isinstance(sequence, (str, LispString)):
-        return FreshString(str(sequence))
+        return string_like(sequence, str(sequence))
     return same_kind(sequence, elements(sequence))
 
 
@@ -114,7 +115,7 @@ def reverse(sequence):
     if isinstance(sequence, Cons):
         return list_from(items_of(sequence)[::-1])
     if isinstance(sequence, (str, LispString)):
-        return FreshString(str(sequence)[::-1])
+        return string_like(sequence, str(sequence)[::-1])
     return same_kind(sequence, elements(sequence)[::-1])
 
 

@@ -11,11 +11,13 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import SimpleTypeError
 from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import CHARACTERS, TEXTS, UNSUPPLIED, WRITABLE_STRINGS, Character, FreshString, LispString
+from cramhy_runtime.ground.data import CHARACTERS, TEXTS, UNSUPPLIED, WRITABLE_STRINGS, Character, FreshString, KindString, LispString
 from cramhy_runtime.ground.equality import folded
 from cramhy_runtime.ground.packages import is_symbol, symbol_name
 from cramhy_runtime.ground.heap import check_room
+from cramhy_runtime.ground.arrays import BASE_CHAR
 from .arrays import InvalidArrayIndex
+from .element_types import check_element, upgraded_element_type
 from .characters import downcased, is_alphanumeric, upcased
 from .sequence_types import DIMENSION_LIMIT, INDEX_TYPE, bounds, constant_changed, elements, in_turns
 
@@ -66,10 +68,16 @@ def make_string(size, *, initial_element=UNSUPPLIED, element_type=None):
         type_error(size, INDEX_TYPE, "\nwhen binding COUNT")
     check_room(size, 1)
     if initial_element is UNSUPPLIED:
-        return FreshString("\0" * size)
-    if initial_element.__class__ is not Character:
-        type_error(initial_element, "CHARACTER")
-    return FreshString(initial_element.char * size)
+        made = FreshString("\0" * size)
+    elif initial_element.__class__ is not Character:
+        return type_error(initial_element, "CHARACTER")
+    else:
+        made = FreshString(initial_element.char * size)
+    if element_type is not None and upgraded_element_type(element_type) is BASE_CHAR:
+        if initial_element is not UNSUPPLIED:
+            check_element(initial_element, BASE_CHAR)
+        return KindString(made, BASE_CHAR)
+    return made
 
 
 # ---------------------------------------------------------------------------------------------------------- single characters

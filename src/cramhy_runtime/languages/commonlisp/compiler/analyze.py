@@ -58,6 +58,7 @@ class Analyzer(Scrutiny):
     """
 
     def __init__(self, filename="<form>", positions=None, at_once=False, macro_expander=None):
+        ensure_loaded()
         self.macro_expander = macro_expander
         self.filename = filename
         self.positions = positions if positions is not None else FormPlaces()
@@ -133,9 +134,10 @@ class Analyzer(Scrutiny):
                 if local.next is not None:
                     return call_of_next(self, local.next, form, env)
                 return CallLocal(local.variable.used_from(env.scope), self.arguments(form, env))
-            expansion, expanded = self.expand(form, env)
-            if expanded:
-                return self.form(expansion, env)
+            if local is not None or head.__class__ is not Symbol or head.macro is not None:  # most calls are of functions
+                expansion, expanded = self.expand(form, env)
+                if expanded:
+                    return self.form(expansion, env)
             if head in OPEN_CODED and head not in self.notinline:
                 loop = open_coded(form, env.function)
                 if loop is not None:

@@ -19,7 +19,6 @@ from .net_tests import look_at_tests
 from .nodes import (
     BlockNode,
     Call,
-    CallLocal,
     CallSetf,
     CallSpread,
     CallValue,
@@ -327,6 +326,8 @@ def _symbol_macrolet(analyzer, form, env):
         if not isinstance(item, Cons) or not isinstance(item.cdr, Cons):
             analyzer.fail("A symbol macro is (name expansion), not ~S.", item)
         symbol, expansion = _binding(analyzer, item)
+        if not isinstance(symbol, Symbol) or symbol.constant or symbol.special:
+            analyzer.fail("~S is a constant or a special variable, so it cannot be a symbol macro.", symbol)
         inner.variables[symbol] = SymbolMacro(expansion)
     for symbol in analyzer.specials(analyzer.declarations(parts[1:], env)[0]):
         if symbol in inner.variables:
@@ -504,26 +505,11 @@ def _funcall(analyzer, form, env):
     nodes = [analyzer.form(argument, env) for argument in arguments]
     node = analyzer.form(function, env)
     if isinstance(node, FunctionReference):
-        if not node.setf:
-            analyzer.mention(node.symbol, env, form, tuple(arguments))
+        analyzer.mention(("setf", node.symbol) if node.setf else node.symbol, env, form, tuple(arguments))
         call = (CallSetf if node.setf else Call)(node.symbol, nodes)
         call.position = analyzer._at
         return call
     return CallValue(node, nodes)
-
-
-@special("CRAMHY::CALL-SETF")
-def _call_setf(analyzer, form, env):
-    """``(call-setf name new-value argument...)``: what a setf form of an accessor becomes."""
-    name, *arguments = parts_of(analyzer, form, 2)
-    local = env.function(("setf", name))
-    nodes = [analyzer.form(argument, env) for argument in arguments]
-    if isinstance(local, LocalFunction):
-        return CallLocal(local.variable.used_from(env.scope), nodes)
-    analyzer.mention(("setf", name), env, form, tuple(arguments))
-    node = CallSetf(name, nodes)
-    node.position = analyzer._at
-    return node
 
 
 @special("AND")

@@ -12,6 +12,7 @@ from cramhy_runtime.ground.packages import sym
 
 QUOTE = sym("QUOTE")
 _OPEN, _DONE = 1, 2
+_MANY = 10_000  # conses: more than most forms have, fewer than one would wait for
 
 
 def refuse_circular_code(form, place=lambda part: None):
@@ -19,7 +20,7 @@ def refuse_circular_code(form, place=lambda part: None):
 
     place: the position of a list in the user's text, or ``None``.
     """
-    if form.__class__ is not Cons or _is_tree(form):
+    if form.__class__ is not Cons or _ends(form):
         return
     state, path = {}, [form]  # the state of a cons: its parts are being looked at, or have been
     while path:
@@ -43,15 +44,16 @@ def refuse_circular_code(form, place=lambda part: None):
                     path.append(part)
 
 
-def _is_tree(form):
-    """Whether no cons of ``form`` is in two places outside of a quoted constant. Most code is so, and this is found fast."""
-    seen, rest = set(), [form]
+def _ends(form):
+    """Whether a walk through ``form``, without its quoted constants, ends after a few thousand conses. Then it has no circle, and needs
+    no notes of where the walk has been, which cost more than the walk: once code is kept, Python tells a hook of each ``id()``."""
+    rest, steps = [form], _MANY
     while rest:
         cell = rest.pop()
         while cell.__class__ is Cons:
-            if id(cell) in seen:
+            steps -= 1
+            if not steps:
                 return False
-            seen.add(id(cell))
             part = cell.car
             if part is QUOTE:
                 break

@@ -8,9 +8,11 @@ from cramhy_runtime.ground.conditions import handled, type_error
 from cramhy_runtime.ground.conditions import make_condition as make
 from cramhy_runtime.ground.data import UNBOUND, list_from, one
 from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import COMMON_LISP
+from cramhy_runtime.ground.packages import COMMON_LISP, printed, sym
 from ..reader.reader import read_from_string
+from ..types.internal_types import readable
 from .symbols import place_of, symbol_function
+from . import compiled_operators  # noqa: F401  it defines macros
 from . import setf_places as places
 from .evaluator import PACKAGE, evaluate
 from cramhy_runtime.ground.restarts import Restart
@@ -76,7 +78,7 @@ def _reader(attribute, kind="Condition"):
         if not isinstance(condition, conditions.Condition):
             return type_error(condition, "CONDITION")
         value = getattr(condition, attribute, UNBOUND)
-        return type_error(condition, getattr(conditions, kind).lisp_name) if value is UNBOUND else value
+        return type_error(condition, printed(sym(getattr(conditions, kind).lisp_name))) if value is UNBOUND else value
 
     return reader
 
@@ -94,13 +96,13 @@ def type_error_expected_type(condition):
     if not isinstance(expected, str):
         return expected
     with binding(PACKAGE, COMMON_LISP):
-        return one(read_from_string(expected))
+        return one(read_from_string(readable(expected)))
 
 
 print_not_readable_object = _reader("object", "PrintNotReadable")
-cell_error_name, unbound_slot_instance = _reader("name"), _reader("instance")
-arithmetic_error_operation, arithmetic_error_operands = _reader("operation"), _reader("operands")
-stream_error_stream, file_error_pathname = _reader("stream"), _reader("pathname")
+cell_error_name, unbound_slot_instance = _reader("name", "CellError"), _reader("instance", "UnboundSlot")
+arithmetic_error_operation, arithmetic_error_operands = [_reader(name, "ArithmeticError_") for name in ("operation", "operands")]
+stream_error_stream, file_error_pathname = _reader("stream", "StreamError"), _reader("pathname", "FileError")
 
 
 _format_arguments = _reader("format_arguments", "SimpleCondition")

@@ -80,6 +80,11 @@ def check_type_failed(value, place, kind, name):
 # ---------------------------------------------------------------------------------------------------------------- conditions
 
 
+def handler_bind(bindings, thunk):
+    """``handler-bind`` as code walkers see it: bindings are lists (type function)."""
+    return conditions.handler_bind([(binding.car, function_of(binding.cdr.car)) for binding in bindings or ()], thunk)
+
+
 def handler_case(clauses, thunk, no_error):
     """``handler-case``: clauses are lists (type function); ``no_error`` gets the values of ``thunk``."""
     return conditions.handler_case([(clause.car, clause.cdr.car) for clause in clauses or ()], thunk, no_error)

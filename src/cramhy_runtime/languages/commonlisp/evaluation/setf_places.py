@@ -12,7 +12,7 @@ import functools
 
 from cramhy_runtime.ground.conditions import CompileError, error
 from cramhy_runtime.ground.data import Cons, Keyword, MultipleValues, Symbol, lisp_list, list_from, one
-from cramhy_runtime.ground.packages import is_symbol, redefined, sym
+from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, redefined, sym, symbol_package
 from ..packages.package_errors import check_symbol
 from .definitions import data
 from .evaluator import macro_lambda
@@ -23,6 +23,7 @@ from ..syntax.macros import checked_environment, macroexpand_1
 from ..syntax.operator_macros import malformed
 
 LET_STAR, PROGN, SETQ = sym("LET*"), sym("PROGN"), sym("SETQ")
+FUNCALL, FUNCTION, SETF = sym("FUNCALL"), sym("FUNCTION"), sym("SETF")
 
 
 def setf_expansion(place, environment=None):
@@ -33,9 +34,11 @@ def setf_expansion(place, environment=None):
             return setf_expansion(expansion, environment)
         store = gensym("NEW")
         return [], [], [store], lisp_list(SETQ, place, store), place
-    if not isinstance(place, Cons) or not isinstance(place.car, Symbol):
+    if not isinstance(place, Cons) or not is_symbol(place.car):
         return error(CompileError("~S is not a place that SETF can assign.", place))
     head = place.car
+    if not isinstance(head, Symbol):  # NIL and T may be names of local functions
+        return _function_place(place)
     local = environment.function(head) if environment is not None else None
     if local is None:
         expander = (head.compiler_data or {}).get("setf-expander")
@@ -59,15 +62,15 @@ def _function_place(place):
             forms.append(argument)
             arguments.append(temporary)
     store = gensym("NEW")
-    storing = lisp_list(support("CALL-SETF"), head, store, *arguments)
-    if head.package is sym("CAR").package:
+    storing = lisp_list(FUNCALL, lisp_list(FUNCTION, lisp_list(SETF, head)), store, *arguments)
+    if symbol_package(head) is COMMON_LISP and isinstance(head, Symbol):
         storing = lisp_list(PROGN, storing, store)
     return temporaries, forms, [store], storing, Cons(head, list_from(arguments))
 
 
 def _constant(form):
     if isinstance(form, Cons):
-        return form.car in (sym("QUOTE"), sym("FUNCTION"))
+        return form.car in (sym("QUOTE"), FUNCTION)
     return not isinstance(form, Symbol) or isinstance(form, Keyword)
 
 
@@ -418,11 +421,11 @@ def _getf_place(place, environment):
 @place_rule("APPLY")
 def _apply_place(place, environment):
     function, *arguments = list(place.cdr)
-    if not (isinstance(function, Cons) and function.car is sym("FUNCTION")):
+    if not (isinstance(function, Cons) and function.car is FUNCTION):
         return error(CompileError("SETF of APPLY needs #'NAME as the function: ~S", place))
     temporaries = [gensym("ARGUMENT") for _ in arguments]
     store = gensym("NEW")
-    setter = lisp_list(sym("FUNCTION"), lisp_list(sym("SETF"), function.cdr.car))
+    setter = lisp_list(FUNCTION, lisp_list(SETF, function.cdr.car))
     return (
         temporaries,
         arguments,
@@ -446,7 +449,7 @@ def _subform_place(name, combine):
         temporaries, forms, stores, setter, getter = setf_expansion(inner, environment)
         selector, store = gensym("SPEC"), gensym("NEW")
         storing = lisp_list(LET_STAR, lisp_list(lisp_list(stores[0], lisp_list(sym(combine), store, selector, getter))), setter, store)
-        return [*temporaries, selector], [*forms, spec], [store], storing, lisp_list(sym(name), selector, getter)
+        return [selector, *temporaries], [spec, *forms], [store], storing, lisp_list(sym(name), selector, getter)
 
     return expander
 

@@ -269,7 +269,8 @@ def direct_slots(cls):
     own = vars(cls).get("lisp_direct_slots")
     if own is not None:
         return own
-    return [DirectSlot(_runtime_symbol(cls, name), (keyword(name),)) for name in vars(cls).get("initargs", ())]
+    slots = [DirectSlot(_runtime_symbol(cls, name), (keyword(name),)) for name in vars(cls).get("initargs", ())]
+    return slots + [DirectSlot(_runtime_symbol(cls, name)) for name in vars(cls).get("lisp_slots", ())]
 
 
 def _runtime_symbol(cls, name):
@@ -289,6 +290,10 @@ def _compute_slots(cls):
             for name, attribute in vars(base).get("initargs", {}).items():
                 symbol = _runtime_symbol(base, name)
                 slots[symbol] = Slot(symbol, attribute, (keyword(name.rpartition("::")[2]),), owner=base)
+                taken.add(attribute)
+            for name, attribute in vars(base).get("lisp_slots", {}).items():
+                symbol = _runtime_symbol(base, name)
+                slots[symbol] = Slot(symbol, attribute, owner=base)
                 taken.add(attribute)
     for base in reversed(lisp_defined):
         for direct in base.lisp_direct_slots:
@@ -330,6 +335,7 @@ def _python_attributes(cls):
     for base in cls.__mro__:
         if base is object or lisp_defined and issubclass(base, lisp_defined) and base not in lisp_defined:
             continue
+        taken.update(vars(base).get("reserved_attributes", ()))
         for name, value in vars(base).items():
             if isinstance(value, (ClassSlot, InstanceSlot)):
                 continue

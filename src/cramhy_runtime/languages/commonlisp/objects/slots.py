@@ -16,7 +16,7 @@ from cramhy_runtime.ground.condition_types import shown
 from cramhy_runtime.ground.conditions import Condition, SimpleError, UnboundSlot, ask_value, error, restart_case, type_error
 from cramhy_runtime.ground.slot_classes import Classes
 from cramhy_runtime.ground.data import UNBOUND, Symbol, boolean, list_from, one, truth
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.ground.packages import is_symbol, sym
 from cramhy_runtime.ground.python_names import python_name
 from .class_objects import ClassSlot, InstanceSlot, StandardObject, effective_slots, find_slot, may_be_unbound
 from cramhy_runtime.ground.classes import when_classes_change
@@ -84,7 +84,7 @@ def _attribute(obj, name):
         table = _attributes[obj.__class__] = {}
     found = table.get(name) if isinstance(name, Symbol) else None
     if found is None:
-        if not isinstance(name, Symbol):
+        if not is_symbol(name):
             return type_error(name, sym("SYMBOL"), "\nwhen binding SB-PCL::SLOT-NAME")
         slot = slot_of(obj, name)
         if slot is None:

@@ -14,7 +14,7 @@ from ..collections.sequence_types import bounds
 from cramhy_runtime.ground.conditions import SimpleTypeError, error, type_error
 from cramhy_runtime.ground.data import UNSUPPLIED, FreshString, LispString, MultipleValues, python_list
 from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.ground.packages import keyword
 from ..streams.streams import Stream
 from .namestrings import (
     NamestringParseError,
@@ -76,7 +76,8 @@ def _pathname_of_stream(stream):
         return found
     if getattr(stream, "lisp_name", "") not in ("SB-SYS::FD-STREAM", "SYNONYM-STREAM"):
         return type_error(stream, DESIGNATOR)
-    return error("The stream~%  ~S~%is not associated with a named file.", stream)
+    text, expected = "The stream~%  ~S~%is not associated with a named file.", "(SATISFIES SB-IMPL::STREAM-FILE-STREAM)"
+    return error(SimpleTypeError(text, stream, datum=stream, expected_type=expected))
 
 
 def parsed(text):
@@ -107,7 +108,8 @@ def logical_host(designator):
         return type_error(designator, "(OR STRING SB-KERNEL:LOGICAL-HOST)")
     found = logical_hosts.get(str(designator).upper())
     if found is None:
-        return error(SimpleTypeError("logical host not yet defined: ~S", designator, datum=designator, expected_type=sym("STRING")))
+        expected = "(AND STRING (SATISFIES SB-IMPL::LOGICAL-HOST-NAME-P))"
+        return error(SimpleTypeError("logical host not yet defined: ~S", designator, datum=designator, expected_type=expected))
     return found
 
 

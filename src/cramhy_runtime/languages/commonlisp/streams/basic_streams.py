@@ -31,6 +31,8 @@ class Stream:
     is_interactive = False
     closed = False
     pathname = None
+    reserved_attributes = frozenset("source sink label given symbol file target streams read_byte write_byte".split())
+    """What the runtime asks some streams for, beside the methods here: no slot of a user's class is kept under one of these names."""
 
     def close(self, abort=False):
         self.closed = True
@@ -54,7 +56,10 @@ class Stream:
 
 def misused(stream, what):
     """The type-error that ``stream`` is no stream of the kind ``what``, such as ``"character input"``."""
-    return error(SimpleTypeError("~S is not a ~A stream.", stream, what, datum=stream, expected_type=f"(SATISFIES {what})"))
+    element, direction = what.split()
+    is_other = not (stream.is_input if direction == "input" else stream.is_output)
+    predicate = f"{direction.upper()}-STREAM-P" if is_other else f"SB-IMPL::{element.upper()}-{direction.upper()}-STREAM-P"
+    return error(SimpleTypeError("~S is not a ~A stream.", stream, what, datum=stream, expected_type=f"(SATISFIES {predicate})"))
 
 
 class OutputStream(Stream):
@@ -117,6 +122,7 @@ class StringOutputStream(OutputStream, StringStream):
 
     lisp_name = "SB-IMPL::STRING-OUTPUT-STREAM"
     behind = ""
+    kind = False  # the element type of its strings, if the program gave one
 
     def __init__(self, target=None):
         self.parts = []
@@ -155,9 +161,11 @@ class StringOutputStream(OutputStream, StringStream):
             return
         target = self.target
         if target.fill_pointer is None:
-            target.chars.extend(text)
+            target.chars += text
         else:
             end = target.fill_pointer + len(text)
+            if end > len(target.chars) and target.chars.__class__ is not list:
+                target.chars = list(target.chars)  # it is not displaced any longer
             target.chars[target.fill_pointer : end] = text
             target.fill_pointer = end
 
@@ -189,10 +197,14 @@ class StringOutputStream(OutputStream, StringStream):
         return True
 
 
-class FileOutput(OutputStream):
-    """Writes to a Python text file (anything with ``write``)."""
+class FdStream(Stream):
+    """What SBCL's FD-STREAM means: text or bytes of the world outside. It gives its name to several classes."""
 
     lisp_name = "SB-SYS::FD-STREAM"
+
+
+class FileOutput(OutputStream, FdStream):
+    """Writes to a Python text file (anything with ``write``)."""
 
     def __init__(self, file, label=None):
         self._file = file

@@ -7,20 +7,22 @@ border is here. Source: ANSI chapter 21; error texts are SBCL's.
 
 from __future__ import annotations
 
-from ..collections.sequence_types import bounds, elements, part
+from ..collections.element_types import upgraded_element_type
+from ..collections.sequence_types import INDEX_TYPE, bounds, elements, part
+from cramhy_runtime.ground.arrays import BASE_CHAR, CHARACTER
 from cramhy_runtime.ground.conditions import EndOfFile, error, type_error
 from cramhy_runtime.ground.data import (
     WRITABLE_STRINGS,
     Character,
     Cons,
     FreshString,
+    KindString,
     LispString,
     MultipleValues,
-    Symbol,
     boolean,
     list_from,
 )
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.ground.packages import is_symbol, sym
 from cramhy_runtime.ground.ports import PORTS
 from . import streams
 from .streams import (
@@ -90,6 +92,7 @@ def write_sequence(sequence, stream, *, start=0, end=None):
     if hasattr(stream, "write_elements"):  # of a user's class
         stream.write_elements(sequence, start, end)
         return sequence
+    _need_index(start)
     if isinstance(sequence, (str, LispString)):
         text = str(sequence)
         start, end = bounds(start, end, len(text))
@@ -128,8 +131,6 @@ def clear_output(stream=None):
         stream.clear_output()
 
 
-CHARACTER = sym("CHARACTER")
-
 # ---------------------------------------------------------------------------------------------------------------- input
 
 
@@ -166,7 +167,7 @@ def peek_char(peek_type=None, stream=None, eof_error_p=True, eof_value=None, rec
             return _at_end(stream, eof_error_p, eof_value)
         if (
             peek_type is None
-            or (peek_type is True and not character.isspace())
+            or (peek_type is True and character not in sym("*READTABLE*").value.whitespace)
             or (isinstance(peek_type, Character) and peek_type.char == character)
         ):
             return Character(character)
@@ -189,9 +190,15 @@ def read_line(stream=None, eof_error_p=True, eof_value=None, recursive_p=None):
     return MultipleValues((FreshString(line), boolean(ended)))
 
 
+def _need_index(start):
+    if start is None:
+        type_error(start, INDEX_TYPE, "\nwhen binding SB-IMPL::START")
+
+
 def read_sequence(sequence, stream, *, start=0, end=None):
     """``read-sequence``: fill ``sequence`` with characters or bytes; the index of the first element that was not filled."""
     stream = input_stream(stream)
+    _need_index(start)
     length = len(elements(sequence))
     start, end = bounds(start, length if end is None else end, length)
     if hasattr(stream, "read_elements"):  # of a user's class
@@ -233,13 +240,21 @@ def clear_input(stream=None):
 # ------------------------------------------------------------------------------------------------------- making streams
 
 
-def make_string_output_stream(*, element_type=None):
-    return StringOutputStream()
+def make_string_output_stream(*, element_type=CHARACTER):
+    """``make-string-output-stream``: with the element type BASE-CHAR it gives base strings."""
+    stream = StringOutputStream()
+    if element_type is not CHARACTER:
+        stream.kind = upgraded_element_type(element_type)
+    return stream
 
 
 def get_output_stream_string(stream):
     """``get-output-stream-string``: what was written to ``stream`` since the last time this was asked."""
-    return FreshString(stream.take()) if isinstance(stream, StringOutputStream) else type_error(stream, "SB-IMPL::STRING-OUTPUT-STREAM")
+    if not isinstance(stream, StringOutputStream):
+        return type_error(stream, "SB-IMPL::STRING-OUTPUT-STREAM")
+    text = stream.take()
+    kind = stream.kind
+    return KindString(text, kind) if kind is None or kind is BASE_CHAR and text.isascii() else FreshString(text)
 
 
 def make_string_input_stream(string, start=0, end=None):
@@ -303,7 +318,7 @@ echo_stream_output_stream = _part(EchoStream, "sink", "ECHO-STREAM")
 
 
 def make_synonym_stream(symbol):
-    return SynonymStream(symbol) if isinstance(symbol, Symbol) else type_error(symbol, "SYMBOL")
+    return SynonymStream(symbol) if is_symbol(symbol) else type_error(symbol, "SYMBOL")
 
 
 synonym_stream_symbol = _part(SynonymStream, "symbol", "SYNONYM-STREAM")

@@ -14,7 +14,17 @@ from fractions import Fraction
 from pathlib import PurePath
 
 from ..collections.element_types import upgraded_element_type
-from cramhy_runtime.ground.arrays import LispArray, Vector, array_type, dimensions, element_type, is_bit_vector, is_simple
+from cramhy_runtime.ground.arrays import (
+    BASE_CHAR,
+    STRING_KINDS,
+    LispArray,
+    Vector,
+    array_type,
+    dimensions,
+    element_type,
+    is_bit_vector,
+    is_simple,
+)
 from cramhy_runtime.ground.conditions import SimpleError, error
 from cramhy_runtime.ground.data import Character, Cons, DoubleFloat, Keyword, LispString, Symbol, UndefinedFunction, lisp_list, one, truth
 from cramhy_runtime.ground.equality import eql, equal
@@ -32,6 +42,7 @@ from cramhy_runtime.ground.packages import Package, is_symbol, sym
 from cramhy_runtime.storage.dependency_tracing import run
 from cramhy_runtime.ground.ports import PORTS
 from ..packages.package_errors import check_symbol
+from ..syntax.declaration_names import check_type_name
 from .specifier_shapes import bad_operator, bad_specifier, check_specifier, is_operator
 
 LISP_NAMES = "typep type-of upgraded-complex-part-type"
@@ -44,8 +55,17 @@ def _is_function(obj):
     return callable(obj) and not isinstance(obj, (type, Symbol)) and obj.__class__ is not UndefinedFunction
 
 
+def _is_generic_function(obj):
+    """Also of a function that becomes one when a program defines a method on it."""
+    return isinstance(obj, GenericFunction) or hasattr(obj.__class__, "acts_as_generic") or getattr(obj, "opening", None) is not None
+
+
 def _is_string(obj):
-    return isinstance(obj, (str, LispString)) or (obj.__class__ is Vector and getattr(obj.element_type, "name", "") == "CHARACTER")
+    return isinstance(obj, (str, LispString)) or (obj.__class__ is Vector and obj.element_type in STRING_KINDS)
+
+
+def _is_base_string(obj):
+    return _is_string(obj) and element_type(obj) is BASE_CHAR
 
 
 def _is_vector(obj):
@@ -70,8 +90,8 @@ _ATOMIC = {
     "VECTOR": _is_vector,
     "STRING": _is_string,
     "SIMPLE-STRING": lambda obj: _is_string(obj) and _is_simple(obj),
-    "BASE-STRING": lambda obj: False,
-    "SIMPLE-BASE-STRING": lambda obj: False,
+    "BASE-STRING": _is_base_string,
+    "SIMPLE-BASE-STRING": lambda obj: _is_base_string(obj) and _is_simple(obj),
     "BIT-VECTOR": is_bit_vector,
     "SIMPLE-BIT-VECTOR": lambda obj: is_bit_vector(obj) and _is_simple(obj),
     "SIMPLE-VECTOR": lambda obj: obj.__class__ is list,
@@ -101,8 +121,8 @@ _ATOMIC = {
     "SIGNED-BYTE": is_integer,
     "FUNCTION": _is_function,
     "COMPILED-FUNCTION": _is_function,
-    "GENERIC-FUNCTION": lambda obj: isinstance(obj, GenericFunction) or hasattr(obj.__class__, "acts_as_generic"),
-    "STANDARD-GENERIC-FUNCTION": lambda obj: isinstance(obj, GenericFunction) or hasattr(obj.__class__, "acts_as_generic"),
+    "GENERIC-FUNCTION": _is_generic_function,
+    "STANDARD-GENERIC-FUNCTION": _is_generic_function,
     "PACKAGE": lambda obj: isinstance(obj, Package),
     "PATHNAME": lambda obj: isinstance(obj, (Pathname, PurePath)),
     "CLASS": lambda obj: isinstance(obj, type),
@@ -170,6 +190,8 @@ def _class_predicate(cls):
         return lambda obj: True
     if isinstance(cls, BuiltInClass):
         return lambda obj: cls in lisp_mro(obj.__class__)
+    if cls is class_of(object):  # the class of the class T, which is Python's own
+        return lambda obj: isinstance(obj, cls) or obj is object
     return lambda obj: isinstance(obj, cls) or cls in lisp_mro(obj.__class__)
 
 
@@ -383,12 +405,19 @@ def define_type(symbol, expander, documentation=None, lambda_list=None):
     are; it returns the specifier that is meant. Optional arguments default to ``*`` (ANSI 3.4.8), which the macro sees to.
     """
     check_symbol(symbol, "defining ~S as a type specifier", symbol)
+    check_type_name(symbol)
     if symbol in _BUILT_IN:
         return error(SimpleError("~S is a type of Common Lisp and cannot be defined again. Choose another name.", symbol))
     expander.__doc__, expander.__lisp_lambda_list__ = documentation, lambda_list
     _expanders[symbol] = expander
     forget_predicates()
     return symbol
+
+
+def define_own_type(symbol, predicate):
+    """Make ``symbol`` a type of the runtime's own, of the objects for which the Python function ``predicate`` holds."""
+    if symbol not in _BUILT_IN:
+        _BUILT_IN[symbol] = _predicates[symbol] = predicate
 
 
 def type_expander(symbol):
@@ -446,7 +475,9 @@ def type_of(object):
         return array_type(object)
     if isinstance(object, FunctionType | BuiltinFunctionType):
         return sym("COMPILED-FUNCTION")
-    return class_name(class_of(object))
+    cls = class_of(object)
+    name = class_name(cls)
+    return name if not isinstance(cls, StandardClass) or symbol_class(name) is cls else cls  # it may have lost its name
 
 
 def _part_type(number):

@@ -43,11 +43,12 @@ def define_faces():
         "ACTIONLIB",
         functions={
             calls: "make-action-client call-goal send-goal send-goal-and-wait simple-state goal feedback",
-            simple_client: "wait-for-server wait-for-result cancel-goal cancel-all-goals cancel-at-before-time is-connected goal-id "
+            simple_client: "wait-for-server cancel-goal cancel-all-goals cancel-at-before-time is-connected goal-id "
             "goal-status comm-state terminal-state result",
             server: "start-action-server cancel-request-received",
             macro_support: "build-goal end-goal tell-feedback",
             "connected-to-server": simple_client.is_connected,
+            "wait-for-result": simple_client.wait_for_the_result,
         },
         variables={
             "*action-server-timeout*": client.CONNECTED,

@@ -60,7 +60,7 @@ FUNCTIONS = {
     waiting: "wait-for sleep*",
     tasks: "evaporate join-task execute",
     task_readers: "task-alive task-dead task-running-p task-dead-p task-done-p task-failed-p task-path status result "
-    "list-saved-tasks child-tasks parent-task task-constraints",
+    "list-saved-tasks clear-saved-tasks child-tasks parent-task task-constraints",
     suspension: "suspend wake-up",
     task_variables: "tv-closure",
     failures: "fail composite-failures envelop-error",
@@ -94,7 +94,7 @@ REACHED_FOR = """fl-member child-tasks parent-task task-constraints execute remo
     *task-tree-node-print-children* *task-tree-node-print-identity* on-preparing-named-top-level on-finishing-named-top-level
     on-begin-execute-tag-task on-finish-execute-tag-task on-preparing-task-execution on-finishing-task-execution
     on-with-failure-handling-begin on-with-failure-handling-end on-with-failure-handling-handled on-with-failure-handling-rethrown
-    on-with-policy-begin on-with-policy-end"""
+    on-with-policy-begin on-with-policy-end clear-saved-tasks"""
 """What other CRAM code reaches for with ``::`` (cpl.md 1.5): exported here, but not by CPL, whose users may have such names too."""
 
 WALKER = """plan-tree-node plan-tree-node-sexp plan-tree-node-parent plan-tree-node-children plan-tree-node-path find-plan-node
@@ -116,7 +116,6 @@ def define_faces():
         ("*CURRENT-TASK*", current.current_task, None),
         ("*CURRENT-PATH*", tree.current_path, None),
         ("*TASK-TREE*", tree.current_tree, None),
-        ("*TASKS*", task_readers.list_saved_tasks, task_readers.save_tasks),
     ):
         if not CPL_IMPL.present(name):
             task_variables.define_task_state(CPL_IMPL, name, getter, setter)

@@ -216,7 +216,7 @@ def _all_parts(walk, form, env):
     return Cons(form.car, walk.forms(form.cdr, env))
 
 
-@special("BLOCK", "RETURN-FROM", "THE", "EVAL-WHEN", "CRAMHY::SUPPORT", "CRAMHY::CALL-SETF")
+@special("BLOCK", "RETURN-FROM", "THE", "EVAL-WHEN", "CRAMHY::SUPPORT")
 def _all_but_the_first(walk, form, env):
     first, rest = _two(form)
     return Cons(form.car, Cons(first, walk.forms(rest, env)))
