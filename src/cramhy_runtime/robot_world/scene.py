@@ -35,6 +35,7 @@ _BELOW_ALL = -1000.0  # metres
 _MOST_LIFTS = 200
 _ASIDE = [metres * np.array((np.cos(turn), np.sin(turn))) for metres in np.arange(0.01, 0.41, 0.01) for turn in np.arange(16) * np.pi / 8]
 _SAME_HEIGHT = 0.01  # metres
+_ROOM_FOR_A_FINGER = 0.03  # metres, between items that are parted
 _TOGETHER = 25  # steps that are computed in one call; what is at rest is at rest after two calls
 
 
@@ -255,7 +256,7 @@ class Scene:
         return [(item, None if number < 0 else self.things[number]) for item, number in stuck]
 
     def _part_from(self, part: Part, others: Sequence[int]) -> None:
-        """Put a free item that is inside of one of other geoms aside, as little as it goes, to where it stands as high.
+        """Put a free item that is inside of one of other geoms aside, to the nearest place with room between at which it stands as high.
 
         An item for which there is no such place is left to the physics.
         """
@@ -269,7 +270,7 @@ class Scene:
             mujoco.mj_kinematics(self.model, self.data)
             if (
                 abs(self._height_below(part) - height) < _SAME_HEIGHT
-                and not self._nearer(part, others, TOUCHING)
+                and not self._nearer(part, others, _ROOM_FOR_A_FINGER)
                 and not self._nearer(part, standing, -_DEEP)
             ):
                 return
