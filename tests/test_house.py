@@ -327,16 +327,13 @@ def test_rooms_are_in_no_circle():
     assert not circles(rooms)
 
 
-DEPRECATED_NAMES = {"src/cramhy_runtime/ground/data.py": "DoubleFloat, which warns, for one version"}
-
-
 def test_no_module_makes_up_names_when_they_are_asked_for():
-    """A module-level ``__getattr__`` (PEP 562) hides from editors and type checkers where a name comes from. It may warn of an old one."""
+    """A module-level ``__getattr__`` (PEP 562) hides from editors and type checkers where a name comes from."""
 
     def made_up(path):
         return [node for node in tree_of(path).body if getattr(node, "name", None) == "__getattr__"]
 
-    assert offences(made_up).keys() <= DEPRECATED_NAMES.keys()
+    assert offences(made_up) == {}
 
 
 def test_nobody_sets_the_names_of_another_module():

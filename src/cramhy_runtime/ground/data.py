@@ -312,12 +312,8 @@ OWN_ANSWERS: dict[type, bool] = {}
 """What `_answers_for_itself` found out of other classes."""
 
 
-def __getattr__(name: str) -> Any:
-    if name != "DoubleFloat":
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    warnings.warn("A double-float is a Python float now: write float instead of DoubleFloat.", DeprecationWarning, stacklevel=2)
-    return float
-
+DoubleFloat = float
+"""The old name of the class of double-floats, which will go away: write ``float``."""
 
 TRUE_CLASSES = frozenset({bool, int, *FLOATS, complex, str, bytes, list, tuple, dict, set, Cons, Symbol, Keyword, Character})
 """Classes whose objects are true in Lisp, whatever they are, but for ``False``. See `truth`."""

@@ -310,7 +310,7 @@ def unwrapped(value):
 
 def in_single(number):
     """The single-float nearest to the integer ``number``, raw; what is a float is one already."""
-    return float(arithmetic.single_of(number)) if number.__class__ is int else number
+    return float(arithmetic.single_of(number)) if number.__class__ is int and number.bit_length() > 24 else number
 
 
 def rounded(exact):

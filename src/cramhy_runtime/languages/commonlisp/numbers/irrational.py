@@ -317,10 +317,11 @@ def decode_float(number):
 
 
 def integer_decode_float(number):
-    """Three values: significand as an integer of 24 or 53 bits, exponent, sign (1 or -1)."""
-    digits = float_digits(number)
+    """Three values: significand as an integer of 24 or 53 bits, fewer of a denormal, exponent, sign (1 or -1)."""
+    digits, least = float_digits(number), -149 if number.__class__ is SingleFloat else -1074
     significand, exponent = math.frexp(abs(number))
-    return MultipleValues((int(significand * 2**digits), exponent - digits if significand else 0, int(math.copysign(1, number))))
+    exponent = max(exponent - digits, least) if significand else 0
+    return MultipleValues((int(math.ldexp(abs(number), -exponent)), exponent, int(math.copysign(1, number))))
 
 
 def scale_float(number, exponent):

@@ -64,6 +64,8 @@ COMPARISONS = {sym(name): word(name) for name in ("<", ">", "<=", ">=", "=")}
 
 LARGEST = sys.float_info.max
 LEAST_SQUARE, LARGEST_SQUARE = 2.0**-252, LARGEST_SINGLE**2
+SMALL_INTEGERS = 2**24
+"""Integers up to here are single-floats."""
 BELOW, TIMES_SIGN, MINUS_SIGN = word("<="), word("*"), word("-")
 INT_CLASS, FLOAT_CLASS, SINGLE_CLASS = word("Lint"), word("Lfloat"), word("Lsingle")
 CLASS, CLASSES, RESULT, PRODUCT = word("__class__"), word("Lc"), word("Lr"), word("Lp")
@@ -440,8 +442,11 @@ class ArithmeticGenerator:
             return expression(OPERATORS[part.symbol], *models)
         for index, each in enumerate(part.parts):
             kind, size = self._kind_and_size(each, assumed)
-            if kind & INT and size > 24:
-                models[index] = self.call("in_single", models[index])
+            if kind & INT and size > 24:  # a single may not hold it exactly
+                exact = self.call("in_single", models[index])
+                if nameable(models[index]):
+                    exact = expression(IF, expression(BELOW, -SMALL_INTEGERS, models[index], SMALL_INTEGERS), models[index], exact)
+                models[index] = exact
         slow = None
         if part.parts[0].__class__ is part.parts[1].__class__ is Operand and used is None:
             slow = self.unwrapped(self.generic(part), SINGLE)
