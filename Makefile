@@ -41,6 +41,7 @@ golden: $(READY)
 docs: $(READY)
 	@$(BIN)/python tests/lisp/standard_page.py
 	@$(BIN)/python tests/operators/page.py
+	@$(BIN)/python tests/operators/differences_page.py
 	@$(BIN)/python tests/docs/command_line.py
 	@$(BIN)/python tests/docs/pages.py
 

@@ -110,6 +110,11 @@ RECORDINGS = [
         library="/usr/share/common-lisp/source/alexandria",
     ),
     Recording(TESTS / "libraries" / "uiop.txt", (*SBCL, "record.lisp", "uiop"), comments=True),
+    Recording(
+        TESTS / "libraries" / "contributions.txt",
+        (*SBCL, "record.lisp", "sb-bsd-sockets", "sb-rotate-byte", "sb-rt", "sb-posix"),
+        comments=True,
+    ),
 ]
 
 

@@ -64,7 +64,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   form)
 
 (defn all-keys [clauses]
-  (list-from (sum (lfor clause clauses (if (listp clause.car) (elements clause.car) [clause.car])) [])))
+  (list-from (sum (lfor clause clauses (if (or (is clause.car None) (listp clause.car)) (elements clause.car) [clause.car])) [])))
 
 (defoperator case [key #* clauses]
   (check-clauses "CASE" clauses)
@@ -409,8 +409,13 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   (when (and (listp form) (isinstance form.car LispSymbol) (in form.car (lfor name ["ERROR" "CERROR" "SIGNAL" "WARN"] (sym name))))
     form.car))
 
-(defoperator restart-case [form #* clauses]
+(defoperator restart-case [form #* clauses environment]
+  (import cramhy_runtime.languages.commonlisp.syntax.macros [macroexpand])
   (setv operator (signalling form))
+  (when (and (not operator) (listp form))
+    (setv expansion (get (macroexpand form environment) 0))  ; of a local macro, say
+    (setv operator (signalling expansion))
+    (when operator (setv form expansion)))
   `(%restart-case (list ~@(lfor clause clauses (restart-clause clause)))
                   (lambda [] ~(if operator `(%signal-with-restarts (quote ~operator) ~@(. form cdr)) form))))
 
@@ -437,7 +442,7 @@ Each is what the standard says that it expands into; see the section of ANSI in 
   (setv keywords (if (or (not options) (isinstance (get options 0) Keyword)) options (cut options 1 None)))
   (if (is target None)
       `(let [[~stream (make-string-output-stream ~@keywords)]] ~@body (get-output-stream-string ~stream))
-      `(let [[~stream (%make-fill-pointer-output-stream ~target)]] ~@body)))
+      `(let [[~stream (%make-fill-pointer-output-stream ~(if keywords `(prog1 ~target ~@(cut keywords 1 None 2)) target))]] ~@body)))
 
 (defoperator with-input-from-string [spec #* body]
   (setv #(variable string #* options) spec)

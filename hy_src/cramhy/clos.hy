@@ -194,7 +194,12 @@
       True (.append seen name))))
 
 (defoperator defgeneric [name lambda-list #* options]
+  (import cramhy_runtime.languages.commonlisp.evaluation.forms [special-operator-p])
   (setv methods [] arguments [])
+  (when (and (is-symbol name) (special-operator-p name))
+    (program-error "~S is a special operator, so it cannot name a generic function." name))
+  (when (> (len (lfor option options :if (= (symbol-name option.car) "DOCUMENTATION") option)) 1)
+    (program-error "Duplicate option :DOCUMENTATION for the generic function ~S." name))
   (check-generic-lambda-list lambda-list)
   (for [option options]
     (match (symbol-name option.car)

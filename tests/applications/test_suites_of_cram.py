@@ -46,3 +46,10 @@ def test_crams_own_suites(suite, branch, tmp_path):
     assert len(cases) >= 2
     failed = {case.get("name").rpartition(":")[2] for case in cases if case.find("failure") is not None or case.find("error") is not None}
     assert failed == set(SUITES[suite])
+
+
+def test_a_suite_with_the_habits_of_crams_own_passes(tmp_path):
+    environment = {**os.environ, "ROS_PACKAGE_PATH": str(Path(__file__).parent / "workspace" / "src")}
+    command = [sys.executable, "-m", "cramhy_runtime.cli", "test", "plan-harness-tests"]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.stdout.splitlines()[-1].startswith("4 passed in "), done.stdout + done.stderr

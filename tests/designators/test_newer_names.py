@@ -96,3 +96,23 @@ def test_verdicts_of_validators_are_printed_on_demand(lisp, capsys):
     lisp("(let ((desig:*print-location-validation-function-results* t)) (desig:reference (desig:a location (near :chair))))")
     said = capsys.readouterr().out.splitlines()
     assert [line for line in said if "EVEN-PLACE" in line] == ["validator EVEN-PLACE says: REJECT", "validator EVEN-PLACE says: ACCEPT"]
+
+
+def test_a_variable_may_stand_for_a_property(lisp):
+    form = "(let ((?side '(:side :left)) (?nothing nil)) (desig:properties (desig:a location (on :table) ?side ?nothing)))"
+    assert lisp(form) == "((:ON :TABLE) (:SIDE :LEFT))"
+
+
+def test_methods_of_events_that_have_a_number_run_first(lisp):
+    lisp("""(defvar *said* ()) (defclass happened (coe:event) ())
+      (defmethod coe:on-event last-one ((event happened)) (push :last *said*))
+      (defmethod coe:on-event second-one 2 ((event happened)) (push :second *said*))
+      (defmethod coe:on-event first-one 1 ((event happened)) (push :first *said*))""")
+    assert lisp("(progn (coe:on-event (make-instance 'happened)) (reverse *said*))") == "(:FIRST :SECOND :LAST)"
+
+
+def test_the_goal_of_an_action_is_asked_before_its_grounding(lisp):
+    """CRAM's branch master resolves the action first, and fails where nothing grounds it."""
+    lisp("(def-fact-group occasions (coe:holds) (<- (coe:holds (done))))")
+    form = "(handler-bind ((warning #'muffle-warning)) (cpl:top-level (exe:perform (desig:an action (type never-grounded) (goal (done))))))"
+    assert lisp(form.replace("(done)", "?done").replace("(cpl:top-level", "(let ((?done '(done))) (cpl:top-level") + ")") == "NIL"

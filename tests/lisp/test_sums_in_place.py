@@ -60,3 +60,13 @@ def test_known_names_are_printed_for_the_readtable_of_now(session):
         (let ((*readtable* (copy-readtable nil))) (setf (readtable-case *readtable*) :downcase) (told :abc))"""
     )
     assert list(found) == [":|ABC|", ":|ABC|"]
+
+
+@pytest.mark.parametrize("operator", ["+", "*", "-", "max", "min", "logior", "=", "append"])
+def test_a_form_of_a_thousand_variables_is_compiled(session, operator):
+    """The time for this grows with the terms; where it grew with their third power this took minutes."""
+    names = " ".join(f"v{index}" for index in range(1024))
+    ones = "nil " * 1024 if operator == "append" else "1 " * 1024
+    wanted = {"+": "1024", "-": "-1022", "=": "T", "append": "NIL"}.get(operator, "1")
+    *_, found = session.evaluate_text(f"(flet ((f ({names}) ({operator} {names}))) (f {ones}))")
+    assert prin1_to_string(found) == wanted

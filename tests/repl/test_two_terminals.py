@@ -150,7 +150,7 @@ def test_two_simulators_from_a_launch_file(private):
 
 FOLLOW = """<launch>
   <include file="$(find turtle_tf)/launch/turtle_tf_demo.launch"/>
-  <node pkg="joint_state_publisher" type="joint_state_publisher" name="joints"/>
+  <node pkg="rviz" type="rviz" name="window"/>
   <node pkg="tf" type="static_transform_publisher" name="short" args="0 0 map world"/>
 </launch>
 """
@@ -168,8 +168,8 @@ def test_a_launch_file_with_keys_and_a_turtle_that_follows_and_programs_that_do_
         with Terminal("ros", "roslaunch", str(tmp_path / "follow.launch")) as terminal:
             before = termios.tcgetattr(terminal.master)
             terminal.expect(
-                r"ERROR: cannot launch node of type \[joint_state_publisher/joint_state_publisher\]: cramhy has no executable "
-                r"joint_state_publisher/joint_state_publisher. Packages with executables: .*turtlesim.\n"
+                r"ERROR: cannot launch node of type \[rviz/rviz\]: cramhy has no executable "
+                r"rviz/rviz. Packages with executables: .*turtlesim.\n"
             )
             terminal.expect(
                 r"ERROR: cannot launch node of type \[tf/static_transform_publisher\]: static_transform_publisher takes 9 or 10 words"

@@ -60,6 +60,7 @@ def ask():
     [
         ("(place (list :on (island)))", "(< 0.84 (z p) 0.87)"),
         ("(place (list :on (island)))", "(and (< -1.5 (x p) -0.2) (< 0 (y p) 3))"),
+        ("(place (list :on (sink)) '(:side :front))", "(and (> (x p) 1.33) (< -0.22 (y p) 1.27))"),  # not at its edge: a thing would fall
         ("(place (list :on (island)) (list :for (thing :bottle)))", "(< 0.93 (z p) 0.97)"),
         ("(place (list :on (sink)) '(:side :left))", "(> (y p) (y (cl-transforms:origin (btr:link-pose (btr:get-environment-object) \"sink_area_surface\"))))"),
         ("(place (list :on (sink)) '(:side :front))", "(< (x p) (x (cl-transforms:origin (btr:link-pose (btr:get-environment-object) \"sink_area_surface\"))))"),

@@ -281,6 +281,109 @@ def test_a_spoon_behind_the_front_of_its_drawer_is_seen_from_above(ask):
     assert ask("(< 1.0 (+ 0.3 (cl-transforms:x (cl-transforms:origin (btr:pose (btr:get-robot-object))))) 1.2)") == "T"
 
 
+# ------------------------------------------------------------------------------------------- what is hard to see, or hard to reach
+
+
+FETCH = """(with-simulated-robot
+  (let ((?it (perform (an action (type detecting) (object (an object (type {}))))))) {}
+    (perform (an action (type fetching) (object ?it)))
+    (list (held) (desig:desig-prop-value (desig:current-desig ?it) :type))))"""
+
+
+def stand_and_look(ask, x, y, robot_x=0.7):
+    ask(f"""(with-simulated-robot (pp-plans:park-arms) (pr2-proj::drive (at {robot_x} {y} 0))
+      (let ((?there (at {x} {y} 0.9))) (perform (an action (type looking) (target (a location (pose ?there)))))))""")
+
+
+@pytest.mark.parametrize("spawned, wanted", [("cereal", "breakfast-cereal"), ("breakfast-cereal", "cereal"), ("fork", "fork-plastic")])
+def test_things_that_look_the_same_are_found_by_either_type(ask, spawned, wanted):
+    spawn(ask, "it", spawned, 1.45, 0.7)
+    stand_and_look(ask, 1.45, 0.7)
+    see = "(with-simulated-robot (let ((it (perform (an action (type detecting) (object (an object (type {})))))))"
+    see += " (list (desig:desig-prop-value it :name) (desig:desig-prop-value it :type))))"
+    assert ask(see.format(wanted)) == f"(IT :{wanted.upper()})"
+    assert ask(see.format(spawned)) == f"(IT :{spawned.upper()})"
+    assert ask(see.format("milk")).startswith("PERCEPTION-OBJECT-NOT-FOUND: ")
+
+
+NOWHERE = """(progn (defmethod costmap:costmap-generator-name->score ((name (eql 'nowhere))) 5)
+  (def-fact-group closed-room (costmap:desig-costmap)
+    (<- (costmap:desig-costmap ?designator ?costmap)
+      (cram-robot-interfaces:reachability-designator ?designator)
+      (costmap:costmap ?costmap)
+      (costmap:costmap-add-function nowhere (constantly 0.0) ?costmap))))"""
+
+
+@pytest.fixture
+def closed_room(ask):
+    """The costmaps of the application let the robot stand nowhere."""
+    ask(NOWHERE)
+    yield
+    ask("(def-fact-group closed-room (costmap:desig-costmap))")
+
+
+def test_where_no_costmap_has_a_place_a_simulated_robot_takes_a_free_one(ask, closed_room, capsys):
+    spawn(ask, "it", "bottle", 1.45, 0.7)
+    stand_and_look(ask, 1.45, 0.7)
+    assert ask(FETCH.format("bottle", "")) == "((IT) :BOTTLE)"
+    assert "No place of the costmaps serves. The simulated robot takes another free place: " in capsys.readouterr().out
+
+
+def test_a_place_that_is_told_is_the_only_one(ask):
+    spawn(ask, "it", "bottle", 1.45, 0.7)
+    stand_and_look(ask, 1.45, 0.7, 0.2)
+    told = FETCH.replace("(object ?it)", "(object ?it) (robot-location (a location (pose ?stand)))").format("bottle", "")
+    assert ask(told.replace("(let (", "(let* ((?stand (at 0.2 0.7 0)) ")).startswith("OBJECT-UNFETCHABLE: ")
+    assert ask("(held)") == "NIL"
+
+
+@pytest.mark.parametrize("kind, known", [("cup", True), ("milk", True), ("breakfast-cereal", True), ("bowl", True), ("bottle", False)])
+def test_for_some_things_it_is_known_how_they_are_taken_from_above(ask, kind, known):
+    """Facts offer it of bowls only; a plan says it where the ways from the sides are blocked."""
+    spawn(ask, "it", kind, 1.45, 0.7)
+    assert ask(f"(and (pr2-fd-plans::top-grasp-p (an object (type {kind}))) t)") == ("T" if known else "NIL")
+    if known:
+        stand_and_look(ask, 1.45, 0.7)
+        grasp = """(with-simulated-robot (let ((it (perform (an action (type detecting) (object (an object (type {})))))))
+          (seventh (cons nil (reference (pr2-fd-plans::from-above it nil))))))"""
+        assert ask(grasp.format(kind)) == ":TOP"
+
+
+def test_what_is_hidden_now_lies_where_it_was_seen(ask):
+    spawn(ask, "it", "bottle", 1.45, 0.7)
+    stand_and_look(ask, 1.45, 0.7)
+    ask("(defparameter *it* (with-simulated-robot (perform (an action (type detecting) (object (an object (type bottle)))))))")
+    ask("(btr:add-object btr:*current-bullet-world* :box 'screen '((1.3 0.7 1.2) (0 0 0 1)) :size '(0.02 2 1) :mass 0)")
+    ask("(pr2-proj::with-simulated-robot (pr2-proj::drive (at 0.7 0.6 0)))")
+    again = """(with-simulated-robot (let* ((it (pr2-fd-plans::see-again *it* {})) (pose (obj-int:get-object-pose it)) (at (cl-transforms:origin pose)))
+      (list (desig:desig-prop-value it :name) (cl-transforms-stamped:frame-id pose)
+            (< 0.74 (cl-transforms:x at) 0.76) (< 0.09 (cl-transforms:y at) 0.11))))"""
+    assert ask(again.format("nil")).startswith("PERCEPTION-OBJECT-NOT-FOUND: ")
+    assert ask(again.format("t")) == '(IT "base_footprint" T T)'
+
+
+def test_a_bowl_is_taken_by_that_side_of_its_rim_which_is_free(ask):
+    spawn(ask, "it", "bowl", 1.45, 0.7)
+    stand_and_look(ask, 1.45, 0.7)
+    ask("(btr:add-object btr:*current-bullet-world* :box 'post '((1.35 0.7 0.93) (0 0 0 1)) :size '(0.04 0.2 0.16) :mass 0)")
+    ask("(btr:add-object btr:*current-bullet-world* :box 'other '((1.55 0.7 0.93) (0 0 0 1)) :size '(0.04 0.2 0.16) :mass 0)")
+    look = """(with-simulated-robot (let ((?it (pr2-proj::seen-object (an object (type bowl)) (btr:object btr:*current-bullet-world* 'it))))
+      (perform (an action (type fetching) (object ?it))) (held)))"""
+    assert ask(look) == "(IT)"
+
+
+def test_a_spoon_at_the_back_of_its_drawer_is_brought_out(ask):
+    ask(f'(put-spoon-into "{UPPER}")')
+    ask("(btr:detach-object (kitchen) (btr:object btr:*current-bullet-world* 'spoon))")
+    ask("(btr-utils:move-object 'spoon '((1.52 0.9 0.739) (0 0 0.7071068 0.7071068)))")
+    ask(f'(btr:attach-object (kitchen) (btr:object btr:*current-bullet-world* \'spoon) "{UPPER}")')
+    transport = f"""(with-simulated-robot
+      (let ((?drawer (drawer '{UPPER.replace("_", "-").upper()})) (?to (at -0.8 1.2 0.865)))
+        (perform (an action (type transporting) (object (an object (type spoon))) (location ?drawer) (target (a location (pose ?to)))))))"""
+    assert ask(transport) == "NIL"
+    assert ask("(place-of 'spoon)").startswith("(-0.8 1.2 ") and ask(f'(zerop (opened "{UPPER}"))') == "T"
+
+
 def let_fall(ask):
     """Deliver a bottle to a place in the air, before the counter; what came of it."""
     spawn(ask, "bottle", "bottle", 1.42, 0.7)

@@ -251,13 +251,19 @@ def test_pictures_that_cannot_be_are_errors_that_say_why(session, form, text, tm
     assert list(tmp_path.iterdir()) == []
 
 
-def nearest_of_all(corners, view, part, width, height):
-    """As `triangles.meet`, but each ray is compared with each triangle."""
-    rows, columns = part
-    flat = View(np.zeros(3), np.eye(3), view.opening).rays(width, height)[rows, columns, :2].reshape(-1, 2)
-    found = np.stack([triangles._meet_each(np.repeat(corner[None], len(flat), axis=0), flat) for corner in corners])  # noqa: SLF001
-    shape = rows.stop - rows.start, columns.stop - columns.start
-    return found.min(axis=0).reshape(shape), found.argmin(axis=0).reshape(shape)
+def nearest_of_all(corners, rays, pixels):
+    """As `triangles.meet`, but each ray is compared with each triangle, whose plane and sides are computed anew."""
+    ways = rays.through(pixels, np.eye(3)).T
+    found = np.full((len(corners), len(pixels)), np.inf)
+    for number, (corner, second, third) in enumerate(corners):
+        one, other = second - corner, third - corner
+        across, beyond = np.cross(ways, other), np.cross(-corner, one)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            inverse = 1.0 / (across @ one)
+            u, v, along = (across @ -corner) * inverse, (ways @ beyond) * inverse, (beyond @ other) * inverse
+            hit = (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9) & (along > triangles.NEAR)
+        found[number] = np.where(hit, along, np.inf)
+    return found.min(axis=0), found.argmin(axis=0)
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -267,9 +273,12 @@ def test_rays_meet_the_triangles_at_their_pixels_as_they_would_meet_all(seed):
     middles = random.uniform((-2, -2, -0.5), (2, 2, 3), (60, 1, 3))
     corners = middles + random.uniform(-1, 1, (60, 3, 3)) * random.choice([0.01, 0.2, 1.0], (60, 1, 1), p=[0.5, 0.4, 0.1])
     corners[::10, 2] = corners[::10, 1]
-    part = slice(3, 41), slice(7, 50)
-    depths, numbers = triangles.meet(corners, AHEAD, part, 64, 48)
-    wanted, those = nearest_of_all(corners, AHEAD, part, 64, 48)
+    part, rays = (slice(3, 41), slice(7, 50)), views.Rays(View(np.zeros(3), np.eye(3)), 64, 48)
+    pixels = np.arange(64 * 48).reshape(48, 64)[part].ravel()
+    if seed % 2:  # not all of them are asked for
+        pixels = pixels[random.random(len(pixels)) < 0.5]
+    depths, numbers = triangles.meet(corners, rays, part, pixels)
+    wanted, those = nearest_of_all(corners, rays, pixels)
     assert depths == pytest.approx(wanted) and (numbers[np.isfinite(depths)] == those[np.isfinite(wanted)]).all()
     assert np.isfinite(depths).sum() > 20
 
@@ -277,13 +286,33 @@ def test_rays_meet_the_triangles_at_their_pixels_as_they_would_meet_all(seed):
 def test_a_fine_mesh_costs_what_its_pixels_cost(monkeypatch):
     compared = []
     each = triangles._meet_each  # noqa: SLF001
-    monkeypatch.setattr(triangles, "_meet_each", lambda corners, flat: compared.append(len(flat)) or each(corners, flat))
+    monkeypatch.setattr(triangles, "_meet_each", lambda planes, across, down: compared.append(len(down)) or each(planes, across, down))
     line = np.linspace(-0.5, 0.5, 101)
     x, y = (part.ravel() for part in np.meshgrid(line[:-1], line[:-1]))
     square = np.array([[0, 0], [0.01, 0], [0, 0.01]])
     corners = np.concatenate([np.stack([x, y], axis=1)[:, None] + square, np.full((10_000, 3, 1), 2.0)], axis=2)
-    depths, _ = triangles.meet(corners, AHEAD, (slice(0, 200), slice(0, 200)), 200, 200)
+    depths, _ = triangles.meet(corners, views.Rays(AHEAD, 200, 200), (slice(0, 200), slice(0, 200)), np.arange(200 * 200))
     assert 5_000 < np.isfinite(depths).sum() <= sum(compared) < 40_000  # of 400 million pairs
+
+
+def test_where_nothing_ends_a_smooth_picture_is_the_plain_one_and_edges_are_means(empty):
+    empty.add_item("front", (Shape("box", (0.4, 0.4, 0.4)),), placement((0, 0, 1)), colour=RED)
+    view = views.looking_at((-3, 0.4, 2), (0, 0, 1))
+    plain, smooth, fine = drawing.draw(empty, view, 60, 45), drawing.draw(empty, view, 60, 45, 2), drawing.draw(empty, view, 120, 90)
+    assert (plain.shown == smooth.shown).all() and (plain.depths == smooth.depths).all()
+    means = fine.colours.reshape(45, 2, 60, 2, 3).mean(axis=(1, 3))
+    assert np.abs(smooth.colours - means).max() < 0.05  # as if all had been painted in pieces
+    assert len(np.unique(smooth.colours.reshape(-1, 3), axis=0)) > len(np.unique(plain.colours.reshape(-1, 3), axis=0))
+
+
+def test_a_smooth_picture_paints_in_pieces_only_what_is_at_edges(empty, monkeypatch):
+    painted = []
+    paint = drawing._Canvas.paint  # noqa: SLF001
+    monkeypatch.setattr(drawing._Canvas, "paint", lambda *given: painted.append(len(given[2])) or paint(*given))  # noqa: SLF001
+    empty.add_item("ball", (Shape("sphere", (1.0,)),), placement((0, 0, 1)), colour=RED)
+    drawing.draw(empty, views.looking_at((-3, 0, 1), (0, 0, 1)), 320, 240, 2)
+    whole, pieces = painted
+    assert whole == 320 * 240 and 0 < pieces < 0.2 * 4 * whole
 
 
 def test_a_box_that_ends_behind_the_camera_is_looked_for_where_it_may_be_seen(empty):

@@ -255,8 +255,8 @@ def test_keys_of_another_terminal_drive_the_turtle(far_shell, graph):
         (
             "start_program",
             {"package": "os", "executable": "draw_square"},
-            "cramhy has no executable os/draw_square. Packages with executables: lynxmotion_al5d_description, tf, tf2_ros, "
-            "turtle_actionlib, turtle_tf, turtle_tf2, turtlesim.",
+            "cramhy has no executable os/draw_square. Packages with executables: joint_state_publisher, lynxmotion_al5d_description, "
+            "robot_state_publisher, tf, tf2_ros, turtle_actionlib, turtle_tf, turtle_tf2, turtlesim.",
         ),
         ("feed_program", {"node": "/turtlesim", "keys": [65]}, "The program /turtlesim reads no keys."),
         ("end_node", {"node": "/nobody"}, "There is no node /nobody."),

@@ -152,6 +152,8 @@ def test_what_is_wrong_says_what(lisp, form, text):
         ("(list (cut:compare 1 1) (cut:compare \"a\" \"A\" :test #'string-equal) (cut:compare '(1) '(1 2) :key #'car))", "(T T T)"),
         ('(cut:sanitize-filename "a b/c-d_1.ä")', '"a_b_c-d_1__"'),
         ("(cut:equalize-two-list-lengths '(1 2 3) '(a))", "(1 2 3) (A NIL NIL)"),
+        ("(cut:equalize-two-list-lengths 1 '(a b))", "(1 NIL) (A B)"),
+        ("(cut:equalize-two-list-lengths nil '(a) :return-as-list t)", "((NIL) (A))"),
         ("(cut:equalize-lists-of-lists-lengths '((1) (2 3) (4)) '((a b) (c)))", "(1 NIL 2 3 4) (A B C NIL NIL)"),
         (
             "(let ((pool (cut:make-data-pool))) (list (cut:new-pool-value pool :a) (cut:new-pool-value pool) (cut:pool-value pool 0)"

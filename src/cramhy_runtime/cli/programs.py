@@ -131,8 +131,9 @@ def run(programs, parameters=None, port=None, view=None, time=None):
                     raise servers.NotPossible(str(problem)) from None
                 if told is not None:
                     _tell(f"The session has ended: {told} here again.")
-                if _run_here(programs, parameters, port, view, time, again=told is not None) != "moved":
-                    return 0
+                status = _run_here(programs, parameters, port, view, time, again=told is not None)
+                if status != "moved":
+                    return status
                 told = _what(programs)
                 _tell(f"A session has started: {told} there now.")
                 continue
@@ -224,7 +225,7 @@ def _run_there(graph, programs, parameters, view):
 
     for name, value in (parameters or {}).items():
         graph.set_parameter(name, value)
-    ours, shown, labels, keyboard = [], set(), [], None
+    ours, shown, labels, keyboard, statuses = [], set(), [], None, [0]
     with graph.listen("/cramhy/program_log", "cramhy_msgs/ProgramLine") as log:
         try:
             for number, program in enumerate(programs, 1):
@@ -259,19 +260,21 @@ def _run_there(graph, programs, parameters, view):
                         message = heard[1]
                         if message["node"] in shown and not message["ended"]:
                             show(message["line"])
-                        elif message["ended"]:
+                        elif message["ended"] and message["node"] in shown:
                             shown.discard(message["node"])
+                            statuses.append(message["status"])
                         heard = log.take(graph.now()) if shown else None
         except (KeyboardInterrupt, Terminated):
             _closing(labels)
             for node in reversed(ours):
                 if node in shown:
                     graph.kill(node)
-    return 0
+            return 0
+    return 0 if labels else max(statuses)  # roslaunch ends well, whatever became of its programs
 
 
 def _run_here(programs, parameters, port, view, time=None, again=False):
-    """Run programs in this process, which is a session until another one starts: then the result is ``"moved"``.
+    """Run programs in this process, which is a session until another one starts: then the result is ``"moved"``, else the exit status.
 
     again: whether they ran in another session before, so that no browser opens by itself.
     """
@@ -317,10 +320,11 @@ def _run_here(programs, parameters, port, view, time=None, again=False):
                 node.program.echo = _both(node.program.echo)
             if view is None and _has_window(programs):
                 _tell(f"The page: {window.page(show=page.opens_by_itself() and not again, asked=False).url}")
-            return _wait(nodes, keyboard)
+            ended = _wait(nodes, keyboard)
+            return ended if ended == "moved" else 0 if labels else max((node.program.status for node in nodes), default=0)
         except (KeyboardInterrupt, kernel.Terminated, kernel.Abandoned):
             _closing(labels)
-            return "interrupted"
+            return 0
 
 
 def _both(tell):

@@ -25,12 +25,12 @@ from . import condition_types as types
 from .catching import EVERYBODY, Case, Cluster, HandlerExit, handlers_in_force
 from .condition_types import *  # noqa: F403  the classes are this module's interface too
 from .condition_types import matches
-from .data import LispString, MultipleValues, Symbol, UNBOUND, UndefinedFunction, all_values, truth, values
+from .data import LispString, MultipleValues, Symbol, UNBOUND, UndefinedFunction, all_values, list_from, truth, values
 from .dynamic import binding, special
 from . import plain_answers  # noqa: F401  the ports have answers from here on
 from .ports import PORTS
 from .python_exceptions import from_python
-from .packages import CURRENT, ensure_package, find_package_or_error, intern, is_symbol, sym
+from .packages import CURRENT, ensure_package, find_package_or_error, intern, is_symbol, sym, symbol_name
 from .restarts import *  # noqa: F403  they are part of this module's interface, as the classes are
 from .restarts import compute_restarts, innermost_restarts, restart_case, with_condition_restarts, with_simple_restart
 
@@ -247,7 +247,7 @@ def make_condition(datum, arguments=(), default=types.SimpleError):
         if isinstance(cls, type) and issubclass(cls, types.Condition):
             return PORTS.classes.make(cls, *arguments)
     if isinstance(datum, types.Condition):
-        return datum
+        return type_error(list_from(arguments), "NULL") if arguments else datum
     if isinstance(datum, type) and issubclass(datum, types.Condition):
         return _instance(datum, arguments)
     if isinstance(datum, str) or isinstance(datum, LispString) or callable(datum) and not is_symbol(datum):
@@ -335,7 +335,8 @@ def cerror(continue_format, datum, *arguments):
     """``cl:cerror``: as `error`, with a restart CONTINUE that makes it return nil."""
     if is_symbol(continue_format) or not (isinstance(continue_format, (str, LispString)) or callable(continue_format)):
         type_error(continue_format, "(OR STRING FUNCTION)", "\nwhen binding SB-KERNEL::CONTINUE-STRING")
-    _continuable(continue_format, make_condition(datum, arguments), arguments)
+    condition = datum if isinstance(datum, types.Condition) else make_condition(datum, arguments)
+    _continuable(continue_format, condition, arguments)
 
 
 def _continuable(continue_format, condition, arguments):
@@ -486,7 +487,8 @@ def package_does_not_exist(name, hint=None):
         (sym("RETRY"), lambda: find_package_or_error(name), "Retry finding the package."),
         (sym("USE-VALUE"), find_package_or_error, "Specify a different package", ask_value),
     ]
-    return restart_case(restarts, lambda: error(types.PackageDoesNotExist(name), hint=hint))
+    shown = symbol_name(name) if is_symbol(name) else name  # a symbol stands for its name
+    return restart_case(restarts, lambda: error(types.PackageDoesNotExist(shown), hint=hint))
 
 
 def program_error(control, *arguments):

@@ -12,10 +12,13 @@ from .dispatch.generic_functions import add_method, generic, remove_method
 
 
 class Hook:
-    """The hook ``name`` (``"PACKAGE::NAME"``). True when it has ``methods``; calling it runs them, the most specific first."""
+    """The hook ``name`` (``"PACKAGE::NAME"``). True when it has ``methods``; calling it runs them, the most specific first.
 
-    def __init__(self, name, lambda_list):
-        self.function = generic(name, lambda_list, combination="COMMON-LISP::HOOKS")
+    ordered: methods with a number behind their name run before the others, the lowest number first.
+    """
+
+    def __init__(self, name, lambda_list, *, ordered=False):
+        self.function = generic(name, lambda_list, combination="COMMON-LISP::ORDERED-HOOKS" if ordered else "COMMON-LISP::HOOKS")
         self.methods = self.function.methods  # that very list: to look at it is faster than to ask the hook whether it is true
         self.name = self.function.__lisp_name__
         self._added = {}

@@ -143,8 +143,8 @@ def _holds(facts):
 def _finish(trace, path):
     """The file is compiled: add the modules that its macros come from, and what these depend on."""
     trace.include_modules(path)
-    systems = sys.modules.get("cramhy_runtime.languages.commonlisp.systems.systems")
-    for file in systems.loaded_files() if systems is not None else ():
+    performing = sys.modules.get("cramhy_runtime.languages.commonlisp.systems.performing")
+    for file in performing.loaded_files() if performing is not None else ():
         trace.ask_path("file", file)
     trace.settle()
 

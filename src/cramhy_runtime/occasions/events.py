@@ -1,7 +1,8 @@
 """Events: when something happens in the world, all code that keeps beliefs about the world is told.
 
 ``(on-event event)`` is a hook: all methods for the event's class and the classes above it run, the most specific first, in the task that
-calls it, without a queue. ``(clear-belief)`` is the hook that makes all code forget its beliefs. Source: projection-and-events.md B1.
+calls it, without a queue. CRAM's branch devel numbers some behind their name: these run before all others, in that order.
+``(clear-belief)`` is the hook that makes all code forget its beliefs. Source: projection-and-events.md B1.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from cramhy_runtime.ground.dispatch.generic_functions import generic
 from ..utilities.small_functions import current_timestamp
 from . import symbols  # noqa: F401  the package must exist
 
-on_event = Hook("CRAM-OCCASIONS-EVENTS::ON-EVENT", "(event)")
+on_event = Hook("CRAM-OCCASIONS-EVENTS::ON-EVENT", "(event)", ordered=True)
 clear_belief = Hook("CRAM-OCCASIONS-EVENTS::CLEAR-BELIEF", "()")
 
 

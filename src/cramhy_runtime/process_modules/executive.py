@@ -145,6 +145,9 @@ def _perform_motion(designator):
 
 @generic_perform.method(ActionDesignator)
 def _perform_action(designator):
+    goal = desig_prop_value(designator, GOAL_KEY)
+    if isinstance(goal, Cons) and _goal_holds(goal):
+        return warn(SimpleWarning("Action goal `~a' already achieved.", goal))
     solution = try_reference_designator(designator)
     command = _command(designator, solution)
     if not isinstance(command, Symbol) or (isinstance(command.function, UndefinedFunction) and command.macro is None):
@@ -153,15 +156,10 @@ def _perform_action(designator):
         )
     by_keywords = _takes_properties(solution)
     call = _call_plan_with_properties if by_keywords else _call_plan
-    goal = desig_prop_value(designator, GOAL_KEY)
     if goal is None:
         return call(designator, solution)
     _check_goal(goal)
-    result = None
-    if _goal_holds(goal):
-        warn(SimpleWarning("Action goal `~a' already achieved.", goal))
-    else:
-        result = call(designator, solution)
+    result = call(designator, solution)
     if not _goal_holds(goal):
         if by_keywords:
             warn("Goal `~a' of action `~a' was not achieved.", goal, designator)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import cos, inf, sin
+from math import cos, hypot, inf, sin
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
@@ -89,6 +89,19 @@ class Joint:
     def clamped(self, value: float) -> float:
         """``value``, as near as the limits allow."""
         return min(max(value, self.lower), self.upper)
+
+    def placed(self, value: float = 0.0) -> Frame:
+        """Where the child is in the frame of the parent when the joint is at ``value``, in rad or m."""
+        position, rotation = self.frame.position, self.frame.rotation
+        length = hypot(*self.axis)
+        if not self.moves or not value or not length:
+            return self.frame
+        x, y, z = (part / length for part in self.axis)
+        if self.kind == "prismatic":
+            moved = multiplied(multiplied(rotation, (0.0, x * value, y * value, z * value)), inverse(rotation))[1:]
+            return Frame(tuple(here + by for here, by in zip(position, moved, strict=True)), rotation)  # type: ignore[arg-type]  # three
+        half = sin(value / 2)
+        return Frame(position, multiplied(rotation, (cos(value / 2), x * half, y * half, z * half)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,6 +190,19 @@ class Description:
             found.append(name)
             waiting += [joint.child for joint in reversed(self.joints_below[name])]
         return found
+
+
+def multiplied(first: Four, second: Four) -> Four:
+    """The product of two quaternions (w, x, y, z)."""
+    a, b, c, d = first
+    e, f, g, h = second
+    return (a * e - b * f - c * g - d * h, a * f + b * e + c * h - d * g, a * g - b * h + c * e + d * f, a * h + b * g - c * f + d * e)
+
+
+def inverse(rotation: Four) -> Four:
+    """The quaternion (w, x, y, z) of unit length that turns back."""
+    w, x, y, z = rotation
+    return (w, -x, -y, -z)
 
 
 def turned(roll: float, pitch: float, yaw: float) -> Four:

@@ -33,6 +33,9 @@ _REST_STEPS = 50
 _DEEP = 5e-3  # metres
 _BELOW_ALL = -1000.0  # metres
 _MOST_LIFTS = 200
+_ASIDE = [metres * np.array((np.cos(turn), np.sin(turn))) for metres in np.arange(0.01, 0.41, 0.01) for turn in np.arange(16) * np.pi / 8]
+_SAME_HEIGHT = 0.01  # metres
+_ROOM_FOR_A_FINGER = 0.03  # metres, between items that are parted
 _TOGETHER = 25  # steps that are computed in one call; what is at rest is at rest after two calls
 
 
@@ -241,12 +244,57 @@ class Scene:
             part.thing.placement = Placement(now[:3], now[3:])
 
     def free_all(self) -> list[tuple[Item, Item | Machine | None]]:
-        """Lift the free items out of what stands and they are inside of; the items that cannot be freed, each with what it is in.
+        """Lift the free items out of what stands and they are inside of, and part those that are inside of each other.
 
-        ``None`` is the floor.
+        Returns the items that cannot be freed, each with what it is in; ``None`` is the floor.
         """
-        stuck = [(part.thing, self._thing_of_geom[geom]) for part in self._free if (geom := self._lift(part)) is not None]
+        blockers = [(part, self._lift(part)) for part in self._free]
+        freed = [part for part, geom in blockers if geom is None]
+        for number, part in enumerate(freed):
+            self._part_from(part, [geom for other in freed[:number] for geom in other.geoms])
+        stuck = [(part.thing, self._thing_of_geom[geom]) for part, geom in blockers if geom is not None]
         return [(item, None if number < 0 else self.things[number]) for item, number in stuck]
+
+    def _part_from(self, part: Part, others: Sequence[int]) -> None:
+        """Put a free item that is inside of one of other geoms aside, to the nearest place with room between at which it stands as high.
+
+        An item for which there is no such place is left to the physics.
+        """
+        if not self._nearer(part, others, -_DEEP):
+            return
+        start = self.model.jnt_qposadr[self.model.body_jntadr[part.body]]
+        before, height = self.data.qpos[start : start + 2].copy(), self._height_below(part)
+        standing = np.flatnonzero((self.model.geom_contype == _STANDING) | self.is_plane)
+        for aside in _ASIDE:
+            self.data.qpos[start : start + 2] = before + aside
+            mujoco.mj_kinematics(self.model, self.data)
+            if (
+                abs(self._height_below(part) - height) < _SAME_HEIGHT
+                and not self._nearer(part, others, _ROOM_FOR_A_FINGER)
+                and not self._nearer(part, standing, -_DEEP)
+            ):
+                return
+        self.data.qpos[start : start + 2] = before
+        mujoco.mj_kinematics(self.model, self.data)
+
+    def _nearer(self, part: Part, others: Sequence[int] | np.ndarray, distance: float) -> bool:
+        """Whether an item is nearer than that to one of other geoms; a negative distance is how deep it is inside."""
+        if not len(others):
+            return False
+        lowest, highest = self.boxes()
+        mine = np.array(part.geoms)
+        near = self._near(lowest, highest, mine, max(distance, 0.0))[:, others]
+        return any(
+            mujoco.mj_geomDistance(self.model, self.data, int(mine[row]), int(others[column]), max(distance, 0.0), None) < distance
+            for row, column in zip(*np.nonzero(near), strict=True)
+        )
+
+    def _height_below(self, part: Part) -> float:
+        """How high the thing is that stands below the origin of an item."""
+        place = self.data.xpos[part.body].copy()
+        with self.without([free.thing for free in self._free], 5) as groups:
+            down = mujoco.mj_ray(self.model, self.data, place, np.array([0.0, 0.0, -1.0]), groups, 1, -1, np.zeros(1, np.int32))
+        return float(place[2] - down) if down >= 0 else -np.inf
 
     def _lift(self, part: Part) -> int | None:
         """Raise a free item that is inside of something that stands to where it is no more; a geom that it cannot get out of."""

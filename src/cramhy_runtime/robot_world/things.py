@@ -64,11 +64,12 @@ class Item(Thing):
 @dataclass
 class Grip:
     """That a link holds an item: where the item is in the frame of the link. loose: it does not keep the item from moving with another
-    link."""
+    link. grasp: how it is held, as a plan calls it."""
 
     link: str
     offset: Placement
     loose: bool = False
+    grasp: Hashable = None
 
 
 @dataclass(eq=False, repr=False)

@@ -189,10 +189,10 @@ class World:
 
     # ------------------------------------------------------------------------------------------------------------------ grips
 
-    def attach(self, name: Hashable, item: Hashable, link: str, loose: bool = False) -> None:
-        """Let a link of a machine hold an item from now on, as it is now. loose: another link decides where the item goes."""
+    def attach(self, name: Hashable, item: Hashable, link: str, loose: bool = False, grasp: Hashable = None) -> None:
+        """Let a link of a machine hold an item from now on, as it is now. loose, grasp: see `Grip`."""
         machine, held = self.machine(name), self.item(item)
-        machine.holds.setdefault(item, []).append(Grip(link, self.link(name, link).inverse() @ held.placement, loose))
+        machine.holds.setdefault(item, []).append(Grip(link, self.link(name, link).inverse() @ held.placement, loose, grasp))
         self._scene = None
         self._tell()
 
@@ -248,8 +248,8 @@ class World:
     def simulate(self, seconds: float, without: Hashable | None = None) -> float:
         """Let free items fall for so long, or until all are at rest; the seconds that it took.
 
-        An item that is inside of something that stands is lifted out of it first. One that cannot be, as in a wall, stays where it is;
-        `stuck` tells of it.
+        An item that is inside of something that stands is lifted out of it first, and of two that are inside of each other the later one is
+        put aside. One that cannot be lifted, as in a wall, stays where it is; `stuck` tells of it.
 
         without: the name of a machine that touches nothing meanwhile, as the fingers of a hand that has just let go.
         """

@@ -38,6 +38,8 @@ class Program:
     package = ""
     of_client = False
     """Whether a client of another process has started it."""
+    status = 0
+    """The exit status with which it ends: not 0 if it could not do its work."""
 
     def __init__(self, name: str | None = None, namespace: str = "/", arguments: Words = (), spins: bool = False, echo: Echo = None):
         self.graph = graph.active()

@@ -17,12 +17,14 @@ if TYPE_CHECKING:
     from ..ros.roscpp import Program
     from ..ros.signatures import Echo, Words
 
-_FRAMES, _TURTLES, _SHAPES = "tf.programs.frames", "tf.programs.turtles", "actionlib.shape_server"
+_FRAMES, _TURTLES, _ROBOTS, _SHAPES = "tf.programs.frames", "tf.programs.turtles", "tf.programs.robots", "actionlib.shape_server"
 _ARM, _BRICKS = ("robot_world.al5d.node", "Simulator"), "robot_world.al5d.clients"
 EXECUTABLES: dict[str, dict[str, tuple[str, str]]] = {
     "turtlesim": {name: (program.__module__.partition(".")[2], program.__name__) for name, program in PROGRAMS.items()},
     "turtle_actionlib": {"shape_server": (_SHAPES, "ShapeServer"), "shape_client": (_SHAPES, "ShapeClient")},
     "tf": {"static_transform_publisher": (_FRAMES, "StaticTransformPublisher"), "tf_echo": (_FRAMES, "TfEcho")},
+    "robot_state_publisher": dict.fromkeys(("robot_state_publisher", "state_publisher"), (_ROBOTS, "RobotStatePublisher")),
+    "joint_state_publisher": {"joint_state_publisher": (_ROBOTS, "JointStatePublisher")},
     "tf2_ros": {"static_transform_publisher": (_FRAMES, "Tf2StaticTransformPublisher")},
     "turtle_tf": {
         **dict.fromkeys(("turtle_tf_broadcaster", "turtle_tf_broadcaster.py"), (_TURTLES, "Broadcaster")),

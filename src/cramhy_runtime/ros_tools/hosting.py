@@ -124,7 +124,7 @@ class Host:
         name = program.node.name
 
         def echo(line):
-            self.log.send(self.line_type(name, ros_text(line), None))
+            self.log.send(self.line_type(name, ros_text(line), None, 0))
             if callable(before):
                 before(line)
             elif before is not None:
@@ -133,7 +133,7 @@ class Host:
         def ended():
             self._told.discard(program)
             if self.node.alive:
-                self.log.send(self.line_type(name, "", True))
+                self.log.send(self.line_type(name, "", True, program.status))
 
         program.echo = echo
         program.node.on_shutdown.append(ended)

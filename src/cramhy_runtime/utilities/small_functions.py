@@ -13,7 +13,7 @@ import re
 from cramhy_runtime import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.conditions import Error, SimpleStyleWarning, error, type_error, warn
-from cramhy_runtime.ground.data import MultipleValues, Symbol, list_from, one, python_list, truth
+from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, list_from, one, python_list, truth
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.equality import eql
 from cramhy_runtime.ground.functions import function_of, identity
@@ -156,11 +156,15 @@ def sanitize_filename(filename):
     return re.sub(r"[^a-zA-Z0-9_-]", "_", str(filename))
 
 
-def equalize_two_list_lengths(a, b):
-    """Both lists, padded with ``nil`` to the same length."""
-    left, right = python_list(a), python_list(b)
+def equalize_two_list_lengths(a, b, *, return_as_list=None):
+    """Both lists, padded with ``nil`` to the same length; what is not a list is a list of itself.
+
+    return_as_list: one list of both, in place of two values.
+    """
+    left, right = (python_list(part) if part is None or isinstance(part, Cons) else [part] for part in (a, b))
     size = max(len(left), len(right))
-    return MultipleValues((list_from(left + [None] * (size - len(left))), list_from(right + [None] * (size - len(right)))))
+    equalized = [list_from(part + [None] * (size - len(part))) for part in (left, right)]
+    return MultipleValues(tuple(equalized)) if return_as_list is None else list_from(equalized)
 
 
 def equalize_lists_of_lists_lengths(a, b):

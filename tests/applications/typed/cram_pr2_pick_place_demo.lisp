@@ -43,3 +43,6 @@
 
 (btr:joint-state (btr:get-environment-object) "sink_area_left_upper_drawer_main_joint")
 ;=> 0\.0d?0?
+
+(demo-hard-coded)
+;=> (?s)manipulation_pose_unreachable: .*0\.6000000.* is unreachable for EE\.

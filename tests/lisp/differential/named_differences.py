@@ -191,7 +191,7 @@ NAMED = [
             "class-of" in question and ("SB-KERNEL:" in theirs or "SIMPLE-CHARACTER-STRING" in theirs or "COMPLEX-" in theirs)
         ),
     ),
-    Named("are structures in SBCL", _are_structures),
+    Named("are not of the type `structure-object`", _are_structures),
     Named(
         "`defmethod` without a lambda list",
         lambda question, theirs, ours: bool(re.search(r"\(defmethod \S+( [^\s()]+)*\)", question)) and "PROGRAM-ERROR" in _types(ours),

@@ -7,6 +7,7 @@ import pytest
 from cramhy_runtime import kernel
 from cramhy_runtime.cli import launch
 from cramhy_runtime.ros import graph
+from cramhy_runtime.ros.messages import message_class_exact
 from cramhy_runtime.ros.services import Refusal
 from cramhy_runtime.ros_tools.hosting import Host
 
@@ -42,6 +43,17 @@ def test_a_brick_is_taken_away_from_another_terminal(run, table):
     table.spawn()
     assert run("kill_brick", "brick1") == ["Brick deleted successfully"] and not table.simulator.bricks
     assert run("kill_brick", "brick1") == ["Failed to call the service: Brick brick1 doesn't exist. On the table: no brick."]
+
+
+@pytest.mark.parametrize(
+    ("executable", "words", "status"),
+    [("spawn_brick", "-c red -n mine", 0), ("spawn_brick", "-c pink", 1), ("kill_brick", "brick9", 1), ("spawn_brick", "-c red -n a/b", 1)],
+)
+def test_the_exit_status_of_a_refusal_is_1(run, executable, words, status):
+    ended = []
+    graph.active().node("other_terminal").subscribe("/cramhy/program_log", message_class_exact("cramhy_msgs/ProgramLine"), ended.append)
+    run(executable, words)
+    assert [message.status for message in ended if message.ended] == [status]
 
 
 def test_a_program_that_has_done_its_work_has_left_the_graph(run):

@@ -19,7 +19,7 @@ from __future__ import annotations
 import weakref
 
 from ..classes import find_class_or_error, when_classes_change
-from ..conditions import SimpleError, SimpleProgramError, error, restart_case, wrong_argument_count
+from ..conditions import SimpleError, SimpleProgramError, error, program_error, restart_case, wrong_argument_count
 from ..condition_types import shown_with
 from ..data import UNSUPPLIED, Cons, Symbol, UndefinedFunction, lisp_list, list_from, python_list
 from ..equality import eql_key
@@ -390,8 +390,10 @@ def ensure_generic_function(name, lambda_list=None, *, method_combination=None, 
         function.combination, function.combination_options = find_combination(options[0]), tuple(options[1:])
         function.forget()
     if argument_precedence_order is not None:
-        names = function.shape.names
-        function.precedence = [names.index(parameter) for parameter in python_list(argument_precedence_order)]
+        names, given = function.shape.names, python_list(argument_precedence_order)
+        if sorted(map(id, given)) != sorted(map(id, names)):
+            program_error("The :ARGUMENT-PRECEDENCE-ORDER ~S does not name each of ~S once.", argument_precedence_order, list_from(names))
+        function.precedence = [names.index(parameter) for parameter in given]
         function.forget()
     if documentation is not None:
         function.__doc__ = documentation
@@ -422,17 +424,7 @@ def define_generic(name, lambda_list=None, *, method_combination=None, argument_
     else:
         for method in function.from_defgeneric:
             remove_method(function, method)
-        shape = Shape(lambda_list)
-        if any(not shape.agrees_with(method.shape) for method in function.methods):
-            error(
-                SimpleError(
-                    "New lambda-list ~S is incompatible with existing methods of ~S.~%Old lambda-list ~S",
-                    lambda_list,
-                    function,
-                    function.lambda_list,
-                )
-            )
-        function.lambda_list, function.shape = lambda_list, shape
+        set_lambda_list(function, lambda_list)
     function.combination, function.combination_options, function.precedence = STANDARD, (), None
     function.from_defgeneric = []
     ensure_generic_function(
@@ -445,6 +437,16 @@ def define_generic(name, lambda_list=None, *, method_combination=None, argument_
         )
     function.forget()
     return function
+
+
+def set_lambda_list(function, lambda_list):
+    """Give a generic function another lambda list; one that its methods do not agree with is an error."""
+    shape = Shape(lambda_list)
+    if any(not shape.agrees_with(method.shape) for method in function.methods):
+        text = "New lambda-list ~S is incompatible with existing methods of ~S.~%Old lambda-list ~S"
+        error(SimpleError(text, lambda_list, function, function.lambda_list))
+    function.lambda_list, function.shape = lambda_list, shape
+    function.forget()
 
 
 def specializer_of(designator):
@@ -496,6 +498,7 @@ def add_method(
     per_class=False,
     documentation=None,
     user=True,
+    shape=None,
 ):
     """Add a method, replacing one with the same qualifiers and specializers; returns the `Method`.
 
@@ -503,7 +506,7 @@ def add_method(
     classes and returns the function to call, which may know their slots.
     """
     specializers = [specializer_of(specializer) for specializer in python_list(specializers)]
-    shape = Shape(lambda_list) if lambda_list is not None else generic_function.shape
+    shape = Shape(lambda_list) if lambda_list is not None else shape or generic_function.shape
     method = Method(
         generic_function,
         tuple(python_list(qualifiers)),

@@ -84,6 +84,7 @@ def fill():
             function = sym(lisp_name).setf_function = lispify(setter)
             if not hasattr(function, "__lisp_name__"):
                 function.__lisp_name__ = lisp_list(sym("SETF"), sym(lisp_name))
+    _module("objects.protocol").open_functions()
     for name in ("printer.clos_printing", "printer.file_printers"):  # teach the printer about classes, pathnames, streams
         _module(name)
     for name, names in HELPERS.items():

@@ -1,11 +1,11 @@
 ;;;; CFFI: cramhy calls no functions of C. A file that declares some loads, with its types, libraries and functions; a declared function
-;;;; that is called is an error that names it, and so is all that touches foreign memory.
+;;;; that is called is an error that names it, and so is all that touches foreign memory, apart from strings.
 
 (defpackage #:cffi
   (:use #:common-lisp)
   (:nicknames #:cffi-sys)
   (:export
-   #:*darwin-framework-directories* #:*default-foreign-encoding* #:*foreign-library-directories* #:callback #:close-foreign-library
+   #:*built-in-float-types* #:*built-in-integer-types* #:*darwin-framework-directories* #:*default-foreign-encoding* #:*foreign-library-directories* #:callback #:close-foreign-library
    #:convert-from-foreign #:convert-to-foreign #:defbitfield #:defcallback #:defcenum #:defcfun #:defcstruct #:defctype #:defcunion
    #:defcvar #:define-c-struct-wrapper #:define-foreign-library #:define-foreign-type #:define-parse-method #:defcfun-helper-forms
    #:expand-from-foreign #:expand-to-foreign #:foreign-alloc #:foreign-bitfield-symbols #:foreign-bitfield-value
@@ -16,6 +16,7 @@
    #:free-translated-object #:get-callback #:get-var-pointer #:inc-pointer #:lisp-string-to-foreign #:list-foreign-libraries
    #:load-foreign-library #:load-foreign-library-error #:make-pointer #:make-shareable-byte-vector #:mem-aptr #:mem-aref #:mem-ref
    #:null-pointer #:null-pointer-p #:pointer-address #:pointer-eq #:pointerp #:translate-camelcase-name #:translate-from-foreign
+   #:translate-into-foreign-memory
    #:translate-name-from-foreign #:translate-name-to-foreign #:translate-to-foreign #:use-foreign-library #:with-foreign-array
    #:with-foreign-object #:with-foreign-objects #:with-foreign-pointer #:with-foreign-pointer-as-string #:with-foreign-slots
    #:with-foreign-string #:with-foreign-strings #:with-pointer-to-vector-data))
@@ -99,6 +100,7 @@
   `',name)
 
 (defgeneric translate-to-foreign (value type))
+(defgeneric translate-into-foreign-memory (value type pointer))
 (defgeneric translate-from-foreign (value type))
 (defgeneric free-translated-object (value type param))
 (defgeneric expand-to-foreign (value type))
@@ -200,12 +202,78 @@
 (defmacro callback (name)
   `(refuse 'callback ',name))
 
+;;; ------------------------------------------------------------------------------------------------------------- sizes
+
+(defvar *sizes*
+  '((:char . 1) (:signed-char . 1) (:unsigned-char . 1) (:uchar . 1) (:short . 2) (:unsigned-short . 2) (:ushort . 2) (:int . 4)
+    (:unsigned-int . 4) (:uint . 4) (:long . 8) (:unsigned-long . 8) (:ulong . 8) (:long-long . 8) (:llong . 8) (:unsigned-long-long . 8)
+    (:ullong . 8) (:int8 . 1) (:uint8 . 1) (:int16 . 2) (:uint16 . 2) (:int32 . 4) (:uint32 . 4) (:int64 . 8) (:uint64 . 8)
+    (:float . 4) (:double . 8) (:pointer . 8) (:size . 8) (:void . 0))
+  "The bytes of C's own types on a machine of 64 bits, under Linux.")
+(defvar *built-in-float-types* '(:float :double))
+(defvar *built-in-integer-types* (set-difference (mapcar #'car *sizes*) '(:float :double :pointer :size :void)))
+
+(defgeneric foreign-type-size (type)
+  (:documentation "The bytes of TYPE. Of a structure, whose fields are not kept, it is refused.")
+  (:method (type) (or (cdr (assoc type *sizes*)) (refuse 'foreign-type-size type))))
+
+(defgeneric foreign-type-alignment (type)
+  (:documentation "The bytes that TYPE is aligned to: its size.")
+  (:method (type) (foreign-type-size type)))
+
 ;;; ------------------------------------------------------------------------------------------------------------ memory
 
-(defun pointerp (object)
-  "Nothing is a foreign pointer."
-  (declare (ignore object))
+;;; Pointers are numbers with a class. The memory of C cannot be had, but for strings that were put into it here.
+
+(defvar *next-address* 4096)
+
+(defstruct (foreign-pointer (:constructor make-pointer (address)) (:constructor pointer-to (octets address)) (:predicate pointerp)
+                            (:copier nil) (:conc-name pointer-))
+  "A pointer of C's. ADDRESS: its number, 0 of the null pointer. OCTETS: those of a string with the zero at their end, or nil."
+  (address 0 :type (unsigned-byte 64) :read-only t)
+  (octets nil))
+
+(defmethod print-object ((pointer foreign-pointer) stream)
+  (print-unreadable-object (pointer stream :type t)
+    (cond ((null-pointer-p pointer) (write-string "null" stream))
+          ((pointer-octets pointer) (format stream "to ~D octet~:P" (length (pointer-octets pointer))))
+          (t (format stream "~(~X~)" (pointer-address pointer))))))
+
+(defun null-pointer ()
+  "The pointer to nothing."
+  (make-pointer 0))
+
+(defun null-pointer-p (pointer)
+  "Whether POINTER points to nothing."
+  (zerop (pointer-address pointer)))
+
+(defun pointer-eq (one other)
+  "Whether two pointers are the same address."
+  (= (pointer-address one) (pointer-address other)))
+
+(defun inc-pointer (pointer bytes)
+  "The pointer that is so many BYTES behind POINTER."
+  (let ((octets (pointer-octets pointer)))
+    (pointer-to (and octets (<= 0 bytes (length octets)) (subseq octets bytes)) (+ (pointer-address pointer) bytes))))
+
+(defun foreign-string-alloc (string &key (encoding *default-foreign-encoding*) (null-terminated-p t) (start 0) end)
+  "A pointer to the octets of STRING."
+  (let ((octets (sb-ext:string-to-octets string :external-format encoding :start start :end end)))
+    (pointer-to (if null-terminated-p (concatenate '(vector (unsigned-byte 8)) octets #(0)) octets)
+                (shiftf *next-address* (+ *next-address* (* 16 (ceiling (1+ (length octets)) 16)))))))
+
+(defun foreign-string-free (pointer)
+  (setf (pointer-octets pointer) (vector 0))
   nil)
+
+(defun foreign-string-to-lisp (pointer &key (offset 0) count max-chars (encoding *default-foreign-encoding*))
+  "The string at POINTER, up to its zero, and the number of octets that it takes; nil for the null pointer."
+  (let ((octets (pointer-octets pointer)))
+    (unless (or octets (null-pointer-p pointer)) (refuse 'foreign-string-to-lisp))
+    (when octets
+      (let* ((end (if count (+ offset count) (or (position 0 octets :start offset) (length octets))))
+             (text (sb-ext:octets-to-string (coerce (subseq octets offset end) '(vector (unsigned-byte 8))) :external-format encoding)))
+        (values (if max-chars (subseq text 0 (min max-chars (length text))) text) (- end offset))))))
 
 (macrolet ((refused (&rest names)
              `(progn ,@(loop for name in names
@@ -214,10 +282,8 @@
                                         (declare (ignore arguments))
                                         (refuse ',name))))))
   (refused convert-from-foreign convert-to-foreign free-converted-object foreign-alloc foreign-free foreign-slot-names
-           foreign-slot-offset foreign-slot-pointer foreign-slot-value foreign-string-alloc foreign-string-free
-           foreign-string-to-lisp foreign-symbol-pointer foreign-type-alignment foreign-type-size get-callback get-var-pointer
-           inc-pointer lisp-string-to-foreign make-pointer make-shareable-byte-vector mem-aptr mem-aref mem-ref null-pointer
-           null-pointer-p pointer-address pointer-eq))
+           foreign-slot-offset foreign-slot-pointer foreign-slot-value foreign-symbol-pointer get-callback get-var-pointer
+           lisp-string-to-foreign make-shareable-byte-vector mem-aptr mem-aref mem-ref))
 
 (defun refused-body (operator variables body)
   "A form that refuses OPERATOR, and in which the compiler sees the BODY and its VARIABLES."

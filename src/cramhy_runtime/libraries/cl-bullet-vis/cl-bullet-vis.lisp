@@ -3,9 +3,14 @@
 (defpackage #:cl-bullet-vis
   (:nicknames #:bt-vis)
   (:use #:common-lisp #:cl-bullet)
-  (:export #:bullet-world-window #:close-window #:camera-transform #:gl-objects))
+  (:export #:bullet-world-window #:close-window #:camera-transform #:gl-objects #:*background-color* #:collision-shape-color))
 
 (in-package #:cl-bullet-vis)
+
+(defvar *background-color* '(0.8 0.8 0.8 1.0) "The colour behind a world, in a window; the page has its own.")
+
+(defgeneric collision-shape-color (shape)
+  (:documentation "The colour of the shape of a body: red, green, blue and how little is seen through it, from 0 to 1."))
 
 (defclass bullet-world-window ()
   ((world :initarg :world :reader world)

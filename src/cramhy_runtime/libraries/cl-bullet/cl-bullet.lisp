@@ -4,7 +4,8 @@
   (:use #:common-lisp #:cffi #:cffi-ros-utils)
   (:nicknames #:bullet)
   (:export #:bounding-box #:make-bounding-box #:bounding-box-center #:bounding-box-dimensions #:aabb #:pose #:points
-           #:bt-world #:copy-world #:step-simulation))
+           #:bt-world #:copy-world #:step-simulation
+           #:rigid-body #:name #:mass #:collision-shape #:linear-velocity #:angular-velocity #:clear-forces))
 
 (in-package #:cl-bullet)
 
@@ -39,4 +40,46 @@
 (defun step-simulation (world seconds)
   "Let what is free in WORLD fall for SECONDS."
   (robot-world:settle world seconds)
+  nil)
+
+;;; Bodies. CRAM-BULLET-REASONING says which there are: items, and links of robots. A body is its own shape.
+
+(defgeneric name (thing)
+  (:documentation "What THING is called."))
+
+(defgeneric mass (body)
+  (:documentation "The kilograms of a body; 0 of one that does not fall."))
+
+(defun collision-shape (body)
+  "The shape of BODY, for CL-BULLET-VIS:COLLISION-SHAPE-COLOR."
+  body)
+
+;;; What falls comes to rest before anybody looks, so no body moves and no force acts on it.
+
+(defun linear-velocity (body)
+  "The velocity of BODY, a 3d-vector in metres a second: 0, since what falls comes to rest before anybody looks."
+  (declare (ignore body))
+  (cl-transforms:make-identity-vector))
+
+(defun angular-velocity (body)
+  "How fast BODY turns, a 3d-vector in radians a second: 0, as `linear-velocity'."
+  (declare (ignore body))
+  (cl-transforms:make-identity-vector))
+
+(defun rest-only (velocity)
+  (if (zerop (cl-transforms:v-norm velocity))
+      velocity
+      (error "A body of cramhy's world rests until the world is simulated: its velocity can be set to 0 only.")))
+
+(defun (setf linear-velocity) (new-value body)
+  (declare (ignore body))
+  (rest-only new-value))
+
+(defun (setf angular-velocity) (new-value body)
+  (declare (ignore body))
+  (rest-only new-value))
+
+(defun clear-forces (body)
+  "Nothing: no force acts on BODY for longer than a simulation."
+  (declare (ignore body))
   nil)

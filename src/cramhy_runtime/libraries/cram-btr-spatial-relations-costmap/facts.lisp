@@ -30,7 +30,7 @@
     (once (thing-at ?designator :on ?thing))
     (what-for ?designator ?for)
     (once (location-costmap:costmap ?costmap))
-    (location-costmap:costmap-add-function on-bounding-box (make-box-cost ?thing) ?costmap)
+    (location-costmap:costmap-add-function on-bounding-box (make-surface-cost ?thing ?for) ?costmap)
     (location-costmap:costmap-add-height-generator (make-height-on ?thing ?for) ?costmap))
 
   (<- (location-costmap:desig-costmap ?designator ?costmap)
@@ -67,7 +67,7 @@
     (what-for ?designator ?for)
     (once (location-costmap:costmap ?costmap))
     (location-costmap:costmap-add-function potential-field (make-relation-cost ?thing ?relation) ?costmap)
-    (location-costmap:costmap-add-function supporting-object (make-supporter-cost ?thing) ?costmap)
+    (location-costmap:costmap-add-function supporting-object (make-supporter-cost ?thing ?for) ?costmap)
     (location-costmap:costmap-add-height-generator (make-height-beside ?thing ?for) ?costmap))
 
   (<- (location-costmap:desig-costmap ?designator ?costmap)
@@ -82,7 +82,7 @@
     (instance-of ring-generator ?inner)
     (location-costmap:costmap-add-function ?inner (location-costmap:make-range-cost-function ?pose ?least :invert t) ?costmap)
     (location-costmap:costmap-add-function near-distribution (location-costmap:make-location-cost-function ?pose 1.0) ?costmap)
-    (location-costmap:costmap-add-function supporting-object (make-supporter-cost ?thing) ?costmap)
+    (location-costmap:costmap-add-function supporting-object (make-supporter-cost ?thing ?for) ?costmap)
     (location-costmap:costmap-add-height-generator (make-height-beside ?thing ?for) ?costmap))
 
   ;; Setting a table.

@@ -11,6 +11,17 @@
   "1 above or in THING."
   (robot-world:make-boxes-cost (list (box-on-floor thing))))
 
+(defparameter *rim* 0.06
+  "How far from the edge of furniture the middle of a thing is put of which it is not known how large it is, metres.")
+
+(defun make-surface-cost (thing for)
+  "1 above THING, where FOR does not stand out over its edge; everywhere above it when it is not furniture, or less than four rims wide."
+  (destructuring-bind (middle-x middle-y length-x length-y) (box-on-floor thing)
+    (let* ((lengths (lengths-of for))
+           (rim (if lengths (/ (size-on-plane (type-of-designator for) lengths) 2) *rim*)))
+      (flet ((inside (length) (if (and (furniture-p thing) (> length (* 4 rim))) (- length (* 2 rim)) length)))
+        (robot-world:make-boxes-cost (list (list middle-x middle-y (inside length-x) (inside length-y))))))))
+
 (defun make-free-space-cost (padding)
   "0 where the furniture is, and up to PADDING metres around each of its links."
   (let ((furniture (furniture)))
@@ -49,10 +60,10 @@
           (:right-of (list dy (- dx))))
       (robot-world:make-direction-cost (cl-transforms:x (thing-center thing)) (cl-transforms:y (thing-center thing)) x y))))
 
-(defun make-supporter-cost (thing)
-  "1 above what THING stands on; everywhere, when it stands on no furniture."
+(defun make-supporter-cost (thing for)
+  "1 above what THING stands on, where FOR does not stand out over its edge; everywhere, when it stands on no furniture."
   (let ((supporter (supporter-of thing)))
-    (if supporter (make-box-cost supporter) (robot-world:make-boxes-cost '((0 0 1000 1000))))))
+    (if supporter (make-surface-cost supporter for) (robot-world:make-boxes-cost '((0 0 1000 1000))))))
 
 (defun ring (relation thing for)
   "A list of the smallest and the largest distance of what is :NEAR to, or :FAR-FROM, THING; FOR is put there."

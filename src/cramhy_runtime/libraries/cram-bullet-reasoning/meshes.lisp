@@ -42,7 +42,8 @@ only files that end so; by default STL, Collada and OBJ. The list of the names, 
               (loop for (name file) in models
                     when (mesh-file-p file extension)
                       collect (note-mesh name (format nil "package://~a/~a/~a" ros-package directory file)))
-              (error "There is no ROS package ~a. ROS_PACKAGE_PATH names the folders in which packages are looked for." ros-package))))))
+              (warn "There is no ROS package ~a, so its meshes are not known. ROS_PACKAGE_PATH names the folders in which packages are looked for."
+                    ros-package))))))
 
 (defun file-of-mesh (name)
   "The path of the file for the mesh NAME, nil when there is none."

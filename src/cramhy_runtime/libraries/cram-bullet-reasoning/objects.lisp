@@ -125,12 +125,28 @@
 
 ;;; Sizes.
 
-(defun calculate-bb-dims (object)
-  "The lengths of the box around OBJECT when it is not turned, a 3d-vector."
-  (let* ((alone (robot-world:copy-world (robot-world:thing-world object)))
-         (copy (object alone (name object))))
-    (setf (pose copy) (make-identity-pose))
+(defun calculate-bb-dims (object &key initial-pose)
+  "The lengths of the box around OBJECT, an object or a body, when it is not turned, a 3d-vector. With CRAM-TF of the branch devel, and
+unless INITIAL-POSE is true, it lies on the side on which it lies now."
+  (let* ((aligned (find-symbol "MAP-AXIS-ALIGNED-ORIENTATION" '#:cram-tf))
+         (copy (in-a-copy object (robot-world:copy-world (world-of-body object)))))
+    (setf (pose-of-whole copy)
+          (make-pose (make-identity-vector)
+                     (if (and aligned (fboundp aligned) (not initial-pose))
+                         (funcall aligned (orientation (pose object)))
+                         (make-identity-rotation))))
     (bounding-box-dimensions (aabb copy))))
+
+(defgeneric world-of-body (object)
+  (:method ((object object)) (robot-world:thing-world object)))
+
+(defgeneric in-a-copy (object world)
+  (:documentation "What OBJECT is in WORLD, a copy of its own.")
+  (:method ((object object) world) (object world (name object))))
+
+(defgeneric (setf pose-of-whole) (new-value object)
+  (:documentation "Put OBJECT somewhere, and with a link of a robot the whole robot.")
+  (:method (new-value (object object)) (setf (pose object) new-value)))
 
 (defun item-dimensions (item-or-type)
   "The lengths of the box around an item, or around an object of a type, a 3d-vector."
@@ -188,6 +204,12 @@
    (link :initarg :link :initform nil :reader body-link))
   (:documentation "An item, or a link of a robot."))
 
+(defmethod mass ((body rigid-body))
+  (if (body-link body) 0 (robot-world:thing-mass (body-object body))))
+
+(defmethod collision-shape-color ((body rigid-body))
+  (robot-world:thing-color (body-object body)))
+
 (defmethod pose ((body rigid-body))
   (if (body-link body)
       (link-pose (body-object body) (body-link body))
@@ -197,6 +219,17 @@
   (if (body-link body)
       (setf (link-pose (body-object body) (body-link body)) new-value)
       (setf (pose (body-object body)) new-value)))
+
+(defmethod world-of-body ((body rigid-body))
+  (robot-world:thing-world (body-object body)))
+
+(defmethod in-a-copy ((body rigid-body) world)
+  (make-instance 'rigid-body :name (name body) :object (object world (name (body-object body))) :link (body-link body)))
+
+(defmethod (setf pose-of-whole) (new-value (body rigid-body))
+  (let ((to-root (transform* (transform-inv (pose->transform (pose body))) (pose->transform (pose (body-object body))))))
+    (setf (pose (body-object body)) (transform->pose (transform* (pose->transform new-value) to-root)))
+    new-value))
 
 (defmethod aabb ((body rigid-body))
   (if (body-link body)

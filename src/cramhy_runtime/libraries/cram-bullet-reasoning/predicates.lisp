@@ -157,6 +157,10 @@
     (lisp-fun item-types ?object ?types)
     (member ?type ?types))
 
+  (<- (item ?world ?name)
+    (%object ?world ?name ?object)
+    (lisp-type ?object item))
+
   (<- (object-type ?world ?name ?type)
     (item-type ?world ?name ?type))
 
@@ -178,6 +182,9 @@
 
   (<- (pose ?world ?name ?pose)
     (object-pose ?world ?name ?pose))
+
+  (<- (%pose ?object ?pose)
+    (lisp-fun pose ?object ?pose))
 
   (<- (pose ?world ?name ?position ?orientation)
     (object-pose ?world ?name ?pose)
@@ -251,7 +258,7 @@
     (lisp-fun set-robot-state-from-joints ?joint-states ?robot ?_)
     (forall (contact ?copy ?robot-name ?name ?link)
             (or (attached ?copy ?robot-name ?_ ?name)
-                (cram-robot-interfaces:gripper-link ?robot-name ?_ ?link))))
+                (link-of-hand ?robot-name ?link))))
 
   (<- (stable ?world ?name)
     (%object ?world ?name ?object)
@@ -355,15 +362,20 @@
   (<- (joint-state ?world ?robot ?joint ?state)
     (%object ?world ?robot ?object)
     (lisp-type ?object robot-object)
-    (lisp-fun joint-states ?object ?states)
+    (lisp-fun joint-list ?object ?states)
     (member (?joint . ?state) ?states))
 
   (<- (attached ?world ?robot ?link ?name)
+    (attached ?world ?robot ?link ?name ?_))
+
+  (<- (attached ?world ?robot ?link ?name ?grasp)
     (%object ?world ?robot ?object)
     (lisp-type ?object robot-object)
     (lisp-fun attached-objects ?object ?attached)
-    (member (?name . ?links) ?attached)
-    (member ?link ?links)))
+    (member (?name . ?_) ?attached)
+    (%object ?world ?name ?item)
+    (lisp-fun robot-world:grips ?object ?item ?grips)
+    (member (?link ?_ ?grasp) ?grips)))
 
 (defun point-head (robot pan-joint pan tilt-joint tilt)
   (set-robot-state-from-joints `((,pan-joint ,pan) (,tilt-joint ,tilt)) robot))
@@ -371,8 +383,7 @@
 (def-fact-group bullet-heads (head-pointing-at)
   (<- (head-pointing-at ?world ?robot ?pose)
     (%object ?world ?robot ?object)
-    (robot-pan-tilt-links ?robot ?pan-link ?tilt-link)
-    (robot-pan-tilt-joints ?robot ?pan-joint ?tilt-joint)
+    (%neck ?robot ?pan-link ?tilt-link ?pan-joint ?tilt-joint)
     (lisp-fun calculate-pan-tilt ?object ?pan-link ?tilt-link ?pose (?pan ?tilt))
     (lisp-fun point-head ?object ?pan-joint ?pan ?tilt-joint ?tilt ?)))
 

@@ -54,7 +54,7 @@ is no posture."
 (def-fact-group reachability (object-grasp valid-grasp grasp side reachable point-reachable pose-reachable blocking)
   (<- (object-grasp ?world ?object ?grasp (?side))
     (item-type ?world ?object ?type)
-    (cram-object-interfaces:object-type-grasp ?type ?grasp)
+    (%grasp-of-type ?type ?grasp)
     (robot ?robot)
     (arm ?robot ?side))
 

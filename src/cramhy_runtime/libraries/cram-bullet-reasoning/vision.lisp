@@ -76,9 +76,9 @@
   (declare (ignore world))
   nil)
 
-(defgeneric add-vis-axis-object (object &optional length)
-  (:documentation "Nothing: the page shows the frames of objects.")
-  (:method (object &optional (length 0.30)) (declare (ignore object length)) nil))
+(defgeneric add-vis-axis-object (object &rest options)
+  (:documentation "Nothing: the page shows the frames of objects. OPTIONS: a length, or :LENGTH, :WIDTH and :ID.")
+  (:method (object &rest options) (declare (ignore object options)) nil))
 
 (defun remove-vis-axis-object ()
   "Nothing is shown."
@@ -94,6 +94,7 @@
   (declare (ignore pose))
   nil)
 
-(defun clear-costmap-vis-object ()
+(defun clear-costmap-vis-object (&key (costmap t) (sample t) (axes t))
   "Nothing is shown."
+  (declare (ignore costmap sample axes))
   nil)

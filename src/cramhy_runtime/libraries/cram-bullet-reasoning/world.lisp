@@ -35,7 +35,7 @@
   (loop for thing in (robot-world:things world)
         collect (list (robot-world:thing-name thing)
                       (robot-world:thing-pose thing)
-                      (when (typep thing 'robot-object) (joint-states thing)))))
+                      (when (typep thing 'robot-object) (joint-list thing)))))
 
 (defun restore-world-state (state world)
   "Put the things in WORLD where STATE, of `get-state', says."

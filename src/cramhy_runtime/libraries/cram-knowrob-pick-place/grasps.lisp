@@ -47,7 +47,8 @@ gripper, and what is added to it before the grasp, shortly before it, and while 
   (:back *back-grasp-rotation* (0.01 0 0) (-0.15 0 0.15) (-0.15 0 0) (0 0 0.15))
   (:front *front-grasp-rotation* (-0.01 0 0) (0.15 0 0.15) (0.15 0 0) (0 0 0.15))
   (:left-side *left-side-grasp-rotation* (0 -0.01 0) (0 0.15 0.15) (0 0.15 0) (0 0 0.15))
-  (:right-side *right-side-grasp-rotation* (0 0.01 0) (0 -0.15 0.15) (0 -0.15 0) (0 0 0.15)))
+  (:right-side *right-side-grasp-rotation* (0 0.01 0) (0 -0.15 0.15) (0 -0.15 0) (0 0 0.15))
+  (:top *top-across-x-grasp-rotation* (0 0 0.05) (0 0 0.15) (0 0 0.15) (0 0 0.15))) ; not in the original, for what stands among others
 
 (define-grasps (:cereal :breakfast-cereal) (:left :right)
   (:back *back-grasp-rotation* (-0.03 0 0.04) (-0.15 0 0.15) (-0.15 0 0) (0 0 0.15))

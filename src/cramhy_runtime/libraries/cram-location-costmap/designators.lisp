@@ -17,6 +17,21 @@
           (when solution
             (setf (gethash first *costmaps*) (var-value '?costmap solution)))))))
 
+(defun reset-costmap-cache ()
+  "Forget the costmaps of all designators, so that their rules are asked anew."
+  (clrhash *costmaps*))
+
+(defun get-cached-costmap (designator)
+  "See `designator-costmap'."
+  (designator-costmap designator))
+
+(defun get-cached-costmap-maxvalue (costmap)
+  "The greatest value of COSTMAP."
+  (%map-maximum costmap))
+
+(defmethod desig:reset :after ((designator location-designator))
+  (remhash (first-desig designator) *costmaps*))
+
 (defun location-costmap-generator (designator)
   "Poses drawn from the costmap of DESIGNATOR, without end; none without a costmap, or from one that is 0 everywhere."
   (let ((costmap (designator-costmap designator)))
@@ -53,7 +68,7 @@ generators know."
                    (x (x place)) (y (y place)))
               (if (and (> (/ (get-map-value costmap x y) (%map-maximum costmap)) *costmap-valid-solution-threshold*)
                        (or (not (%has-height-generators costmap))
-                           (some (lambda (height) (<= (abs (- (z place) height)) 0.001)) (%heights-at costmap x y))))
+                           (some (lambda (height) (<= (abs (- (z place) height)) *height-tolerance*)) (%heights-at costmap x y))))
                   :accept
                   :reject))
           (no-cost-functions-registered () :unknown)

@@ -7,9 +7,11 @@
   (<- (desig-costmap ?designator ?costmap) (fail)))
 
 (defun costmap-metadata ()
-  "The initargs of a costmap by the facts of the application: (:width w :height h :origin-x x :origin-y y :resolution r)."
+  "The initargs of a costmap by the facts of the application: (:width w :height h :origin-x x :origin-y y :resolution r). In the branch
+devel of CRAM the facts name the environment first, as in (costmap-size :iai-kitchen 12 12)."
   (flet ((fact (name &rest variables)
-           (let ((solution (lazy-car (prolog (cons name variables)))))
+           (let ((solution (or (lazy-car (prolog (cons name variables)))
+                               (fact-of-environment name variables))))
              (unless solution
                (error "No fact tells the ~(~A~). An application says it in a fact group: ~
                        (def-fact-group costmap-metadata (costmap-size costmap-origin costmap-resolution) ~
@@ -19,6 +21,14 @@
     (destructuring-bind (width height) (fact 'costmap-size '?width '?height)
       (destructuring-bind (origin-x origin-y) (fact 'costmap-origin '?x '?y)
         (%check-metadata width height origin-x origin-y (first (fact 'costmap-resolution '?resolution)))))))
+
+(defun fact-of-environment (name variables)
+  "The first solution of the goal NAME about the environment that CRAM-ROBOT-INTERFACES knows, or about any."
+  (let* ((asked (and (find-package '#:cram-robot-interfaces) (find-symbol "GET-ENVIRONMENT-NAME" '#:cram-robot-interfaces)))
+         (environment (or (and asked (fboundp asked) (ignore-errors (funcall asked))) '?_))
+         (solution (lazy-car (prolog (list* name environment variables)))))
+    (when solution (setf *height-tolerance* 0.01))
+    solution))
 
 (defun new-costmap ()
   (apply #'make-instance 'location-costmap (costmap-metadata)))

@@ -19,7 +19,8 @@
    ;; functions for them
    #:make-gauss-cost-function #:make-location-cost-function #:make-range-cost-function #:make-axis-boundary-cost-function
    #:make-occupancy-grid-cost-function #:make-padded-costmap-cost-function #:make-matrix-cost-function
-   #:make-constant-height-function #:make-orientation-generator #:make-angle-to-point-generator
+   #:make-constant-height-function #:make-orientation-generator #:make-angle-to-point-generator #:angle-to-point-direction
+   #:generate-height
    ;; statistics
    #:occupancy-grid-mean #:occupancy-grid-covariance #:2d-cov #:points-mean #:points-cov #:2d-pose-covariance
    ;; messages
@@ -32,9 +33,9 @@
    ;; settings
    #:costmap-size #:costmap-origin #:costmap-resolution #:costmap-padding #:costmap-manipulation-padding #:costmap-in-reach-distance
    #:costmap-in-reach-padding #:costmap-reach-minimal-distance #:visibility-costmap-size #:orientation-samples
-   #:orientation-sample-step
+   #:orientation-sample-step #:reachability-orientation-offset #:visibility-orientation-offset
    ;; designators
-   #:*costmap-valid-solution-threshold*))
+   #:*costmap-valid-solution-threshold* #:reset-costmap-cache))
 
 (in-package #:cram-location-costmap)
 

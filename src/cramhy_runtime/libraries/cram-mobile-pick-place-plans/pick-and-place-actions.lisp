@@ -51,6 +51,15 @@
    transform :rotation (cl-transforms:q* (cl-transforms:axis-angle->quaternion (cl-transforms:make-3d-vector 0 0 1) (* quarters pi 0.5))
                                          (cl-transforms:rotation transform))))
 
+(defparameter *taken-by-the-rim* '(:bowl)
+  "Types of round things that a hand takes by their rim, on whichever side.")
+
+(defun transforms-to-take (object-type transform)
+  "TRANSFORM; of what is taken by its rim also the quarter turns of it, which put the hand on another side."
+  (cons transform
+        (when (member object-type *taken-by-the-rim*)
+          (loop for quarters from 1 to 3 collect (turned transform quarters)))))
+
 (defun transforms-to-place (grasp arm object-name object-type transform)
   "TRANSFORM; where that is out of reach, and the orientation of such objects does not matter, first those of its turns that are reached."
   (flet ((reached (transform) (grasp-reached-p grasp arm object-name object-type transform #'fourth)))
@@ -75,8 +84,10 @@
     (desig:current-designator ?object ?current-object)
     (spec:property ?current-object (:type ?object-type))
     (spec:property ?current-object (:name ?object-name))
-    (lisp-fun obj-int:get-object-transform ?current-object ?transform)
-    (lisp-pred identity ?transform)
+    (lisp-fun obj-int:get-object-transform ?current-object ?seen-transform)
+    (lisp-pred identity ?seen-transform)
+    (lisp-fun transforms-to-take ?object-type ?seen-transform ?transforms)
+    (member ?transform ?transforms)
     (arm-to-use ?designator ?arm)
     (grasp-to-use ?designator ?object-name ?object-type ?transform ?arm ?grasp)
     (lisp-fun obj-int:get-object-type-gripping-effort ?object-type ?effort)

@@ -33,6 +33,33 @@
   (let ((?robot (robot-name)))
     (desig:a location (reachable-for ?robot) (desig:when ?arm (arm ?arm)) (location ?location))))
 
+(defparameter *distances-around* '(0.65 0.6 0.7 0.55 0.75 0.5 0.8 0.45 0.85)
+  "How far from a thing a simulated robot stands to reach it where the costmaps of the application give no place that serves, metres.")
+
+(defun poses-around (pose)
+  "Poses of the robot, on the floor and turned towards POSE, those with the best distance first, and of these the ones nearest to the robot."
+  (let* ((there (cl-transforms:origin pose))
+         (here (cl-transforms:origin (btr:pose (btr:get-robot-object)))))
+    (flet ((at (distance turn)
+             (let ((way (cl-transforms:make-3d-vector (* distance (cos turn)) (* distance (sin turn)) 0)))
+               (cl-transforms-stamped:make-pose-stamped
+                cram-tf:*fixed-frame* 0.0
+                (cl-transforms:copy-3d-vector (cl-transforms:v- there way) :z 0.0d0)
+                (cl-transforms:axis-angle->quaternion (cl-transforms:make-3d-vector 0 0 1) turn))))
+           (way-to (pose)
+             (cl-transforms:v-dist here (cl-transforms:origin pose))))
+      (loop for distance in *distances-around*
+            append (sort (loop for turn below 24 collect (at distance (* turn (/ pi 12)))) #'< :key #'way-to)))))
+
+(defun free-place-around (pose try)
+  "A location of the first pose around POSE at which the robot touches nothing and the function TRY does not fail, whatever the costmaps say;
+nil where there is none, and for a real robot, which stays within the costmaps."
+  (when (pr2-proj-reasoning::simulated-p)
+    (let ((?pose (pr2-proj-reasoning::first-possible-pose (poses-around pose) try)))
+      (when ?pose
+        (roslisp:ros-warn (fd-plans places) "No place of the costmaps serves. The simulated robot takes another free place: ~a" ?pose)
+        (desig:a location (pose ?pose))))))
+
 (defun container-type (location)
   "The type of the container that LOCATION is in, such as :DRAWER, or nil."
   (let ((container (desig:desig-prop-value location :in)))

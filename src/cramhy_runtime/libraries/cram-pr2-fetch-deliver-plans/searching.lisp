@@ -31,19 +31,27 @@ what is in no drawer, and where it cannot stand there."
       (when ?pose
         (desig:a location (pose ?pose))))))
 
+(defun raise-torso ()
+  "Bring the torso as high as it goes."
+  (let ((?height (pr2-proj-reasoning::highest-torso)))
+    (exe:perform (desig:a motion (type moving-torso) (joint-angle ?height)))))
+
 (defun look-into-container-or-at (?place-above ?search-location ?see-from)
   "Go to ?PLACE-ABOVE a drawer with the torso up, or, where that is nil, to ?SEE-FROM, and look at ?SEARCH-LOCATION."
   (when ?place-above
-    (let ((?height (pr2-proj-reasoning::highest-torso)))
-      (exe:perform (desig:a motion (type moving-torso) (joint-angle ?height)))))
+    (raise-torso))
   (let ((?place (or ?place-above ?see-from)))
     (exe:perform (desig:an action (type navigating) (location ?place))))
   (exe:perform (desig:an action (type turning-towards) (target ?search-location))))
 
+(defparameter *retries-with-torso-up* 15
+  "How often the robot looks again with its torso up, over what stands before.")
+
 (cpl:def-cram-function search-for-object (?object-designator ?search-location &optional (retries 9))
-  "Look for an object at the solutions of a location, RETRIES times more than once; when it has one only, from another place each time.
-Into a drawer the robot looks from above. Returns what was seen."
-  (let ((?see-from (place-to-see-from ?search-location)))
+  "Look for an object at the solutions of a location, RETRIES times more than once, and then with the torso up; when it has one solution only,
+from another place each time. Into a drawer the robot looks from above. Returns what was seen."
+  (let ((?see-from (place-to-see-from ?search-location))
+        (tries 0))
     (flet ((give-up (&optional (description "The object is at none of the places that were searched."))
              (cpl:fail 'common-fail:object-nowhere-to-be-found :object ?object-designator :description description))
            (next-place ()
@@ -57,10 +65,13 @@ Into a drawer the robot looks from above. Returns what was seen."
           ((desig:designator-error (problem)
              (roslisp:ros-warn (fd-plans search-for-object) "~a" problem)
              (give-up "Search location designator could not be resolved.")))
-        (with-other-solutions (retries (fd-plans search-for-object)
+        (with-other-solutions ((+ retries *retries-with-torso-up*) (fd-plans search-for-object)
                                common-fail:navigation-goal-in-collision
                                common-fail:looking-high-level-failure
                                common-fail:perception-low-level-failure)
-            ((next-place) (give-up))
+            ((progn
+               (when (= (incf tries) (1+ retries)) (raise-torso))
+               (next-place))
+             (give-up))
           (look-into-container-or-at (place-above ?search-location) ?search-location ?see-from)
           (exe:perform (desig:an action (type detecting) (object ?object-designator))))))))

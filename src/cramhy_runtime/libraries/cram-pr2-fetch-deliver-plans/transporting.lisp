@@ -80,7 +80,7 @@
 
 (defun open-or-close (?type ?location ?arm)
   "Open or close the container that a location is in."
-  (let ((?distance (when (eq (container-type ?location) :drawer) 0.3)))
+  (let ((?distance (when (eq (container-type ?location) :drawer) 0.4)))
     (exe:perform (desig:an action
                            (type ?type)
                            (location ?location)

@@ -106,6 +106,14 @@ solution, TRIES times at most. NONE-LEFT and TOO-MANY are what happens when ther
       (move-arms-along left-grasp right-grasp harmless :all)
       (move-arms-along left-lift right-lift (cons :kitchen harmless) nil))))
 
+(defun places-of-grasp (reference)
+  "Where the tools are when they grip, in millimetres, for REFERENCE, what a picking-up action stands for."
+  (destructuring-bind (left-grasp right-grasp) (subseq reference 8 10)
+    (loop for pose in (append left-grasp right-grasp)
+          for origin = (cl-transforms:origin pose)
+          collect (mapcar (lambda (metres) (round metres 0.001))
+                          (list (cl-transforms:x origin) (cl-transforms:y origin) (cl-transforms:z origin))))))
+
 (defun check-picking-up-collisions (pick-up-action-desig &optional (retries 30))
   "Find a grounding of an action of picking up, of which all poses that count are reached, and nothing is touched but the object."
   (flet ((give-up ()
@@ -123,7 +131,7 @@ solution, TRIES times at most. NONE-LEFT and TOO-MANY are what happens when ther
                                common-fail:manipulation-low-level-failure common-fail:manipulation-goal-in-collision)
                 ((back) :none-left (give-up) :too-many (give-up))
               (let* ((reference (desig:reference action))
-                     (way (list (third reference) (sixth reference))))
+                     (way (list* (third reference) (sixth reference) (places-of-grasp reference))))
                 (when (member way tried :test #'equal)
                   (cpl:fail 'common-fail:manipulation-goal-in-collision :description "That arm and grasp were tried."))
                 (push way tried)

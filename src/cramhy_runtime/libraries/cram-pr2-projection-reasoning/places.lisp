@@ -36,21 +36,41 @@
       (pr2-proj::move-torso (highest-torso))
       (find-if (lambda (pose) (possible-p (lambda () (pr2-proj::drive pose)))) poses))))
 
+(defun first-possible-pose (poses try &optional (tries 16))
+  "The first of POSES in the room at which the robot touches nothing, and the function TRY does not fail, with the arms parked; nil when there
+is none, or TRY has failed TRIES times. The world is then as it was."
+  (in-simulation
+    (in-world-for-now
+      (park-for-now)
+      (dolist (pose poses)
+        (when (possible-p (lambda () (pr2-proj::drive pose)))
+          (when (possible-p try) (return pose))
+          (when (zerop (decf tries)) (return nil)))))))
+
 (defun highest-torso ()
   "The upper limit of the joint of the torso, metres."
   (cram-robot-interfaces:get-joint-upper-limit
    (pr2-proj::value '?joint `(cram-robot-interfaces:robot-torso-link-joint ,(btr:get-robot-name) ?link ?joint))))
 
+(defun same-place-p (pose other)
+  "Whether two poses in the room are less than a centimetre and a degree apart."
+  (and (< (cl-transforms:v-dist (cl-transforms:origin pose) (cl-transforms:origin other)) 0.01)
+       (< (cl-transforms:angle-between-quaternions (cl-transforms:orientation pose) (cl-transforms:orientation other)) 0.017)))
+
 (defun settle-on-place (location try &key (samples 150) (tries 8))
   "Move LOCATION on to the first of its next solutions at which the robot touches nothing and the function TRY does not fail, with the arms
-parked. Returns that location, or nil when none of so many SAMPLES will do, or TRY has failed TRIES times; the world is then as it was."
+parked. Returns that location, or nil when none of so many SAMPLES will do, or TRY has failed TRIES times, no place being tried twice; the
+world is then as it was."
   (in-simulation
     (in-world-for-now
       (park-for-now)
-      (loop repeat samples
-            for place = (desig:current-desig location) then (next-place place)
-            while (and place (plusp tries))
-            do (when (possible-p (lambda () (pr2-proj::drive (desig:reference place))))
-                 (when (possible-p try)
-                   (return place))
-                 (decf tries))))))
+      (let ((tried ()))
+        (loop repeat samples
+              for place = (desig:current-desig location) then (next-place place)
+              while (and place (< (length tried) tries))
+              do (let ((pose (desig:reference place)))
+                   (when (and (not (member pose tried :test #'same-place-p))
+                              (possible-p (lambda () (pr2-proj::drive pose))))
+                     (when (possible-p try)
+                       (return place))
+                     (push pose tried))))))))

@@ -48,7 +48,7 @@ failures: there was no way, or the joints did not get where they were sent."
              (cpl:do-retry waits
                (cpl:sleep 0.1)
                (let ((now (btr:joint-states (robot))))
-                 (unless (equal now joints)
+                 (unless (equalp now joints)
                    (setf joints now)
                    (cpl:retry))))))
         (drive pose-stamped)))))

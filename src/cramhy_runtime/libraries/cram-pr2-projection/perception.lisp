@@ -2,6 +2,24 @@
 
 (in-package #:cram-pr2-projection)
 
+(defparameter *most-unlike* 0.002
+  "How much the lengths of two meshes may differ that look the same, metres.")
+
+(defun lengths-of-mesh (type)
+  (let ((size (btr::mesh-dimensions type)))
+    (and size (list (cl-transforms:x size) (cl-transforms:y size) (cl-transforms:z size)))))
+
+(defun alike-p (type other)
+  "Whether the meshes of two types of objects are equally large: such things are not told apart by looking."
+  (let ((lengths (lengths-of-mesh type)) (others (lengths-of-mesh other)))
+    (and lengths others (every (lambda (one two) (< (abs (- one two)) *most-unlike*)) lengths others))))
+
+(defun looks-like-p (item type)
+  "Whether ITEM is of TYPE, or looks so, as a :CEREAL looks like a :BREAKFAST-CEREAL."
+  (let ((types (btr:item-types item)))
+    (or (member type types)
+        (and types (alike-p (first types) type)))))
+
 (defun visible-items (designator)
   "The items that DESIGNATOR may mean and that the robot sees, in the order of the world."
   (let ((name (desig:desig-prop-value designator :name))
@@ -11,15 +29,15 @@
      (lambda (thing)
        (and (typep thing 'btr:item)
             (or (null name) (eq name (btr:name thing)))
-            (or (null type) (member type (btr:item-types thing)))
+            (or (null type) (looks-like-p thing type))
             (robot-world:sees-p (robot) (parts) thing btr:*visibility-threshold*))))))
 
 (defun seen-object (designator item)
-  "A copy of DESIGNATOR that says which ITEM it is, and where."
+  "A copy of DESIGNATOR that says which ITEM it is, and where. Its type is the one that was asked for."
   (let* ((name (btr:name item))
          (frame (substitute #\_ #\- (string-downcase name)))
          (pose (btr-belief:object-pose-in-frame item cram-tf:*robot-base-frame*))
-         (told `((:type ,(first (btr:item-types item)))
+         (told `((:type ,(or (desig:desig-prop-value designator :type) (first (btr:item-types item))))
                  (:name ,name)
                  (:pose ((:pose ,pose) (:transform ,(cram-tf:pose-stamped->transform-stamped pose frame)))))))
     (desig:copy-designator designator :new-description told)))

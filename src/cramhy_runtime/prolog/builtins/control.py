@@ -92,8 +92,28 @@ def solve(m, goal, k, b):
         cell = cell.cdr
     if cell is not None:
         arguments = arguments_of(goal)
+        end = deref(goal.cdr)
+        while end.__class__ is Cons:
+            end = deref(end.cdr)
+        lengths = database.lengths_of_heads(functor, len(arguments)) if end.__class__ is Var else ()
+        if lengths:
+            return _with_end(m, k, functor, arguments, end, lengths)
     predicate = find_predicate(functor, len(arguments))
     return (predicate.call, k, *arguments)
+
+
+def _with_end(m, k, functor, arguments, end, lengths):
+    """The step that proves a goal whose ``arguments`` end in an unset variable, for heads of the first of ``lengths``, then the others."""
+    if len(lengths) > 1:
+        m.choices.append((_with_next_end, k, len(m.trail), functor, arguments, end, lengths[1:]))
+    others = [Var() for _ in range(lengths[0] - len(arguments))]
+    unify(end, list_from(others), m.trail)
+    return (find_predicate(functor, lengths[0]).call, k, *arguments, *others)
+
+
+def _with_next_end(m, step):
+    m.choices.pop()
+    return _with_end(m, step[1], *step[3:])
 
 
 Machine.solve = solve  # a method, so that a machine which explains its proof sees the goals inside of constructs, too

@@ -227,6 +227,24 @@ def arguments_of(goal):
     return arguments
 
 
+def lengths_of_heads(functor, least):
+    """The numbers of arguments, ``least`` or more, that clauses of ``functor`` have, in the order of the clauses.
+
+    A head that ends in a variable has no length of its own. Of a functor with a handler, or a built-in, nothing is known.
+    """
+    entry = functors.get(functor)
+    if entry is None or entry.handler is not None or entry.native:
+        return []
+    lengths = []
+    for clause in entry.clauses:
+        length, cell = 0, clause.head.cdr
+        while isinstance(cell, Cons):
+            length, cell = length + 1, cell.cdr
+        if cell is None and length >= least and length not in lengths:
+            lengths.append(length)
+    return lengths
+
+
 def _undefined(functor):
     def call(m, step):
         return undefined_step(m, Cons(functor, list_from(step[2:])), step[1])

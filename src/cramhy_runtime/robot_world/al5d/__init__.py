@@ -9,6 +9,7 @@ Gazebo. Here MuJoCo moves the arm, and fingers hold a brick by friction alone.
 ``bench``       the physical world with the arm in it
 ``pulses``      messages that are made as long as somebody listens
 ``pictures``    the camera's pictures, which are drawn when somebody looks at them
+``frames``      where the links and the camera are, for tf, and what the camera's picture measures
 ``names``       the names of the node and of its package
 ``bricks``      a brick with its topic and its services
 ``node``        the node of the simulator

@@ -1,6 +1,6 @@
 """``spawn_brick`` and ``kill_brick``: programs that ask the simulator for one thing, and end.
 
-They wait until the service is there, as the course's do. Their command lines are those of its README.
+They wait until the service is there, as the course's do. Their command lines are those of its README. A refusal is the exit status 1.
 """
 
 from __future__ import annotations
@@ -65,6 +65,7 @@ class Client(Program):
     def _end(self, call: Call) -> None:
         if call.lost or call.failure is not None:
             self.log(rosout.ERROR, f"Failed to call the service: {call.failure or 'the simulator has ended.'}")
+            self.status = 1
         else:
             self.answered(call.response)
         self.shutdown()

@@ -43,8 +43,10 @@ BRICK_MASS = 0.0023
 COLOURS = {"red": (0.79, 0.1, 0.04, 1.0), "green": (0.14, 0.48, 0.24, 1.0), "blue": (0.05, 0.21, 0.75, 1.0)}
 WIDTH, HEIGHT = 640, 480
 """Pixels of the camera's picture."""
-_CAMERA = (0.0, 0.17, 0.25)
-_WIDE = 1.2  # radians: the camera's horizontal opening
+CAMERA = (0.0, 0.17, 0.25)
+"""Where the camera is, in metres."""
+WIDE = 1.2
+"""Radians: the camera's horizontal opening."""
 _WOOD = (0.87, 0.84, 0.78, 1.0)
 
 
@@ -95,4 +97,4 @@ def table() -> tuple[tuple[Shape, ...], Placement, tuple[float, ...]]:
 def camera() -> View:
     """The camera that looks down on the workspace."""
     turn = np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]).T
-    return View(np.array(_CAMERA), turn, 2 * atan(tan(_WIDE / 2) * HEIGHT / WIDTH))
+    return View(np.array(CAMERA), turn, 2 * atan(tan(WIDE / 2) * HEIGHT / WIDTH))

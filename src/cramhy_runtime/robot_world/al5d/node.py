@@ -4,14 +4,16 @@
 ``joints_positions/command``           heard: five angles in rad, and the distance of the fingers in metres
 ``joint_states``                       fifty times a second: positions, velocities, efforts of the six
 ``al5d_external_vision/image_raw``     once a second: the picture of the camera above; also as ``external_vision/image_raw``
+``al5d_external_vision/camera_info``   once a second: what that picture measures; also as ``external_vision/camera_info``
+``/tf``                                ten times a second: where the links of the arm and the camera are
 ``<brick>/pose``                       ten times a second: where a brick is
 ``spawn_brick``, ``kill_brick``        put a brick on the table, take it away
 ``clear``, ``reset``                   take all bricks away; the same, and send the arm home
 ``<brick>/teleport_absolute``          put a brick somewhere; ``teleport_relative``: move it by so much
 =====================================  ==================================================================================
 
-All names begin with that of the node. A command counts at once, and the servos go there as fast as they can. A message without a subscriber
-is not made. Source: the README of lynxmotion_al5d_description.
+All names but ``/tf`` begin with that of the node. A command counts at once, and the servos go there as fast as they can. A message without
+a subscriber is not made. Source: the README of lynxmotion_al5d_description.
 """
 
 from __future__ import annotations
@@ -29,6 +31,7 @@ from .. import shown
 from . import model
 from .bench import Bench
 from .bricks import Brick, numbers
+from .frames import CAMERA_FRAME, camera_info, frames
 from .names import NAME, PACKAGE
 from .pictures import Shot, image
 from .pulses import Pulse
@@ -44,9 +47,8 @@ COMMANDS = "A command has 6 finite numbers: Joint1 to Joint5 in rad, and Gripper
 MOST_BRICKS = 60
 CAMERAS = ("al5d_external_vision", "external_vision")
 """What the camera is called: by the course's programs, and by the README of the simulator."""
-CAMERA_FRAME = "camera_link"
-STATES, PICTURES = 0.02, 1.0
-"""Seconds between two messages of the joints, and of the camera."""
+STATES, PICTURES, FRAMES = 0.02, 1.0, 0.1
+"""Seconds between two messages of the joints, of the camera, and of the frames."""
 
 
 class Simulator(Program):
@@ -72,6 +74,9 @@ class Simulator(Program):
         for camera in CAMERAS:
             publication = node.advertise(f"~{camera}/image_raw", message_class_exact("sensor_msgs/Image"))
             self.pulses.append(Pulse(publication, PICTURES, self._image))
+            publication = node.advertise(f"~{camera}/camera_info", message_class_exact("sensor_msgs/CameraInfo"))
+            self.pulses.append(Pulse(publication, PICTURES, lambda: camera_info(self._header(CAMERA_FRAME))))
+        self.pulses.append(Pulse(node.advertise("/tf", message_class_exact("tf2_msgs/TFMessage")), FRAMES, self._frames))
 
     def _offer_services(self) -> None:
         spawn, kill = (service_type_exact(f"{PACKAGE}/{kind}") for kind in ("SpawnBrick", "KillBrick"))
@@ -113,6 +118,9 @@ class Simulator(Program):
     def _states(self) -> RosMessage:
         positions, velocities, efforts = (list(map(float, numbers)) for numbers in self.bench.states())
         return self.states_type(self._header(), list(model.JOINTS), positions, velocities, efforts)
+
+    def _frames(self) -> RosMessage:
+        return frames(self.bench.states()[0], float(self.graph.now()))
 
     def _image(self) -> RosMessage:
         now = self.bench.moment

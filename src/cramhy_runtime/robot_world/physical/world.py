@@ -12,6 +12,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from cramhy_runtime import kernel
 from cramhy_runtime.cpl.tasks.waiting import sleep
 
@@ -176,8 +178,8 @@ class PhysicalWorld(World):
     def simulate(self, seconds: float, without: Hashable | None = None) -> float:
         """Let time pass until all is at rest, at most so long; the seconds that it took. It is the kernel's time: others run meanwhile.
 
-        An item that is inside of something that stands is lifted out of it first, as in a kinematic world; `stuck` tells of those that
-        cannot be.
+        Items that are inside of something that stands, or of each other, are freed first, as in a kinematic world; `stuck` tells of those
+        that cannot be.
 
         without: changes nothing here: fingers that have just let go still touch what they held.
         """
@@ -185,9 +187,9 @@ class PhysicalWorld(World):
         self.stuck = self.scene.free_all()
         self.scene.write_back()
         for item in self.items():
-            lifted = item.placement
-            if abs(float((lifted.position - before[item.name].position)[2])) > 1e-6:
-                self.put(item.name, lifted)
+            freed = item.placement
+            if np.abs(freed.position - before[item.name].position).max() > 1e-6:
+                self.put(item.name, freed)
         self.wake()
         passed = 0.0
         while passed < seconds - 1e-9 and not self.at_rest:

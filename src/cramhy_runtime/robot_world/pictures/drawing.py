@@ -14,6 +14,7 @@ import numpy as np
 from cramhy_runtime.kernel.active import checkpoint
 
 from .solids import NEAR, solids_of
+from .views import Rays
 
 if TYPE_CHECKING:
     from ..world import World
@@ -29,6 +30,12 @@ _AMBIENT, _ABOVE, _AHEAD = 0.42, 0.38, 0.25
 _HAZE = 14.0  # metres at which the floor begins to fade into the sky
 _OUTLINE = 0.55
 _MOST_PIXELS = 4096 * 4096
+_JUMP = 0.03
+"""How much the colours of pixels beside each other may differ that are not smoothed."""
+_NEIGHBOURS = (
+    ((slice(1, None), slice(None)), (slice(None, -1), slice(None))),
+    ((slice(None), slice(1, None)), (slice(None), slice(None, -1))),
+)
 
 
 class Drawing:
@@ -39,48 +46,111 @@ class Drawing:
         self.solids, self.shown, self.depths, self.colours = solids, shown, depths, colours
 
 
-def draw(world: World, view: View, width: int, height: int) -> Drawing:
-    """The picture of ``world``, so many pixels wide and high. Other tasks may run meanwhile. Errors: ValueError, for no such size."""
-    if not (width > 0 and height > 0 and width * height <= _MOST_PIXELS):
-        raise ValueError(f"a picture has from 1 to {_MOST_PIXELS} pixels; {width} x {height} is none.")
+def draw(world: World, view: View, width: int, height: int, smooth: int = 1) -> Drawing:
+    """The picture of ``world``, so many pixels wide and high. Other tasks may run meanwhile.
+
+    smooth: a pixel at an edge, or where colours differ else, is the mean of so many pixels in each direction; depths and what is shown are
+    those of the middles of pixels. Errors: ValueError, for no such size.
+    """
+    if not (width > 0 and height > 0 and width * height * smooth**2 <= _MOST_PIXELS):
+        raise ValueError(f"a picture has from 1 to {_MOST_PIXELS} pixels; {width * smooth} x {height * smooth} is none.")
     solids = solids_of(world)
-    rays = view.rays(width, height)
-    shown, depths, colours = _background(view, rays)
-    near = [(*part, number) for number, solid in enumerate(solids) if (part := _near(solid, view, width, height)) is not None]
-    for count, (nearest, part, number) in enumerate(sorted(near, key=lambda entry: (entry[0], entry[2]))):
-        seen = depths[part] >= nearest  # the others show what is before it
-        if not seen.any():
-            continue
-        solid = solids[number]
-        found, normals = solid.meet(view, rays, part, seen)
-        first = (found < depths[part]) | (found == depths[part]) & (number < shown[part])
-        if first.any():
-            depths[part][first], shown[part][first] = found[first], number
-            colours[part][first] = _lit(np.array(solid.colour[:3]), normals(first), rays[part][first])
-        if not count & 31:
-            checkpoint()
-    _outline(shown, depths, colours)
+    canvas = _Canvas(view, width, height)
+    canvas.paint(solids, np.arange(width * height))
+    shown, depths = canvas.shown.reshape(height, width), canvas.depths.reshape(height, width)
+    if smooth > 1:
+        colours = _smoothed(canvas, solids, smooth)
+    else:
+        canvas.outline()
+        colours = canvas.colours.reshape(height, width, 3)
     return Drawing(solids, shown, depths, colours)
 
 
-def _background(view: View, rays: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    with np.errstate(divide="ignore", invalid="ignore"):
-        depths = -view.place[2] / rays[:, :, 2]
-    floor = np.isfinite(depths) & (depths > NEAR) & (depths < 1e4)
-    depths = np.where(floor, depths, np.inf)
-    shown = np.where(floor, FLOOR, SKY)
-    colours = np.empty(rays.shape)
-    colours[:] = _SKY
-    rows = np.flatnonzero(floor.any(axis=1))
-    if len(rows):
-        block = slice(rows[0], rows[-1] + 1)
-        floor, ahead, rays = floor[block], np.where(floor[block], depths[block], 0.0), rays[block]
-        across, along = (np.floor(view.place[axis] + ahead * rays[:, :, axis]).astype(int) for axis in (0, 1))
+def _smoothed(canvas: _Canvas, solids: list[Solid], smooth: int) -> np.ndarray:
+    """The colours of a picture, outlined, in which the pixels at edges are painted anew in pieces."""
+    height, width = canvas.height, canvas.width
+    edges = np.repeat(np.repeat(canvas.edges(), smooth, axis=0), smooth, axis=1)
+    fine = _Canvas(canvas.view, width * smooth, height * smooth)
+    for name, shape in (("shown", (height, width)), ("depths", (height, width)), ("colours", (height, width, 3))):
+        values = getattr(canvas, name).reshape(shape)
+        getattr(fine, name)[:] = np.repeat(np.repeat(values, smooth, axis=0), smooth, axis=1).reshape(getattr(fine, name).shape)
+    fine.paint(solids, np.flatnonzero(edges))
+    fine.outline()
+    return fine.colours.reshape(height, smooth, width, smooth, 3).mean(axis=(1, 3))
+
+
+class _Canvas:
+    """The pixels of a picture, numbered row by row: what each shows, how far ahead that is, and its colour."""
+
+    def __init__(self, view: View, width: int, height: int) -> None:
+        self.view, self.width, self.height, self.rays = view, width, height, Rays(view, width, height)
+        self.shown, self.depths = np.full(width * height, SKY), np.full(width * height, np.inf)
+        self.colours = np.empty((width * height, 3))
+
+    def paint(self, solids: list[Solid], pixels: np.ndarray) -> None:
+        """Paint these pixels: the floor and the sky, and before them the solids, the nearest ones first."""
+        self._paint_background(pixels)
+        wanted = None
+        if len(pixels) < len(self.shown):
+            wanted = np.zeros((self.height, self.width), bool)
+            wanted.ravel()[pixels] = True
+        near = [(*part, number) for number, solid in enumerate(solids) if (part := _near(solid, self.view, self.width, self.height))]
+        for count, (nearest, part, number) in enumerate(sorted(near, key=lambda entry: (entry[0], entry[2]))):
+            within = self._within(part, wanted)
+            within = within[self.depths[within] >= nearest]  # the others show what is before it
+            if len(within):
+                found, normals = solids[number].meet(self.rays, part, within)
+                before = self.depths[within]
+                first = (found < before) | (found == before) & (number < self.shown[within]) & (found < np.inf)
+                within = within[first]
+                self.depths[within], self.shown[within] = found[first], number
+                rays = self.rays.through(within, np.eye(3))
+                self.colours[within] = _lit(np.array(solids[number].colour[:3]), normals(first), rays)
+            if not count & 31:
+                checkpoint()
+
+    def _within(self, part: tuple[slice, slice], wanted: np.ndarray | None) -> np.ndarray:
+        """The numbers of the pixels in a part of the picture, or of those of them that are wanted."""
+        rows, columns = part
+        if wanted is None:
+            return (np.arange(rows.start, rows.stop)[:, None] * self.width + np.arange(columns.start, columns.stop)).ravel()
+        row, column = np.nonzero(wanted[part])
+        return (row + rows.start) * self.width + column + columns.start
+
+    def _paint_background(self, pixels: np.ndarray) -> None:
+        rays = self.rays.through(pixels, np.eye(3))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            depths = -self.view.place[2] / rays[2]
+        floor = np.isfinite(depths) & (depths > NEAR) & (depths < 1e4)
+        self.depths[pixels] = np.where(floor, depths, np.inf)
+        self.shown[pixels] = np.where(floor, FLOOR, SKY)
+        self.colours[pixels[~floor]] = _SKY
+        ahead = depths[floor]
+        across, along = (np.floor(self.view.place[axis] + ahead * rays[axis][floor]).astype(int) for axis in (0, 1))
         tiles = _TILES[(across + along) & 1]
         hazy = ahead > _HAZE
         tiles[hazy] += (_SKY - tiles[hazy]) * np.clip((ahead[hazy] - _HAZE) / (2 * _HAZE), 0, 1)[:, None]
-        np.copyto(colours[block], tiles, where=floor[:, :, None])
-    return shown, depths, colours
+        self.colours[pixels[floor]] = tiles
+
+    def edges(self) -> np.ndarray:
+        """Whether a pixel shows another thing than one beside it, or another colour: height x width."""
+        shown, colours = self.shown.reshape(self.height, self.width), self.colours.reshape(self.height, self.width, 3)
+        edges = np.zeros(shown.shape, bool)
+        for one, other in _NEIGHBOURS:
+            differs = (shown[one] != shown[other]) | (np.abs(colours[one] - colours[other]) > _JUMP).any(axis=2)
+            edges[one] |= differs
+            edges[other] |= differs
+        return edges
+
+    def outline(self) -> None:
+        """Darken the borders of solids, on the side of the nearer one."""
+        shown, depths = self.shown.reshape(self.height, self.width), self.depths.reshape(self.height, self.width)
+        edges = np.zeros(shown.shape, bool)
+        for one, other in _NEIGHBOURS:
+            differs = shown[one] != shown[other]
+            edges[one] |= differs & (depths[one] <= depths[other])
+            edges[other] |= differs & (depths[other] < depths[one])
+        self.colours[(edges & (shown >= 0)).ravel()] *= _OUTLINE
 
 
 def _near(solid: Solid, view: View, width: int, height: int) -> tuple[float, tuple[slice, slice]] | None:
@@ -118,19 +188,7 @@ def _ahead(corners: np.ndarray) -> np.ndarray:
 
 
 def _lit(colour: np.ndarray, normals: np.ndarray, rays: np.ndarray) -> np.ndarray:
+    """The colour of places with these normals, n x 3, which rays, 3 x n, meet."""
     above = np.clip(normals @ _LIGHT, 0, 1)
-    ahead = np.abs((normals * rays).sum(axis=1)) / np.linalg.norm(rays, axis=1)
+    ahead = np.abs(np.einsum("nk,kn->n", normals, rays)) / np.sqrt(np.einsum("kn,kn->n", rays, rays))
     return np.clip(colour * (_AMBIENT + _ABOVE * above + _AHEAD * ahead)[:, None], 0, 1)
-
-
-def _outline(shown: np.ndarray, depths: np.ndarray, colours: np.ndarray) -> None:
-    edge = np.zeros(shown.shape, bool)
-    for one, other in (
-        ((slice(1, None), slice(None)), (slice(None, -1), slice(None))),
-        ((slice(None), slice(1, None)), (slice(None), slice(None, -1))),
-    ):
-        differs = shown[one] != shown[other]
-        edge[one] |= differs & (depths[one] <= depths[other])
-        edge[other] |= differs & (depths[other] < depths[one])
-    edge &= shown >= 0
-    colours[edge] *= _OUTLINE

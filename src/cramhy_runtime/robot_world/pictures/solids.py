@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ..mesh_files import Mesh
     from ..things import Colour, Thing
     from ..world import World
-    from .views import View
+    from .views import Rays
 
 _CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
 
@@ -50,22 +50,20 @@ class Solid:
         self._corners = lowest + _CORNERS * (highest - lowest)
         self.reach = float(np.linalg.norm(self._corners, axis=1).max())
 
-    def meet(
-        self, view: View, rays: np.ndarray, part: tuple[slice, slice], seen: np.ndarray
-    ) -> tuple[np.ndarray, Callable[[np.ndarray], np.ndarray]]:
-        """(how far along each ray of a part of the picture it is met, its normals there). rays: of the whole picture, height x width x 3.
-        seen: those of the part that matter, a mask. The normals, n x 3 in the world, are a function of which are wanted, a mask."""
+    def meet(self, rays: Rays, part: tuple[slice, slice], pixels: np.ndarray) -> tuple[np.ndarray, Callable[[np.ndarray], np.ndarray]]:
+        """(how far along the ray through each of some pixels it is met, its normals there). pixels: numbers of pixels in a part of the
+        picture. The normals, n x 3 in the world, are a function of which are wanted, a mask."""
+        view = rays.view
         if self.shape.kind == "mesh":
             corners = (self.form @ self.turn.T + self.place - view.place) @ view.turn
-            found, numbers = triangles.meet(corners, view, part, rays.shape[1], rays.shape[0])
+            found, numbers = triangles.meet(corners, rays, part, pixels)
             return found, lambda wanted: triangles.normals(self.form[numbers[wanted]]) @ self.turn.T
         eye = (view.place - self.place) @ self.turn
-        local = (rays[part][seen] @ self.turn).T
-        found = np.full(seen.shape, np.inf)
-        found[seen] = _MEET[self.shape.kind](self.form, eye, local)
+        local = rays.through(pixels, self.turn)
+        found = _MEET[self.shape.kind](self.form, eye, local)
 
         def normals(wanted: np.ndarray) -> np.ndarray:
-            places = eye + (found[wanted] * local[:, wanted[seen]]).T
+            places = eye + (found[wanted] * local[:, wanted]).T
             return _NORMALS[self.shape.kind](self.form, places) @ self.turn.T
 
         return found, normals

@@ -22,15 +22,14 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT = 640, 480  # pixels
 SMOOTH = 2
-"""How many times as many pixels are drawn in each direction as are written, so that edges are smooth."""
+"""How many times as many pixels are drawn in each direction as are written where edges are, so that these are smooth."""
 
 
 def picture(world: World, view: View | None = None, width: int = WIDTH, height: int = HEIGHT, smooth: int = SMOOTH) -> Picture:
     """A Pillow image of a world, by default of all of it. Errors: ValueError, for a size that is none."""
     from PIL import Image
 
-    drawn = draw(world, view or overview(world), width * smooth, height * smooth).colours
-    colours = drawn.reshape(height, smooth, width, smooth, 3).mean(axis=(1, 3))
+    colours = draw(world, view or overview(world), width, height, smooth).colours
     return Image.fromarray(np.round(colours * 255).astype(np.uint8))
 
 

@@ -6,7 +6,6 @@ picture its pixel is, and not with all of them: a spoon of 15,000 triangles cost
 
 from __future__ import annotations
 
-from math import tan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,49 +15,49 @@ from cramhy_runtime.kernel.active import checkpoint
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from .views import View
+    from .views import Rays
 
 NEAR = 0.02
 """What is nearer than so many metres is not seen."""
 _MOST_AT_ONCE = 1 << 19  # pairs of a ray and a triangle
 
 
-def meet(corners: np.ndarray, view: View, part: tuple[slice, slice], width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
-    """What the rays through a part of a picture meet first. corners: those of the triangles in the frame of the camera, n x 3 x 3.
-    part: rows and columns of the picture, which is ``width`` x ``height`` pixels.
+def meet(corners: np.ndarray, rays: Rays, part: tuple[slice, slice], pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What the rays through some pixels of a picture meet first. corners: those of the triangles in the frame of the camera, n x 3 x 3.
+    part: rows and columns of the picture in which the pixels are; pixels: their numbers.
 
-    Returns two arrays as large as the part: how far ahead, metres, ``inf`` where nothing is met; and the number of the triangle.
+    Returns two arrays as long as ``pixels``: how far ahead, metres, ``inf`` where nothing is met; and the number of the triangle.
     """
     rows, columns = part
-    shape = rows.stop - rows.start, columns.stop - columns.start
-    half = tan(view.opening / 2)
-    scale = np.array([2 * half / height, 2 * half / height])  # of a pixel, 1 m ahead
-    middle = np.array([(width - 1) / 2, (height - 1) / 2])
-    depths, chosen = np.full(shape[0] * shape[1], np.inf), np.zeros(shape[0] * shape[1], int)
-    for numbers, pixels in _pairs(corners, scale, middle, part):
-        row, column = np.divmod(pixels, shape[1])
-        flat = (np.stack([column + columns.start, row + rows.start], axis=1) - middle) * scale
-        along = _meet_each(corners[numbers], flat)
-        met = np.isfinite(along)
-        numbers, pixels, along = numbers[met], pixels[met], along[met]
-        order = np.lexsort((along, pixels))
-        pixels, first = np.unique(pixels[order], return_index=True)
-        numbers, along = numbers[order][first], along[order][first]
-        nearer = along < depths[pixels]
-        depths[pixels[nearer]], chosen[pixels[nearer]] = along[nearer], numbers[nearer]
+    wide, high = columns.stop - columns.start, rows.stop - rows.start
+    row, column = np.divmod(pixels, rays.width)
+    wanted = (row - rows.start) * wide + column - columns.start
+    depths, chosen, seen = np.full(high * wide, np.inf), np.zeros(high * wide, int), None
+    if len(wanted) < high * wide:
+        seen = np.zeros(high * wide, bool)
+        seen[wanted] = True
+    planes = _planes(corners)
+    for numbers, places in _pairs(corners, rays, part):
+        if seen is not None:
+            kept = seen[places]
+            numbers, places = numbers[kept], places[kept]
+        row, column = np.divmod(places, wide)
+        along = _meet_each(planes[:, numbers], rays.across[column + columns.start], rays.down[row + rows.start])
+        (met,) = np.nonzero(np.isfinite(along) & (along < depths[places]))
+        met = met[np.argsort(along[met], kind="stable")[::-1]]  # the nearest one is written last
+        depths[places[met]], chosen[places[met]] = along[met], numbers[met]
         checkpoint()
-    return depths.reshape(shape), chosen.reshape(shape)
+    return depths[wanted], chosen[wanted]
 
 
-def _pairs(
-    corners: np.ndarray, scale: np.ndarray, middle: np.ndarray, part: tuple[slice, slice]
-) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+def _pairs(corners: np.ndarray, rays: Rays, part: tuple[slice, slice]) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Yield numbers of triangles with the pixels, counted within ``part``, in whose rectangles these are."""
     rows, columns = part
     wide, high = columns.stop - columns.start, rows.stop - rows.start
+    middle = ((rays.width - 1) / 2, (rays.height - 1) / 2)
     ahead = corners[:, :, 2]
     with np.errstate(divide="ignore", invalid="ignore"):
-        places = corners[:, :, :2] / ahead[:, :, None] / scale + middle - (columns.start, rows.start)
+        places = corners[:, :, :2] / ahead[:, :, None] / rays.pixel + middle - (columns.start, rows.start)
     lowest, highest = np.ceil(places.min(axis=1) - 1e-6), np.floor(places.max(axis=1) + 1e-6)
     beside = (ahead <= NEAR).any(axis=1)  # it ends behind the camera: its rectangle has no end
     lowest[beside], highest[beside] = 0, (wide - 1, high - 1)
@@ -79,16 +78,20 @@ def _pairs(
         begin = end
 
 
-def _meet_each(triangles: np.ndarray, flat: np.ndarray) -> np.ndarray:
-    """As Möller and Trumbore: the ray to ``flat``, 1 m ahead, with the triangle of the same number, both in the frame of the camera."""
-    rays = np.concatenate([flat, np.ones((len(flat), 1))], axis=1)
-    corner, one, other = triangles[:, 0], triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+def _planes(corners: np.ndarray) -> np.ndarray:
+    """What Möller and Trumbore's intersection needs of each triangle, for rays from the origin: 10 x n."""
+    corner, one, other = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     normal = np.cross(one, other)
-    across, beyond = np.cross(corner, one), np.cross(corner, other)
+    return np.concatenate([normal.T, -np.cross(corner, other).T, np.cross(corner, one).T, np.einsum("nk,nk->n", corner, normal)[None]])
+
+
+def _meet_each(planes: np.ndarray, across: np.ndarray, down: np.ndarray) -> np.ndarray:
+    """How far ahead the ray to (across, down), 1 m ahead, meets the triangle of the same number, by Möller and Trumbore."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        inverse = 1.0 / (rays * normal).sum(axis=1)
-        along = (corner * normal).sum(axis=1) * inverse
-        u, v = -(rays * beyond).sum(axis=1) * inverse, (rays * across).sum(axis=1) * inverse
+        inverse = 1.0 / (planes[0] * across + planes[1] * down + planes[2])
+        u = (planes[3] * across + planes[4] * down + planes[5]) * inverse
+        v = (planes[6] * across + planes[7] * down + planes[8]) * inverse
+        along = planes[9] * inverse
         hit = (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9) & (along > NEAR)
     return np.where(hit, along, np.inf)
 

@@ -37,12 +37,25 @@ class View:
     turn: np.ndarray
     opening: float = OPENING
 
-    def rays(self, width: int, height: int) -> np.ndarray:
-        """The direction through the middle of each pixel, height x width x 3; each goes 1 m ahead along the axis."""
-        half = tan(self.opening / 2)
-        x = ((np.arange(width) + 0.5) / width * 2 - 1) * half * width / height
-        y = ((np.arange(height) + 0.5) / height * 2 - 1) * half
-        return x[None, :, None] * self.turn[:, 0] + y[:, None, None] * self.turn[:, 1] + self.turn[:, 2]
+
+class Rays:
+    """The rays through the middles of the pixels of a picture; each goes 1 m ahead along the axis of the camera.
+
+    across, down: where they are beside the axis then, by columns and by rows. pixel: how large a pixel is there.
+    """
+
+    def __init__(self, view: View, width: int, height: int) -> None:
+        self.view, self.width, self.height = view, width, height
+        half = tan(view.opening / 2)
+        self.pixel = 2 * half / height
+        self.across = ((np.arange(width) + 0.5) / width * 2 - 1) * half * width / height
+        self.down = ((np.arange(height) + 0.5) / height * 2 - 1) * half
+
+    def through(self, pixels: np.ndarray, frame: np.ndarray) -> np.ndarray:
+        """The directions through the pixels of these numbers, counted row by row, in a frame whose axes are the columns: 3 x n."""
+        right, down, ahead = (frame.T @ self.view.turn).T[:, :, None]
+        row, column = np.divmod(pixels, self.width)
+        return right * self.across[column] + down * self.down[row] + ahead
 
 
 def looking_at(place: object, target: object, opening: float = OPENING) -> View:

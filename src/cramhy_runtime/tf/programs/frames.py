@@ -45,8 +45,12 @@ class Sender:
 
     def send(self, parent: str, child: str, stamp: float, transform: Transform) -> None:
         """Publish that ``transform`` is the pose of the frame ``child`` in ``parent`` at the time ``stamp`` (s)."""
-        stamped = TransformStamped(parent, child, stamp, transform.translation, transform.rotation)
-        self.publication.publish(self.message(transforms=[to_msg(stamped)]))
+        self.send_all([(parent, child, stamp, transform)])
+
+    def send_all(self, transforms: Iterable[tuple[str, str, float, Transform]]) -> None:
+        """Publish several transforms, with the arguments of `send`, in one message."""
+        stamped = [TransformStamped(parent, child, stamp, each.translation, each.rotation) for parent, child, stamp, each in transforms]
+        self.publication.publish(self.message(transforms=[to_msg(each) for each in stamped]))
 
 
 class Listener:

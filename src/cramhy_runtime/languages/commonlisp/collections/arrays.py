@@ -265,7 +265,7 @@ def upgraded_array_element_type(specifier, environment=None):
 def array_displacement(array):
     """``array-displacement``: two values, the target of a displaced array (or nil) and the offset into it."""
     dimensions_of(array)
-    shared = getattr(array, "chars", None) or getattr(array, "storage", None)
+    shared = getattr(array, "chars", getattr(array, "storage", None))
     if isinstance(shared, SharedCharacters):
         return MultipleValues((shared.target, shared.offset - getattr(shared.target, "offset", 0)))
     target = getattr(array, "displaced_to", None)

@@ -10,15 +10,21 @@ from __future__ import annotations
 from fractions import Fraction
 from operator import attrgetter
 
-from cramhy_runtime.ground.arrays import SimpleArray, TypedVector
+from cramhy_runtime.ground.arrays import LispArray, SimpleArray, TypedVector, Vector
 from cramhy_runtime.ground.catching import Case
 from cramhy_runtime.ground.keyword_calls import KeywordCalls
-from cramhy_runtime.ground.data import Character, Cons, Symbol
+from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.ground.data import Character, Cons, LispString, Symbol, all_values
 from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.ground.packages import Package
 from ..format.format_pieces import Piece
 from ..numbers.complex_numbers import parts
+from ..objects.class_objects import StandardObject
 from ..objects.makers import Maker
+from ..objects.protocol_functions import make_load_form
 from ..objects.slots import NamedSlot
+from ..objects.structures import StructureObject
+from ..pathnames.pathname_objects import Pathname, parts_of_pathname
 from ..syntax.backquote import Comma
 from .core import List, expression, word
 from .several_values import ValuesCalls
@@ -120,8 +126,9 @@ class Constants:
             if cell is None:
                 return expression(word("Llist"), *items)
             return expression(word("Ldotted"), *items, self.builder(cell))
-        if isinstance(obj, str):
-            return str(obj)
+        if isinstance(obj, (str, LispString)):
+            of_characters = getattr(obj, "kind", False) is False
+            return str(obj) if of_characters else expression(word("Lkind_string"), str(obj), self.builder(obj.kind))
         if kind is int:
             return obj
         if kind is float:
@@ -138,10 +145,16 @@ class Constants:
             return expression(word("Lcomma"), obj.kind, self.builder(obj.form))
         if kind is list:
             return List([self.builder(item) for item in obj])
-        if kind is SimpleArray and obj.element_type is True:
-            return expression(word("Larray"), List([*obj.dimensions]), List([self.builder(item) for item in obj.storage]))
-        if isinstance(obj, TypedVector):
-            return expression(word("Ltyped_vector"), List([self.builder(item) for item in obj]), self.builder(obj.element_type))
+        if isinstance(obj, (TypedVector, Vector)):  # the literal is simple, as it may be (ANSI 3.2.4.4)
+            items = List([self.builder(item) for item in obj])
+            return items if obj.element_type is True else expression(word("Ltyped_vector"), items, self.builder(obj.element_type))
+        if isinstance(obj, LispArray):
+            items = List([self.builder(item) for item in obj.active()])
+            return expression(word("Larray"), List([*obj.dimensions]), items, self.builder(obj.element_type))
+        if isinstance(obj, Pathname):
+            return expression(word("Lpathname"), *map(self.builder, parts_of_pathname(obj)))
+        if isinstance(obj, Package) and obj.name is not None:
+            return expression(word("Lpackage"), obj.name)
         if kind is KeywordCalls:
             return expression(word("Lkeyword_calls"), self.builder(obj.symbol), obj.count, *map(self.builder, obj.keys))
         if kind is Piece:
@@ -154,7 +167,19 @@ class Constants:
             return expression(word("Lvalues_calls"), self.builder(obj.symbol))
         if kind is Maker:
             return expression(word("Lmaker"), self.builder(obj.name), *map(self.builder, obj.keys))
+        if isinstance(obj, (StandardObject, StructureObject, Condition)) and make_load_form.user_methods:
+            return self.loaded(obj)
         raise NotStorable(obj)
+
+    def loaded(self, obj):
+        """The name of an object that is made by the forms that the program's ``make-load-form`` gives (ANSI 3.2.4.4)."""
+        creation, *initialization = all_values(make_load_form(obj))
+        name = self.name("object", obj)
+        if name not in self.made:
+            self.make(name, expression(word("Levaluate"), self.builder(creation)))
+            for form in initialization:
+                self.statements.append(expression(word("Levaluate"), self.builder(form)))
+        return word(name)
 
 
 def is_circular(obj):

@@ -22,7 +22,7 @@ from .generate_calls import GETHASH, SLOT_VALUE, CallGenerator, slot_named_by
 from .generate_exits import ERROR, ExitGenerator
 from .generate_functions import FunctionGenerator
 from .arithmetic.functions import NUMBER_FUNCTIONS
-from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, NEGATIONS, OperatorGenerator
+from .generate_operators import ARITHMETIC, COMPARISONS, KNOWN_PARTS, MOST_TERMS, NEGATIONS, OperatorGenerator
 from .generate_texts import TextGenerator
 from .loop_shapes import CHANGES
 from .kinds import BOOLEAN, MAX, MIN, MINUS, OPERATORS, PI, PLUS, STEPS, THING, WHOLE, kind_of
@@ -257,7 +257,7 @@ class Generator(CallGenerator, ExitGenerator, FunctionGenerator, OperatorGenerat
         if symbol in STEPS and len(arguments) == 1:
             symbol, arguments = STEPS[symbol], [*arguments, nodes.Constant(1)]
         standard = self.standard(symbol) and destination.kind != "effect"
-        if standard and len(arguments) > 2 and (symbol in OPERATORS or symbol is MAX or symbol is MIN):
+        if standard and 2 < len(arguments) <= MOST_TERMS and (symbol in OPERATORS or symbol is MAX or symbol is MIN):
             arguments = self.nested(node)
             if arguments is None:
                 return self.gen(self.named_arguments(node), destination)

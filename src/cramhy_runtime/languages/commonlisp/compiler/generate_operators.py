@@ -50,6 +50,9 @@ PROVING_CLASSES = {
 }
 """Types that a comparison of classes proves, for a fixnum also one of size."""
 
+MOST_TERMS = 32
+"""A sum of more terms is a call of the function: written as sums of two, it would take long to compile."""
+
 
 class OperatorGenerator(ArrayGenerator, NumberGenerator):
     """The part of the `Generator` that makes expressions of calls of standard functions."""

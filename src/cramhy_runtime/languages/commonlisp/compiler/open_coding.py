@@ -237,6 +237,8 @@ def call_of_next(analyzer, meaning, form, env):
     name, following, given = meaning
     function = env.variable(following).used_from(env.scope)
     if name is EXISTS:
+        if form.cdr is not None:
+            analyzer.fail("~S takes no arguments: ~S", EXISTS, form)
         return Support("next_method_exists", [LocalVariable(function)])
     if given is None or form.cdr is not None:
         arguments = analyzer.arguments(form, env)

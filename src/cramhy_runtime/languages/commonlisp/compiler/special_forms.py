@@ -326,6 +326,8 @@ def _symbol_macrolet(analyzer, form, env):
         if not isinstance(item, Cons) or not isinstance(item.cdr, Cons):
             analyzer.fail("A symbol macro is (name expansion), not ~S.", item)
         symbol, expansion = _binding(analyzer, item)
+        if not isinstance(symbol, Symbol) or symbol.constant or symbol.special:
+            analyzer.fail("~S is a constant or a special variable, so it cannot be a symbol macro.", symbol)
         inner.variables[symbol] = SymbolMacro(expansion)
     for symbol in analyzer.specials(analyzer.declarations(parts[1:], env)[0]):
         if symbol in inner.variables:

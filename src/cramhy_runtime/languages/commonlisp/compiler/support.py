@@ -36,6 +36,7 @@ from cramhy_runtime.ground.conditions import (
 from .frame_exits import FrameExit, ends_here
 from cramhy_runtime.ground.data import (
     FreshString,
+    KindString,
     Character,
     TEXTS,
     Cons,
@@ -63,7 +64,10 @@ from ..numbers import arithmetic
 from ..numbers.irrational import complex_
 from ..objects.makers import maker
 from ..objects.slots import named_slot
-from cramhy_runtime.ground.packages import intern, keyword, printed
+from cramhy_runtime.ground.packages import find_package_or_error, intern, keyword, printed
+from cramhy_runtime.ground.ports import PORTS
+from ..pathnames.pathname_objects import pathname_of_parts
+from ..pathnames.pathnames import logical_host
 from ..syntax.backquote import Comma
 from .declared_types import checked
 from .several_values import beside, first_of, values_calls
@@ -415,6 +419,10 @@ NAMESPACE = {
     "Llen": len,
     "Lcharacter": Character,
     "Larray": SimpleArray,
+    "Lkind_string": KindString,
+    "Lpathname": lambda *parts: pathname_of_parts(logical_host, *parts),
+    "Lpackage": find_package_or_error,
+    "Levaluate": lambda form: one(PORTS.user.evaluate(form)),
     "Ltyped_vector": TypedVector,
     "Lfloat": float,
     "Lcomma": Comma,

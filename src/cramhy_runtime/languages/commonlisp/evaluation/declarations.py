@@ -7,7 +7,8 @@ checked for its shape all the same, so that a slip of the pen is found.
 from __future__ import annotations
 
 from ..compiler.declared_types import checkable
-from cramhy_runtime.ground.conditions import program_error, type_error, warn
+from cramhy_runtime.ground.conditions import error, program_error, type_error, warn
+from cramhy_runtime.ground.conses import list_parts
 from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, list_from, python_list
 from cramhy_runtime.ground.packages import sym
 from ..packages.package_errors import check_function_name
@@ -43,6 +44,8 @@ def _proclaim(specifier):
     if not isinstance(specifier, Cons):
         return type_error(specifier, "LIST")
     kind, names = specifier.car, python_list(specifier.cdr)
+    if list_parts(specifier)[1] is not None:
+        return type_error(list_parts(specifier)[1], "LIST")
     if kind is sym("SPECIAL"):
         for symbol in names:
             proclaim_special(symbol)
@@ -54,6 +57,8 @@ def _proclaim(specifier):
             data(symbol)["type"] = kind_of_value
     elif kind is sym("DECLARATION"):
         for symbol in names:
+            if is_known_type(symbol):
+                return error("~S names a type, so it cannot be proclaimed as the name of a declaration.", symbol)
             data(symbol)["declaration"] = True
     elif kind is sym("NOTINLINE"):
         for symbol in names:

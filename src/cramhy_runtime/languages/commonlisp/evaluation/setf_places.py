@@ -12,7 +12,7 @@ import functools
 
 from cramhy_runtime.ground.conditions import CompileError, error
 from cramhy_runtime.ground.data import Cons, Keyword, MultipleValues, Symbol, lisp_list, list_from, one
-from cramhy_runtime.ground.packages import is_symbol, redefined, sym
+from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, redefined, sym, symbol_package
 from ..packages.package_errors import check_symbol
 from .definitions import data
 from .evaluator import macro_lambda
@@ -34,9 +34,11 @@ def setf_expansion(place, environment=None):
             return setf_expansion(expansion, environment)
         store = gensym("NEW")
         return [], [], [store], lisp_list(SETQ, place, store), place
-    if not isinstance(place, Cons) or not isinstance(place.car, Symbol):
+    if not isinstance(place, Cons) or not is_symbol(place.car):
         return error(CompileError("~S is not a place that SETF can assign.", place))
     head = place.car
+    if not isinstance(head, Symbol):  # NIL and T may be names of local functions
+        return _function_place(place)
     local = environment.function(head) if environment is not None else None
     if local is None:
         expander = (head.compiler_data or {}).get("setf-expander")
@@ -61,7 +63,7 @@ def _function_place(place):
             arguments.append(temporary)
     store = gensym("NEW")
     storing = lisp_list(FUNCALL, lisp_list(FUNCTION, lisp_list(SETF, head)), store, *arguments)
-    if head.package is sym("CAR").package:
+    if symbol_package(head) is COMMON_LISP and isinstance(head, Symbol):
         storing = lisp_list(PROGN, storing, store)
     return temporaries, forms, [store], storing, Cons(head, list_from(arguments))
 

@@ -176,14 +176,17 @@ def gensym(prefix="G"):
     return Symbol(f"{prefix}{number}")
 
 
+_GENTEMP_COUNTER = special("CRAMHY::*GENTEMP-COUNTER*", 0)
+
+
 def gentemp(prefix="T", package=None):
     """``gentemp``"""
     if not is_string(prefix):
         return type_error(prefix, "STRING", "\nwhen binding SB-IMPL::PREFIX")
     home = PACKAGE.value if package is None else find_package_or_error(package)
     while True:
-        GENSYM_COUNTER.value += 1
-        name = f"{prefix}{GENSYM_COUNTER.value}"
+        _GENTEMP_COUNTER.value += 1
+        name = f"{prefix}{_GENTEMP_COUNTER.value}"
         if not home.lookup(name)[1]:
             return home.intern(name)
 

@@ -24,7 +24,7 @@ from ..pathnames.pathnames import pathname
 from cramhy_runtime.ground.packages import is_symbol, sym
 from ..types.type_relations import subtypep
 from ..types.types import expand_type
-from ..streams.basic_streams import InputStream, OutputStream, complain_closed, misused
+from ..streams.basic_streams import FdStream, InputStream, OutputStream, complain_closed, misused
 from ..streams.external_formats import ATTEMPT_RESYNC, FORCE_END_OF_FILE, INPUT_REPLACEMENT, StreamDecodingError, external_format
 
 CHARACTER = sym("CHARACTER")
@@ -53,10 +53,8 @@ class SimpleStreamError(StreamError, FileError):
         return f"couldn't {self.doing} {prin1_to_string(self.stream)}:\n  {why}"
 
 
-class FileStream(FileStreamClass):
+class FileStream(FdStream, FileStreamClass):
     """A file that was opened. ``size`` is the number of bytes of an element, 1 for characters."""
-
-    lisp_name = "SB-SYS::FD-STREAM"
 
     def __init__(self, file, pathname, label, reads, writes, kind=CHARACTER, size=1, signed=False, format_=None):
         InputStream.__init__(self)
@@ -247,7 +245,7 @@ def _choice(value, default, choices):
     return value.name
 
 
-def _element(specifier):
+def element_of(specifier):
     """(element type, its size in bytes, whether it is signed); the type is ``None`` for both characters and bytes."""
     if specifier is UNSUPPLIED or is_symbol(specifier) and subtypep(specifier, CHARACTER)[0] and specifier is not None:
         return CHARACTER, 1, False
@@ -296,7 +294,7 @@ def open_(
     if_exists = _choice(if_exists, "ERROR", _IF_EXISTS)
     usual = None if direction == "PROBE" else "CREATE" if writes and if_exists not in ("APPEND", "OVERWRITE") else "ERROR"
     missing = _choice(if_does_not_exist, usual, _IF_MISSING)
-    kind, size, signed = _element(element_type)
+    kind, size, signed = element_of(element_type)
     format_ = _format(external_format) if kind is CHARACTER or kind is None else _format(sym(":LATIN-1"))
     return _open(filespec, direction, reads, writes, if_exists, missing, kind, size, signed, format_)
 

@@ -16,7 +16,7 @@ from cramhy_runtime.storage import owners
 from ..streams.streams import standard_output
 from ..pathnames.logical_pathnames import translate_logical_pathname
 from ..pathnames.namestrings import directory_text, native_namestring, parse_native, root_text
-from ..pathnames.pathname_objects import ABSOLUTE, HOME, UP, WILD, WILD_INFERIORS, Pathname, Pattern
+from ..pathnames.pathname_objects import ABSOLUTE, BACK, HOME, UP, WILD, WILD_INFERIORS, Pathname, Pattern
 from ..pathnames.pathnames import merge_pathnames, pathname
 from ..pathnames.wild_pathnames import component_matches, wild_pathname_p
 
@@ -191,6 +191,7 @@ def directory(designator, *, resolve_symlinks=True):
     resolve_symlinks: nil gives links as they are.
     """
     path = absolute(physical(designator))
+    _check_ways_up(path)
     found = {}
     for folder in _folders(root_text(path), path.directory[1:]):
         if path.name is None and path.type is None:
@@ -203,6 +204,14 @@ def directory(designator, *, resolve_symlinks=True):
         for name in names:
             found.setdefault(os.path.realpath(name) if resolve_symlinks is not None else name)
     return list_from([lisp_path(name) for name in found])
+
+
+def _check_ways_up(path):
+    """Signal a file-error if the directory of ``path`` goes up from the root, or from folders of any depth."""
+    start, *parts = path.directory
+    for before, part in zip([start, *parts], parts):
+        if part is UP and before in (ABSOLUTE, WILD_INFERIORS) or part is BACK and before is ABSOLUTE:
+            error(SimpleFileError(path, "The directory of ~S goes up from where there is no folder above.", path))
 
 
 def _entries(folder):

@@ -16,8 +16,10 @@ from ..printer.print_controls import PRINT_BASE, PRINT_RADIX, bound
 from ..printer.print_names import character_name
 from ..printer.printer import output_object, prin1, prin1_to_string, princ_to_string, write
 from ..streams.streams import OutputStream, StringOutputStream
+from ..collections.characters import graphic_char_p
 from . import format_numbers as numbers
 from .format import State, UpAndOut, format_on, list_arguments, run
+from .block_arguments import arguments_of
 from .format_parameters import NO_CHARACTER, parameters
 from .format_parser import ARGUMENT_MARK, REMAINING_MARK, FormatError
 
@@ -66,7 +68,7 @@ def _character(directive, state):
         directive.complain(f"{prin1_to_string(arg)} is not of type CHARACTER.")
     if directive.colon:
         char = arg.char
-        graphic = char != " " and char.isprintable()
+        graphic = char != " " and graphic_char_p(arg)
         state.stream.write(char if graphic else character_name(char).title())
     elif directive.at:
         prin1(arg, state.stream)
@@ -431,6 +433,9 @@ def _escape_upward(directive, state):
         directive.complain("Attempt to use ~:^ outside a ~:{...~} construct")
     first, second, third = parameters(directive, state, None, None, None)
     if third is not None:
+        for missing in (first, second):
+            if missing is None:
+                type_error(missing, "REAL")
         leave = first <= second <= third
     elif second is not None:
         leave = first == second
@@ -460,7 +465,7 @@ def _logical_block(directive, state):
         lst, args, start = list_from(state.args[state.position :]), state.args, state.position
     else:
         lst = state.next(directive)
-        args, start = (list(lst) if isinstance(lst, Cons) else ()), 0
+        args, start = arguments_of(lst), 0
 
     def body(out, block):
         try:

@@ -70,6 +70,7 @@ def parse(control):
     if found is None:
         tokens = _tokens(control)
         nodes, index, _ = _nest(tokens, 0, None)
+        _check_line_prefixes(nodes)
         _place(nodes)
         if len(_parsed) > 5000:
             _parsed.clear()
@@ -302,6 +303,8 @@ def _with_fill_newlines(nodes, block):
     filled = []
     for node in nodes:
         if isinstance(node, Directive):
+            if node.clauses and not (node.char == "<" and not node.close.colon):
+                node.clauses = [_with_fill_newlines(clause, block) for clause in node.clauses]
             filled.append(node)
             continue
         position = 0
@@ -329,6 +332,25 @@ def _check_justification(opener):
         opener.complain(
             "@ modifier not allowed in close directive of justification block (i.e. ~<...~@>.", opener.close.end - 1, "22.3.6.2"
         )
+
+
+def _check_line_prefixes(nodes):
+    """Signal that ``~<...~:;...~>`` stands in one control with a directive of the pretty printer."""
+    prefix = _with_line_prefix(nodes)
+    if prefix is not None and _count_pretty(nodes):
+        prefix.complain("~<...~:;...~> cannot be used in the same format string with ~W, ~_, ~<...~:>, ~I or ~:T.", section="22.3.5.2")
+
+
+def _with_line_prefix(nodes):
+    """A ``~<...~:;...~>`` in ``nodes``, or ``None``."""
+    for node in nodes:
+        if isinstance(node, Directive):
+            if node.char == "<" and not node.close.colon and node.separators and node.separators[0].colon:
+                return node
+            for clause in node.clauses or ():
+                if (found := _with_line_prefix(clause)) is not None:
+                    return found
+    return None
 
 
 def _count_pretty(nodes):

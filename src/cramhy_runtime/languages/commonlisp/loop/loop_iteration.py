@@ -110,11 +110,25 @@ def with_clause(loop):
             tokens.take()
             bindings.append((pattern, tokens.form()))
         else:
-            bindings += [(variable, zero(declared)) for variable in pattern_variables(loop, pattern)]
+            bindings += zeros(loop, pattern, declared)
         if not tokens.next_is("AND"):
             break
         tokens.take()
     bind_patterns(loop, bindings)
+
+
+def zeros(loop, pattern, declared):
+    """Pairs of a variable of ``pattern`` and its first value. The type ``declared`` is one for all, or a tree of types like the pattern."""
+    if isinstance(pattern, Cons) and isinstance(declared, Cons) and not _is_compound_type(declared):
+        return [*zeros(loop, pattern.car, declared.car), *zeros(loop, pattern.cdr, declared.cdr)]
+    return [(variable, zero(declared)) for variable in pattern_variables(loop, pattern)]
+
+
+def _is_compound_type(specifier):
+    return is_symbol(specifier.car) and symbol_name(specifier.car) in COMPOUND_TYPES
+
+
+COMPOUND_TYPES = "AND OR NOT MEMBER EQL SATISFIES INTEGER MOD UNSIGNED-BYTE SIGNED-BYTE RATIONAL REAL CONS ARRAY VECTOR STRING".split()
 
 
 def repeat_clause(loop):
@@ -244,8 +258,12 @@ def _for_on(loop, pattern, declared, word):
 
 
 def _for_across(loop, pattern, declared, word):
+    return _across(pattern, loop.tokens.form())
+
+
+def _across(pattern, form):
     vector, index = gensym("VECTOR"), gensym("INDEX")
-    bindings = [(vector, lisp_list(LOOP_VECTOR, loop.tokens.form())), (index, 0)]
+    bindings = [(vector, lisp_list(LOOP_VECTOR, form)), (index, 0)]
     return Iteration(
         bindings,
         Turn(
@@ -314,6 +332,9 @@ def _for_being(loop, pattern, declared, word):
         tokens.take()
     kind = tokens.keyword("iteration path name")
     kind += "" if kind.endswith("S") else "S"
+    if kind == "ELEMENTS" and tokens.next_is("OF", "IN"):  # of a sequence, as in SBCL
+        tokens.take()
+        return _across(pattern, lisp_list(sym("COERCE"), tokens.form(), lisp_list(sym("QUOTE"), sym("VECTOR"))))
     if kind not in ("HASH-KEYS", "HASH-VALUES", "SYMBOLS", "PRESENT-SYMBOLS", "EXTERNAL-SYMBOLS"):
         tokens.fail(
             "~A is not the name of a LOOP iteration path.",

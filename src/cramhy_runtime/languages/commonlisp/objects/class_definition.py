@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import Condition
 from cramhy_runtime.ground.conditions import SimpleError, error
-from cramhy_runtime.ground.data import UNBOUND, Keyword, Symbol, list_from, one, python_list
+from cramhy_runtime.ground.data import UNBOUND, Symbol, list_from, one, python_list
 from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.packages import is_symbol, sym, symbol_name
 from ..streams.streams import StringOutputStream
 from ..packages.package_errors import check_symbol
+from ..syntax.declaration_names import check_type_name
 from .class_objects import (
     ClassSlot,
     InstanceSlot,
@@ -86,6 +87,7 @@ def define_class(name, superclasses=None, slots=None, *, default_initargs=None, 
     """
     slots = python_list(slots)
     check_symbol(name, "defining ~S as a class", name)
+    check_type_name(name)
     _check_slots(name, slots, "DEFCLASS")
     initargs = [python_list(entry)[0] for entry in python_list(default_initargs)]
     for initarg in initargs:
@@ -111,7 +113,7 @@ def define_class(name, superclasses=None, slots=None, *, default_initargs=None, 
 def _check_slots(name, slots, operator):
     names = [slot.name for slot in slots]
     for slot in slots:
-        if not is_symbol(slot.name) or isinstance(slot.name, Keyword) or slot.name in (None, True):
+        if not is_symbol(slot.name) or slot.name in (None, True) or slot.name.constant:
             invalid_class_definition("~S is not a slot name, in ~A ~S.", slot.name, operator, name)
         if wrong := [initarg for initarg in slot.initargs if not is_symbol(initarg)]:
             invalid_class_definition("~S is not an initarg, in the slot ~S of ~A ~S.", wrong[0], slot.name, operator, name)
@@ -154,7 +156,12 @@ def _make_or_change(name, bases, slots):
         if slot.allocation == "CLASS":
             slot.cell = ClassSlot(slot.name)
     old = registered_class(name)
-    if old is None or "lisp_direct_slots" not in vars(old) or issubclass(old, Condition) != issubclass(bases[0], Condition):
+    if (
+        old is None
+        or class_name(old) is not name
+        or "lisp_direct_slots" not in vars(old)
+        or issubclass(old, Condition) != issubclass(bases[0], Condition)
+    ):
         return register_class(name, _new_class(name, bases, slots))
     return _change(name, old, bases, slots)
 
@@ -270,6 +277,7 @@ def define_condition(name, parents=None, slots=None, *, report=None, default_ini
     """
     slots = python_list(slots)
     check_symbol(name, "defining ~S as a condition", name)
+    check_type_name(name)
     _check_slots(name, slots, "DEFINE-CONDITION")
     bases = [find_class_or_error(parent) for parent in python_list(parents)] or [Condition]
     for base in bases:

@@ -122,6 +122,7 @@ class Plan:
         own = [slot for slot in slots if slot.cell is None]
         self.initforms = [(slot, slot.initfunction) for slot in own if slot.initfunction is not None]
         self.without_initform = {slot.name: slot for slot in own if slot.initfunction is None}
+        self.shared = [slot for slot in slots if slot.cell is not None and slot.initfunction is not None]
         self.defaults = default_initargs(cls)
         self.python_init, self.parameters = _python_init(cls, slots)
         methods = [
@@ -372,7 +373,14 @@ def default_shared_initialize(instance, slot_names, *initargs):
     wanted = True if slot_names is True else set(python_list(slot_names))
     plan = plan_for(type(instance))
     parameters = plan.parameters
+    for key in initargs[::2]:
+        if not is_symbol(key):
+            program_error("malformed initialization arguments: ~S is not a symbol.", key)
     plan.fill(instance, initargs, wanted)
+    if wanted and plan.shared:
+        for slot in plan.shared:
+            if slot.cell.value is UNBOUND and (wanted is True or slot.name in wanted):
+                slot.cell.value = one(slot.initfunction())
     for index in range(0, len(initargs), 2):  # after the Python __init__, reinitialization sets its attributes too
         if initargs[index] in parameters:
             setattr(instance, parameters[initargs[index]], initargs[index + 1])

@@ -13,6 +13,7 @@ from cramhy_runtime.ground.data import UNSUPPLIED, Cons, MultipleValues, Symbol,
 from cramhy_runtime.ground.functions import functionp
 from cramhy_runtime.ground.packages import is_symbol, sym, symbol_name
 from cramhy_runtime.ground.dispatch import generic_functions as generics
+from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
 from ..packages.package_errors import check_function_name
 from . import instances, slots
 from .builtin_classes import CLASSES
@@ -36,6 +37,19 @@ update-instance-for-different-class update-instance-for-redefined-class slot-mis
 no-next-method make-load-form make-load-form-saving-slots make-instances-obsolete
 ensure-generic-function add-method remove-method find-method compute-applicable-methods method-qualifiers function-keywords
 invalid-method-error method-combination-error"""
+
+OPEN = {
+    "CLASS-NAME": "(class)",
+    "(setf CLASS-NAME)": "(new-value class)",
+    "ADD-METHOD": "(generic-function method)",
+    "REMOVE-METHOD": "(generic-function method)",
+    "FIND-METHOD": "(generic-function qualifiers specializers &optional errorp)",
+    "COMPUTE-APPLICABLE-METHODS": "(generic-function arguments)",
+    "METHOD-QUALIFIERS": "(method)",
+    "FUNCTION-KEYWORDS": "(method)",
+    "MAKE-INSTANCES-OBSOLETE": "(class)",
+}
+"""The functions of metaobjects on which a program may define methods; the standard has them as generic functions."""
 
 MOP_NAMES = """class-precedence-list class-direct-superclasses class-direct-subclasses class-slots class-direct-slots
 slot-definition-name slot-definition-initargs slot-definition-type slot-definition-initform slot-definition-initfunction
@@ -158,14 +172,17 @@ def make_instances_obsolete(class_):
 
 
 def ensure_generic_function(
-    name, *, lambda_list=None, method_combination=None, argument_precedence_order=None, documentation=None, **others
+    name, *, lambda_list=UNSUPPLIED, method_combination=None, argument_precedence_order=None, documentation=None, **others
 ):
     """``cl:ensure-generic-function``"""
     if not isinstance(name, (Symbol, Cons)):
         check_function_name(name, "setting fdefinition of ~S")
+    function = generics.find_generic_function(name)
+    if function is not None and lambda_list is not UNSUPPLIED:
+        generics.set_lambda_list(function, lambda_list)
     return generics.ensure_generic_function(
         name,
-        lambda_list,
+        None if lambda_list is UNSUPPLIED else lambda_list,
         method_combination=method_combination,
         argument_precedence_order=argument_precedence_order,
         documentation=documentation,
@@ -218,6 +235,9 @@ def add_method(generic_function, method):
     """``cl:add-method``"""
     if not isinstance(generic_function, GenericFunction) or not isinstance(method, Method):
         return no_method_for("ADD-METHOD", generic_function, method)
+    owner = method.generic_function
+    if owner is not generic_function and method in owner.methods:
+        return error(SimpleError("The method ~S is already part of the generic function ~S.", method, owner))
     generics.add_method(
         generic_function,
         method.qualifiers,
@@ -226,6 +246,7 @@ def add_method(generic_function, method):
         uses_next=method.uses_next,
         per_class=method.per_class,
         documentation=method.documentation,
+        shape=method.shape,
     )
     return generic_function
 
@@ -349,3 +370,12 @@ def class_finalized_p(class_):
 def ensure_class(name, *, direct_superclasses=None, direct_slots=None, **others):
     """``sb-mop:ensure-class``, without slots in property list form."""
     return define_class(name, direct_superclasses, direct_slots)
+
+
+def open_functions():
+    """Let programs define methods on the functions `OPEN`, when COMMON-LISP has them."""
+    for name, lambda_list in OPEN.items():
+        symbol = sym(name.removeprefix("(setf ").removesuffix(")"))
+        function = symbol.setf_function if name.startswith("(setf ") else symbol.function
+        required = len(lambda_list.strip("()").partition("&")[0].split())
+        open_to_methods(getattr(function, "python", function), name, lambda_list, *[None] * required)

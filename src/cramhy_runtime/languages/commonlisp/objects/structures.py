@@ -21,6 +21,7 @@ from ..syntax.function_shapes import shape_of
 from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.packages import Package, intern, is_symbol, keyword, redefined, sym, symbol_name
 from ..packages.package_errors import check_symbol
+from ..syntax.declaration_names import check_type_name
 from cramhy_runtime.ground.printing import CURRENT_LEVEL, LEVELS_COUNT
 from .builtin_classes import set_structure_object
 from .constructors import keyword_constructor
@@ -266,6 +267,7 @@ def define_structure(
     print_function: a function of object, stream and depth. print_object: a function of object and stream.
     """
     check_symbol(name, "defining ~S as a structure", name)
+    check_type_name(name)
     parent = find_structure(include) if include is not None else None
     own = python_list(slots)
     if predicate is not UNSUPPLIED and predicate is not None and type is not None and named is None:

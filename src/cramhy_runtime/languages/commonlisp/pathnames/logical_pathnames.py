@@ -83,7 +83,7 @@ def _rule(host, rule):
     return from_, to, pattern, pathname(to)
 
 
-def translate_logical_pathname(designator):
+def translate_logical_pathname(designator, *, allow_other_keys=None):
     """``translate-logical-pathname``: the pathname of the file; others than logical pathnames are what they are."""
     path = pathname(designator)
     for _ in range(100):  # one host may translate to another

@@ -280,8 +280,12 @@ def directory_text(pathname, native=False):
             pieces.append(os.path.expanduser(user).rstrip("/") if native else user)
         elif part is UP:
             pieces.append("..")
+        elif part is BACK and not native:
+            return _lose(pathname, "of the :DIRECTORY component :BACK", native)
         elif part is BACK:
-            return error("~S cannot be represented in namestrings.", BACK)
+            pieces.append("..")
+        elif part == "":
+            continue
         elif native and not isinstance(part, str):
             return _lose(pathname, f"of the :DIRECTORY component {prin1_to_string(part)}", native)
         else:

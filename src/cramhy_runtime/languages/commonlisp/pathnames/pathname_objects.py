@@ -128,3 +128,26 @@ class LogicalPathname(Pathname):
     @property
     def key(self):
         return (*super().key, self.version)
+
+
+def parts_of_pathname(path):
+    """What `pathname_of_parts` makes ``path`` of again: texts, keywords and lists, as compiled code can hold them."""
+
+    def plain(part):
+        return ["pattern", *map(plain, part.pieces)] if isinstance(part, Pattern) else list(part) if isinstance(part, tuple) else part
+
+    directory = None if path.directory is None else [plain(part) for part in path.directory]
+    host = path.host.name if isinstance(path.host, LogicalHost) else None
+    return [host, path.device, directory, plain(path.name), plain(path.type), path.version]
+
+
+def pathname_of_parts(host_named, host, device, directory, name, type, version):
+    """The pathname of these parts; ``host_named`` gives the logical host of a name."""
+
+    def part(plain):
+        if not isinstance(plain, list):
+            return plain
+        return Pattern(map(part, plain[1:])) if plain[:1] == ["pattern"] else tuple(plain)
+
+    cls, owner = (Pathname, UNIX) if host is None else (LogicalPathname, host_named(host))
+    return cls(owner, device, directory if directory is None else tuple(map(part, directory)), part(name), part(type), version)

@@ -76,7 +76,8 @@ def _pathname_of_stream(stream):
         return found
     if getattr(stream, "lisp_name", "") not in ("SB-SYS::FD-STREAM", "SYNONYM-STREAM"):
         return type_error(stream, DESIGNATOR)
-    return error("The stream~%  ~S~%is not associated with a named file.", stream)
+    text, expected = "The stream~%  ~S~%is not associated with a named file.", "(SATISFIES SB-IMPL::STREAM-FILE-STREAM)"
+    return error(SimpleTypeError(text, stream, datum=stream, expected_type=expected))
 
 
 def parsed(text):

@@ -5,18 +5,19 @@ from __future__ import annotations
 from pathlib import PurePath
 
 from cramhy_runtime.ground.data import Cons, list_from
+from cramhy_runtime.ground.conditions import handler_case
 from ..pathnames.namestrings import NoNamestringError, directory_list, namestring
 from ..pathnames.pathname_objects import LogicalHost, Pathname, Pattern, UnixHost
 from ..files.file_streams import FileStream
 from ..streams.streams import ConcatenatedStream, ConsoleInput, FileOutput, Stream, TwoWayStream
+from .print_controls import PRINT_ESCAPE, bound
 from .print_names import string_text
 from .printer import define_printer, escaping, output_object, print_unreadable
 
 
 def _print_pathname(path, stream):
-    try:
-        text = namestring(path)
-    except NoNamestringError:
+    text = handler_case([(NoNamestringError, lambda condition: None)], lambda: namestring(path))  # no handler of the program hears of it
+    if text is None:
         _print_parts(path, stream)
     else:
         stream.write("#P" + string_text(text) if escaping() else text)
@@ -30,7 +31,8 @@ def _print_parts(path, stream):
             stream.write(f" :{name.upper()} ")
             output_object(value, stream)
 
-    print_unreadable(path, stream, type_=True, body=contents)
+    with bound(PRINT_ESCAPE, True):
+        print_unreadable(path, stream, type_=True, body=contents)
 
 
 def _print_python_path(path, stream):

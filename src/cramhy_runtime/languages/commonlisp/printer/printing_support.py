@@ -15,11 +15,13 @@ from .pprint_dispatch import INITIAL, PRINT_PPRINT_DISPATCH
 from .pretty import call_logical_block
 
 
-def pprint_logical_block(function, stream, items, *, prefix=None, per_line_prefix=None, suffix=None):
+def pprint_logical_block(function, stream, items, *, prefix=None, per_line_prefix=None, suffix=""):
     """Call ``function(stream)`` inside a logical block around the list ``items``; an ``items`` that is no list is printed.
 
     ``stream`` nil or t stands for ``*standard-output*`` or ``*terminal-io*``, which are bound to the block's stream.
     """
+    if suffix is None:
+        type_error(suffix, "STRING")
     for text in (prefix, per_line_prefix, suffix):
         if text is not None and not isinstance(text, (str, LispString)):
             type_error(text, "(OR STRING NULL)")

@@ -13,10 +13,13 @@ from fractions import Fraction
 
 from cramhy_runtime.kernel.late_patterns import late_pattern
 from ..collections.characters import name_char
-from cramhy_runtime.ground.arrays import bit_vector
+from ..collections.sequence_types import elements
+from ..collections.strings import string
+from ..collections.arrays import CONSTANTS
+from cramhy_runtime.ground.arrays import Vector, bit_vector
 from cramhy_runtime.ground.python_exceptions import condition_for
 from cramhy_runtime.ground.conditions import Condition, Error, style_warn
-from cramhy_runtime.ground.data import NO_VALUES, Character, Cons, Symbol, list_from, one, truth
+from cramhy_runtime.ground.data import NO_VALUES, Character, Cons, LispString, Symbol, list_from, one, truth
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.ports import PORTS
 from ..numbers.arithmetic import is_real
@@ -68,7 +71,7 @@ def with_features(names):
 
 
 _MAX_ARGUMENT = 1 << 24
-"""No array rank, length or label is larger; a larger number is a mistake and would only eat memory."""
+"""No array that is read has more elements: a larger number is a mistake and would only eat memory."""
 
 
 def dispatch(table, stream, character):
@@ -82,7 +85,7 @@ def dispatch(table, stream, character):
         return reader.ended("inside dispatch character")
     function = table.functions.get(char.upper())
     if function is None:
-        if _suppressed() and char not in "<)":
+        if _suppressed() and char not in "<) \t\n\f\r":
             _constituents(reader)
             return None
         if char in "<) \t\n\f\r":
@@ -96,10 +99,14 @@ def dispatch(table, stream, character):
             hint=f"{character.char}{char} has no meaning in Common Lisp.",
         )
     argument = tokens.integer(digits) if digits else None
-    if argument is not None and argument > _MAX_ARGUMENT:
-        return fail(reader, start, "The number after ~A is too large: ~A", character.char, digits)
     reader.describe_frame(character.char + digits + char, start)
     return call(function, reader, Character(char), argument)
+
+
+def _needs_small(reader, sub, argument):
+    """Signal that an array would have more elements than there is memory for."""
+    if argument is not None and argument > _MAX_ARGUMENT:
+        fail(reader, _start(reader), "The number after # is too large: ~D", argument)
 
 
 def _start(reader):
@@ -175,6 +182,7 @@ def sharp_left_paren(stream, sub, argument):
     items = _proper(contents)
     if items is None:
         return fail(reader, start, "Improper list in #(): ~S.", contents)
+    _needs_small(reader, sub, argument)
     if argument is not None:
         if len(items) > argument:
             return fail(reader, start, "Vector longer than the specified length: #~D~S.", argument, contents)
@@ -207,6 +215,7 @@ def sharp_star(stream, sub, argument):
     for digit in digits:
         if digit not in "01":
             return fail(reader, start, "illegal element given for bit-vector: ~S", Character(digit), hint="Its elements are 0 and 1.")
+    _needs_small(reader, sub, argument)
     if argument is not None:
         if len(digits) > argument:
             return fail(reader, start, "Too many bits in ~S: expected ~D or fewer", digits, argument)
@@ -417,7 +426,7 @@ def sharp_a(stream, sub, argument):
             "SBCL-specific form #A(dimensions element-type . contents).",
             hint="A matrix is written #2A((1 2) (3 4)).",
         )
-    if argument > 100:
+    if argument >= CONSTANTS["ARRAY-RANK-LIMIT"]:
         return fail(reader, start, "The rank ~D is too large.", argument)
     dimensions, level = [], contents
     for axis in range(argument):
@@ -446,7 +455,7 @@ def _has_comma(contents, rank):
 def _sequence_items(obj):
     if obj is None or isinstance(obj, Cons):
         return _proper(obj)
-    return [Character(item) for item in obj] if isinstance(obj, str) else obj if isinstance(obj, list) else None
+    return elements(obj) if isinstance(obj, (str, LispString, list, Vector)) else None
 
 
 def sharp_s(stream, sub, argument):
@@ -482,8 +491,15 @@ def sharp_s(stream, sub, argument):
     structure = structure_named(name)
     if structure is None:
         return fail(reader, start, "~S is not a defined structure type.", name)
-    arguments = [KEYWORD.intern(symbol_name(item)) if index % 2 == 0 and is_symbol(item) else item for index, item in enumerate(items[1:])]
+    arguments = [_slot_keyword(item) if index % 2 == 0 else item for index, item in enumerate(items[1:])]
     return _guarded(reader, start, structure.construct, *arguments)
+
+
+def _slot_keyword(designator):
+    """The keyword for a slot that a symbol, a string or a character names."""
+    if is_symbol(designator):
+        return KEYWORD.intern(symbol_name(designator))
+    return KEYWORD.intern(str(string(designator))) if isinstance(designator, (str, LispString, Character)) else designator
 
 
 def sharp_p(stream, sub, argument):

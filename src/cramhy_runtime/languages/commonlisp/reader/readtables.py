@@ -17,7 +17,9 @@ from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.packages import keyword
 
 UPCASE = keyword("UPCASE")
-WHITESPACE = " \t\n\r\f\x7f\xa0\ufeff"
+INVALID = " \t\n\r\f\b\x7f"
+"""Characters that no token contains without an escape, even if the readtable makes them constituents (ANSI 2.1.4.2)."""
+WHITESPACE = " \t\n\r\f\xa0\ufeff"
 """White space of the standard readtable. The last two come with text copied from web pages and editors; no name contains them."""
 
 
@@ -91,7 +93,8 @@ class Readtable:
         from .standard_syntax import read_comment  # first of all: that module fills the tables with the standard syntax
 
         white = _set(self.whitespace)
-        escapes = _set(self.single_escapes | self.multiple_escapes)
+        # an invalid character is looked at where escapes are
+        escapes = _set(self.single_escapes | self.multiple_escapes | set(INVALID) - self.whitespace - set(self.macros))
         ending = _set(set(self.macros) - self.non_terminating)
         begin = f"[^{white}{escapes}{ending}{_set(self.non_terminating)}]"
         skip = f"[{white}]+"

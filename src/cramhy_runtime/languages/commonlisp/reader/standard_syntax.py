@@ -24,6 +24,9 @@ def read_string(stream, character):
     reader = as_reader(stream)
     quote = character.char
     start = index = reader.offset
+    escapes = READTABLE.value.single_escapes
+    if escapes != {"\\"}:
+        return _read_string_with(reader, quote, escapes)
     pieces = []
     while True:
         text = reader.text
@@ -43,6 +46,19 @@ def read_string(stream, character):
             reader.offset = len(text)
             reader.describe_frame('"', start - 1)
             return reader.ended()
+
+
+def _read_string_with(reader, quote, escapes):
+    """The string up to ``quote``, where other characters than ``\\`` are single escapes."""
+    start, taken = reader.offset, []
+    while (char := reader.read_char()) != quote:
+        if char in escapes:
+            char = reader.read_char()
+        if not char:
+            reader.describe_frame('"', start - 1)
+            return reader.ended()
+        taken.append(char)
+    return None if SUPPRESS.value is not None else FreshString("".join(taken))
 
 
 def _install_standard_syntax(table):

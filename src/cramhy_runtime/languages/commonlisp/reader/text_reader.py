@@ -14,12 +14,12 @@ from __future__ import annotations
 from cramhy_runtime.ground.data import NO_VALUES, Character, Cons, MultipleValues, Symbol, one
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.packages import COMMON_LISP_USER, KEYWORD, named_package, sym
-from ..streams.streams import EchoStream, InputStream, input_stream
+from ..streams.streams import EchoStream, FdStream, InputStream, input_stream
 from . import reader_errors, tokens
 from ..syntax.backquote import QUASIQUOTE, Comma
 from .form_places import FormPlaces, LineIndex
 from .reader_errors import fail
-from .readtables import READTABLE, SUPPRESS, UPCASE, DispatchTable, call
+from .readtables import INVALID, READTABLE, SUPPRESS, UPCASE, DispatchTable, call
 from .unmatched_closes import left_out, unmatched_closes
 
 PACKAGE = special("*PACKAGE*", COMMON_LISP_USER)
@@ -31,7 +31,7 @@ _OPEN = object()  # the tail of a list frame without a dot
 _DOT = object()  # the tail of a list frame just after the dot
 
 
-class Reader(InputStream):
+class Reader(InputStream, FdStream):
     """Reads ``text``, of the file ``filename``, whose first character is at ``line`` and ``column`` (counted from 1).
 
     ``positions``, a `FormPlaces`, maps ``id(form)`` of every list read, and of the last symbol read at top level, to (line, column,
@@ -41,8 +41,6 @@ class Reader(InputStream):
     strict: an unmatched ``)`` is an error, as for programs that call ``read``; otherwise it is warned about and ignored.
     A reader is an input stream of Lisp, because reader macro functions get it as one.
     """
-
-    lisp_name = "SB-SYS::FD-STREAM"
 
     def __init__(self, text, filename="<repl>", line=1, column=1, *, strict=False):
         self.text = text
@@ -460,6 +458,8 @@ class Reader(InputStream):
                     index += 1
             elif table.terminates(char):
                 break
+            elif char in INVALID:
+                return fail(self, index, "illegal character ~S", Character(char), hint="Write \\ before it.")
             elif char == ":":
                 name_so_far()
                 parts.append([])

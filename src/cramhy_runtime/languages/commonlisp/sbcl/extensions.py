@@ -15,7 +15,8 @@ from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import Cons, LispString, MultipleValues, boolean, lisp_list, list_from, one
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.hash_tables import need_table
-from cramhy_runtime.ground.packages import printed, sym
+from cramhy_runtime.ground.numbers import FIXNUM_LIMIT
+from cramhy_runtime.ground.packages import printed, sym, symbol_name
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.utilities.locks import lock_of_table
@@ -157,6 +158,18 @@ def constant_form_value(form: Any, environment: Any = None) -> object:
     if constantp(form, environment) is None:
         return error("~S is not a constant form", form)
     return one(evaluate(form))
+
+
+def fixnump(thing: Any) -> object:
+    """``sb-int:fixnump``: whether ``thing`` is a fixnum."""
+    return True if thing.__class__ is int and -FIXNUM_LIMIT <= thing < FIXNUM_LIMIT else None
+
+
+def wait_until_usable(descriptor: Any, direction: Any, seconds: Any = None, serve_events: object = True) -> object:
+    """``sb-sys:wait-until-fd-usable``: whether a descriptor can be read (:input) or written (:output) within so many seconds."""
+    from .sockets import ready
+
+    return ready(descriptor, True if symbol_name(direction) == "OUTPUT" else None, seconds)
 
 
 class InteractiveInterrupt(SeriousCondition):

@@ -360,7 +360,7 @@ _OPENED: dict[str, tuple[Callable[..., Any], Callable[[Any], Any]]] = {
 def define() -> None:
     """Make the package SB-GRAY, and let users define methods on what Common Lisp asks of streams."""
     names = " ".join(cls.lisp_name.partition("::")[2] for cls in CLASSES)
-    define_face("SB-GRAY", export=names + " " + " ".join(_functions))
+    define_face("SB-GRAY", imports={"COMMON-LISP": "stream-element-type"}, export=names + " " + " ".join(_functions))
     _openings["CLOSE"] = open_to_methods(stream_functions.close, "CLOSE", "(stream &key abort)", None, method=_close)
     for name, (function, own) in _OPENED.items():
         _openings[name] = open_to_methods(function, name, "(stream)", None, method=_first_method(name, own, function))

@@ -4,6 +4,8 @@ something of the package that is not there yet (`extension_packages.LatePackage`
 
 from __future__ import annotations
 
+import sys
+
 from cramhy_runtime.cpl.task_variables import define_task_state
 
 from cramhy_runtime.ground.data import lisp_list
@@ -130,7 +132,11 @@ def define_system() -> None:
     """SB-SYS."""
     define_face(
         "SB-SYS",
-        functions={deadlines: "defer-deadline cancel-deadline signal-deadline", "beep": extensions.no_effect},
+        functions={
+            deadlines: "defer-deadline cancel-deadline signal-deadline",
+            "wait-until-fd-usable": extensions.wait_until_usable,
+            "beep": extensions.no_effect,
+        },
         variables={"*stdin*": streams.CONSOLE_INPUT, "*stdout*": streams.CONSOLE_OUTPUT, "*stderr*": streams.CONSOLE_ERROR},
         export="deadline-timeout io-timeout interactive-interrupt",
     )
@@ -139,7 +145,7 @@ def define_system() -> None:
 
 def define_posix() -> None:
     """SB-POSIX."""
-    define_face("SB-POSIX", functions={posix: posix.NAMES}, variables=posix.CONSTANTS, export="syscall-error")
+    define_face("SB-POSIX", functions={posix: posix.NAMES, **posix.OF_FILES}, variables=posix.CONSTANTS, export="syscall-error")
     for name in posix.CONSTANTS:
         sym(f"SB-POSIX::{name}").constant = True
 
@@ -155,8 +161,21 @@ def define_debug() -> None:
 
 def define_internals() -> None:
     """What programs use of SB-INT."""
-    define_face("SB-INT", functions={extensions: "constant-form-value"}, export="compiled-program-error")
+    define_face("SB-INT", functions={extensions: "constant-form-value fixnump"}, export="compiled-program-error")
     _macros("SB-INT")
+
+
+def define_machine() -> None:
+    """What programs ask of SB-VM: sizes in bits."""
+    sizes = {"n-word-bits": 64, "n-byte-bits": 8, "n-word-bytes": 8}
+    define_face("SB-VM", variables=sizes)
+    for name in sizes:
+        sym(f"SB-VM::{name.upper()}").constant = True
+
+
+def define_compiler() -> None:
+    """What programs ask of SB-C: the order of bytes."""
+    define_face("SB-C", variables={"*backend-byte-order*": sym(f":{sys.byteorder.upper()}-ENDIAN")})
 
 
 def define_gray() -> None:
@@ -183,6 +202,8 @@ MAKERS = {
     "SB-GRAY": define_gray,
     "SB-MOP": define_metaobjects,
     "SB-PCL": define_metaobjects,
+    "SB-VM": define_machine,
+    "SB-C": define_compiler,
 }
 
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import stat
 
 from cramhy_runtime.ground.conditions import Error, error
 from cramhy_runtime.ground.data import list_from, truth
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+from ..evaluation.universal_time import UNIVERSAL_EPOCH, get_universal_time
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -67,6 +69,11 @@ def putenv(text: Any) -> int:
 def environ() -> object:
     """``sb-ext:posix-environ``: a list of ``"NAME=VALUE"``."""
     return list_from([f"{name}={value}" for name, value in os.environ.items()])
+
+
+def time() -> int:
+    """``sb-posix:time``: seconds since 1970, by the kernel's clock."""
+    return get_universal_time() - UNIVERSAL_EPOCH
 
 
 def getpid() -> int:
@@ -144,6 +151,30 @@ def readlink(file: Any) -> Any:
     return _call("readlink", os.readlink, os.fspath(file))
 
 
+def stat_(file: Any) -> Any:
+    """``sb-posix:stat``: what the system tells of a file, or of what a link leads to."""
+    return _call("stat", os.stat, os.fspath(file))
+
+
+def lstat(file: Any) -> Any:
+    """``sb-posix:lstat``: as `stat_`, of the link itself."""
+    return _call("lstat", os.lstat, os.fspath(file))
+
+
+def _part(name: str) -> Callable[[Any], int]:
+    """A function: that part of what `stat_` tells, a whole number."""
+    return lambda told: int(getattr(told, f"st_{name}"))
+
+
+OF_FILES = {
+    "stat": stat_,
+    **{f"stat-{name}": _part(name) for name in "mode ino dev nlink uid gid size atime mtime ctime".split()},
+    **{
+        f"s-is{kind}": lambda mode, ask=getattr(stat, f"S_IS{kind.upper()}"): True if ask(mode) else None
+        for kind in "reg dir chr blk fifo lnk sock".split()
+    },
+}
+"""Functions whose names Python does not take, or that are made of one another."""
 CONSTANTS = {"R-OK": os.R_OK, "W-OK": os.W_OK, "X-OK": os.X_OK, "F-OK": os.F_OK, "ENOENT": 2, "EACCES": 13, "EEXIST": 17, "EINVAL": 22}
-NAMES = """getenv setenv unsetenv putenv getpid getppid getuid geteuid getgid getegid getcwd chdir mkdir rmdir unlink rename chmod access
-readlink syscall-errno"""
+NAMES = """getenv setenv unsetenv putenv time getpid getppid getuid geteuid getgid getegid getcwd chdir mkdir rmdir unlink rename chmod
+access readlink lstat syscall-errno"""

@@ -122,7 +122,7 @@ class StringOutputStream(OutputStream, StringStream):
 
     lisp_name = "SB-IMPL::STRING-OUTPUT-STREAM"
     behind = ""
-    kind = None  # the element type of its strings, if the program gave one
+    kind = False  # the element type of its strings, if the program gave one
 
     def __init__(self, target=None):
         self.parts = []
@@ -197,10 +197,14 @@ class StringOutputStream(OutputStream, StringStream):
         return True
 
 
-class FileOutput(OutputStream):
-    """Writes to a Python text file (anything with ``write``)."""
+class FdStream(Stream):
+    """What SBCL's FD-STREAM means: text or bytes of the world outside. It gives its name to several classes."""
 
     lisp_name = "SB-SYS::FD-STREAM"
+
+
+class FileOutput(OutputStream, FdStream):
+    """Writes to a Python text file (anything with ``write``)."""
 
     def __init__(self, file, label=None):
         self._file = file

@@ -22,7 +22,7 @@ from cramhy_runtime.ground.data import (
     boolean,
     list_from,
 )
-from cramhy_runtime.ground.packages import is_symbol
+from cramhy_runtime.ground.packages import is_symbol, sym
 from cramhy_runtime.ground.ports import PORTS
 from . import streams
 from .streams import (
@@ -167,7 +167,7 @@ def peek_char(peek_type=None, stream=None, eof_error_p=True, eof_value=None, rec
             return _at_end(stream, eof_error_p, eof_value)
         if (
             peek_type is None
-            or (peek_type is True and not character.isspace())
+            or (peek_type is True and character not in sym("*READTABLE*").value.whitespace)
             or (isinstance(peek_type, Character) and peek_type.char == character)
         ):
             return Character(character)
@@ -253,7 +253,8 @@ def get_output_stream_string(stream):
     if not isinstance(stream, StringOutputStream):
         return type_error(stream, "SB-IMPL::STRING-OUTPUT-STREAM")
     text = stream.take()
-    return KindString(text, BASE_CHAR) if stream.kind is BASE_CHAR and text.isascii() else FreshString(text)
+    kind = stream.kind
+    return KindString(text, kind) if kind is None or kind is BASE_CHAR and text.isascii() else FreshString(text)
 
 
 def make_string_input_stream(string, start=0, end=None):

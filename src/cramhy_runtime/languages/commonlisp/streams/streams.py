@@ -22,6 +22,7 @@ from cramhy_runtime.ground.data import UNBOUND, lisp_list
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.packages import is_symbol, sym
 from .basic_streams import (
+    FdStream,
     FileOutput,
     InputStream,
     OutputStream,
@@ -33,7 +34,7 @@ from .basic_streams import (
     misused,
 )
 
-__all__ = ["FileOutput", "InputStream", "OutputStream", "Stream", "StringInputStream", "StringOutputStream", "StringStream"]
+__all__ = ["FdStream", "FileOutput", "InputStream", "OutputStream", "Stream", "StringInputStream", "StringOutputStream", "StringStream"]
 
 
 class ConsoleOutput(FileOutput):
@@ -111,10 +112,9 @@ class BroadcastStream(OutputStream):
             write_byte(byte, stream)
 
 
-class ConsoleInput(InputStream):
+class ConsoleInput(InputStream, FdStream):
     """``sys.stdin``, whatever it is at the moment. Other tasks run while it waits for a line."""
 
-    lisp_name = "SB-SYS::FD-STREAM"
     label = "standard input"
 
     @property
@@ -158,7 +158,13 @@ class ConcatenatedStream(InputStream):
         return ""
 
     def listen(self):
-        return super().listen() or any(stream.listen() for stream in self.streams[:1])
+        while not super().listen() and self.streams:
+            if self.streams[0].listen():
+                return True
+            if self.streams[0].is_interactive or self.streams[0].peek_char():
+                return False
+            self.streams.pop(0)
+        return super().listen()
 
     def read_byte(self):
         while self.streams:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import Symbol
 
 EXTENSIONS = """MAYBE-INLINE TRULY-DYNAMIC-EXTENT DISABLE-PACKAGE-LOCKS ENABLE-PACKAGE-LOCKS GLOBAL ALWAYS-BOUND FREEZE-TYPE DEPRECATED
@@ -17,3 +18,9 @@ def is_extension(symbol, *names):
 def is_declared(symbol):
     """Whether ``(declaim (declaration symbol))`` made it a known declaration."""
     return isinstance(symbol, Symbol) and symbol.compiler_data is not None and "declaration" in symbol.compiler_data
+
+
+def check_type_name(symbol):
+    """Signal that ``symbol``, which is to become the name of a type, names a declaration (ANSI 3.3.3)."""
+    if is_declared(symbol):
+        error("~S names a declaration, so it cannot become the name of a type.", symbol)

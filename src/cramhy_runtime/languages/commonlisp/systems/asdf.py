@@ -8,15 +8,16 @@ from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import Cons, list_from, lisp_list, truth
 from ..packages.face_definition import define_face
 from ..files.files import lisp_path
+from ..objects.classes import alias_class
 from cramhy_runtime.ground.dispatch.generic_functions import protocol_function
 from cramhy_runtime.ground.keyword_calls import lispify
-from cramhy_runtime.ground.packages import is_symbol, keyword, string_designator, sym, symbol_name
+from cramhy_runtime.ground.packages import ensure_package, is_symbol, keyword, string_designator, sym, symbol_name
 from ..reader.dispatch_macros import FEATURES
 from ..streams.streams import STANDARD_OUTPUT
 from cramhy_runtime.ros import search_folders
-from . import systems
+from . import asdf_protocol, package_inferred, systems
 from .loader import folder_of_load
-from .system_definitions import Component, OPERATIONS, Operation, PERFORM, System, TestOp, component_name, define_system
+from .system_definitions import Component, OPERATIONS, PERFORM, System, TestOp, component_name, define_system
 
 LOADING = {"LOAD-OP", "LOAD-SOURCE-OP", "COMPILE-OP", "PREPARE-OP"}
 _active: list = []
@@ -62,16 +63,12 @@ def operate(operation, component, *, force=None, verbose=None, version=None, **o
 
     Every operation loads the system; ``test-op`` then does what ``:in-order-to`` says and calls ``asdf:perform``.
     """
-    name = (
-        type(operation).lisp_name.partition("::")[2]
-        if isinstance(operation, Operation)
-        else symbol_name(operation)
-        if is_symbol(operation)
-        else string_designator(operation).upper()
-    )
-    if name not in OPERATIONS:
+    done = asdf_protocol.operation_of(operation)
+    if done is None:
+        name = symbol_name(operation) if is_symbol(operation) else string_designator(operation).upper()
         near = systems.near_names(name, OPERATIONS)
         return error("There is no operation ~A for systems~@[; did you mean ~A?~]", name, near[0] if near else None)
+    name = type(done).__dict__.get("lisp_name", type(done).__name__).rpartition(":")[2]
     load_system(component, force=force, version=version)
     system = system_of(component)
     if (name, system) in _active:
@@ -81,7 +78,8 @@ def operate(operation, component, *, force=None, verbose=None, version=None, **o
         for needed, others_ in system.in_order_to.get(name, ()):
             for other in others_:
                 operate(sym(f"ASDF::{needed}"), other)
-        PERFORM(operation if isinstance(operation, Operation) else OPERATIONS[name](), system)
+        if name not in LOADING:  # performed when it was loaded
+            PERFORM(done, system)
     finally:
         _active.pop()
     return None
@@ -141,7 +139,7 @@ def system_relative_pathname(system, name, *, type=None):
 
 
 def component_pathname(component):
-    return lisp_path(system_of(component).pathname)
+    return lisp_path(Path(system_of(component).pathname))
 
 
 def component_name_of(component):
@@ -261,12 +259,20 @@ def define_faces():
             "asdf-version": lambda: "3.3.1",
             "initialize-source-registry": initialize_source_registry,
             "perform": PERFORM,
+            "register-system-packages": package_inferred.register_system_packages,
+            **asdf_protocol.FUNCTIONS,
         },
         variables={"*central-registry*": None},
         export="defsystem operation component module system cl-source-file static-file doc-file html-file "
-        "missing-component missing-dependency " + " ".join(name.lower() for name in OPERATIONS),
+        f"missing-component missing-dependency {asdf_protocol.EXPORT} " + " ".join(name.lower() for name in OPERATIONS),
     )
-    for name, (lambda_list, function) in GENERIC.items():
+    package = ensure_package("ASDF")
+    for cls in asdf_protocol.CLASSES:
+        package.export(sym(cls.lisp_name))
+    for name, cls in asdf_protocol.ALIASES.items():
+        alias_class(sym(f"ASDF::{name}"), cls)
+    sym("ASDF::COMPONENT-PROPERTY").setf_function = lispify(asdf_protocol.set_component_property)
+    for name, (lambda_list, function) in {**GENERIC, **asdf_protocol.GENERIC}.items():
         made = protocol_function(f"ASDF::{name.upper()}", lambda_list, lispify(function))
         sym(f"ASDF::{name.upper()}").package.export(made.__lisp_name__)
     define_face("CRAMHY", functions={"define-system-here": define_system_here})

@@ -1,4 +1,4 @@
-"""Which systems are read with the feature SBCL: those that then name nothing of SBCL that is not here.
+"""Which files of systems are read with the feature SBCL: those that then name nothing of SBCL that is not here.
 
 A portable library says with ``#+sbcl`` and ``#-sbcl`` what it takes from SBCL and what it does on a Lisp that it does not know; some are
 only for Lisps that they know. The packages of SBCL are here to a part. So a system is read as for SBCL if it takes from these packages only
@@ -13,12 +13,13 @@ from contextlib import contextmanager
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import Character, Cons, list_from
 from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import KEYWORD, find_package
+from cramhy_runtime.ground.packages import KEYWORD, named_package
 from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from cramhy_runtime.storage.dependencies import file_state, unchanged
 
 from ..reader.dispatch_macros import FEATURES, IMPLIED_FEATURES, with_features
+from ..reader.reader_errors import QuietFailure
 from ..reader.readtables import READTABLE, Readtable, copy_readtable, set_dispatch_macro_character
 from ..reader.text_reader import PACKAGE, SUPPRESS, Reader
 
@@ -63,7 +64,7 @@ def _read_over(stream: NamesReader, sub: Value, argument: Value) -> str:
     return "#"
 
 
-def _readtable() -> Readtable:
+def readtable_of_names() -> Readtable:
     """The standard one, in which nothing behind ``#`` is evaluated or made."""
     table = copy_readtable(None)
     for char in ".SPCA":
@@ -92,10 +93,10 @@ def _names_in(path: Path, text: str) -> frozenset[str] | None:
         return None
     reader, end = NamesReader(text, str(path)), object()
     try:
-        with binding(READTABLE, _readtable(), FEATURES, with_features(("SBCL",))):
+        with binding(READTABLE, readtable_of_names(), FEATURES, with_features(("SBCL",))):
             while (form := reader.read(False, end)) is not end:
                 reader.names.update(_taken_by_package(form))
-    except Condition:
+    except (Condition, QuietFailure):
         return frozenset(name.upper().replace("::", ":") for name in _NAMES.findall(text))
     return frozenset(reader.names)
 
@@ -111,12 +112,12 @@ def _taken_by_package(form: Value) -> Iterator[str]:
         head, rest = form.car, form.cdr
         if isinstance(head, Cons):
             yield from _taken_by_package(head)
-        elif isinstance(head, str) and isinstance(rest, Cons):
-            items = [str(item).lstrip("#:").upper() for item in _elements(rest)]
+        elif isinstance(head, str) and head.lower() in (":use", ":import-from") and isinstance(rest, Cons):
+            names = [str(item).lstrip("#:").upper() for item in _elements(rest) if not isinstance(item, Cons)]
             if head.lower() == ":use":
-                yield from (f"{item}:" for item in items if item.startswith("SB-"))
-            elif head.lower() == ":import-from" and items[0].startswith("SB-"):
-                yield from (f"{items[0]}:{item}" for item in items[1:])
+                yield from (f"{name}:" for name in names if name.startswith("SB-"))
+            elif names and names[0].startswith("SB-"):
+                yield from (f"{names[0]}:{name}" for name in names[1:])
         form = rest
 
 
@@ -129,7 +130,7 @@ def _elements(lst: Value) -> Iterator[Value]:
 def is_here(name: str) -> bool:
     """Whether a name as those of `names_of_sbcl` means something here."""
     package_name, _, symbol_name = name.partition(":")
-    package = find_package(package_name)
+    package = named_package(package_name)
     return package is not None and (not symbol_name or package.lookup(symbol_name)[1] is not None)
 
 
@@ -156,4 +157,4 @@ def read_for_sbcl(wanted: bool) -> Iterator[None]:
         FEATURES.value = list_from([*(each for each in after if each not in inside), *(each for each in before if each not in gone)])
 
 
-__all__ = ["is_here", "lacking", "names_of_sbcl", "read_for_sbcl", "speaks_of_sbcl"]
+__all__ = ["NamesReader", "is_here", "lacking", "names_of_sbcl", "read_for_sbcl", "readtable_of_names", "speaks_of_sbcl"]

@@ -289,7 +289,9 @@ class Compilation:
             try:
                 yield self.unit.compile(part)
             except NotStorable as problem:
-                error("~A cannot be written to a compiled file: ~A. LOAD the source instead.", self.filename, str(problem))
+                error(
+                    "~A cannot be written to a compiled file: ~A. LOAD the source instead.", self.filename, prin1_to_string(problem.args[0])
+                )
 
     def parts(self, form, now):
         """(form, whether it is evaluated now, whether it is run when the file is loaded) for the forms that ``form`` consists of.

@@ -13,6 +13,7 @@ from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.ground.conditions import CompileError, error, style_warn
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from, lisp_list
 from ..evaluation.evaluator import PACKAGE, evaluate
+from ..objects.class_definition import default_initargs
 from ..objects.classes import find_class
 from cramhy_runtime.ground.dispatch.generic_functions import EqlSpecializer, add_method, generic, remove_method
 from cramhy_runtime.ground.packages import (
@@ -25,11 +26,16 @@ from cramhy_runtime.ground.packages import (
     sym,
     symbol_name,
 )
+from ..files.files import lisp_path
 from ..printer.printer import define_printer
 from ..reader.dispatch_macros import FEATURES
 
-ensure_package("UIOP", "UIOP/DRIVER", use=[COMMON_LISP])
-ensure_package("ASDF", "ASDF/INTERFACE", use=[COMMON_LISP, ensure_package("UIOP")])
+_PARTS_OF_UIOP = """DRIVER PACKAGE UTILITY VERSION OS PATHNAME FILESYSTEM STREAM IMAGE LISP-BUILD LAUNCH-PROGRAM RUN-PROGRAM CONFIGURATION
+BACKWARD-DRIVER"""
+_PARTS_OF_ASDF = """INTERFACE COMPONENT SYSTEM SYSTEM-REGISTRY FIND-SYSTEM FIND-COMPONENT OPERATION ACTION LISP-ACTION PLAN OPERATE
+OUTPUT-TRANSLATIONS SOURCE-REGISTRY PARSE-DEFSYSTEM BUNDLE CONCATENATE-SOURCE PACKAGE-INFERRED-SYSTEM BACKWARD-INTERFACE USER"""
+ensure_package("UIOP", *[f"UIOP/{part}" for part in _PARTS_OF_UIOP.split()], use=[COMMON_LISP])
+ensure_package("ASDF", *[f"ASDF/{part}" for part in _PARTS_OF_ASDF.split()], use=[COMMON_LISP, ensure_package("UIOP")])
 
 
 class Operation:
@@ -63,17 +69,27 @@ OPERATIONS = {cls.lisp_name.partition("::")[2]: cls for cls in (LoadOp, LoadSour
 
 
 class Component:
-    """A part of a system. name, and ``depends_on``: the names of siblings that come first; ``path``: where it lies, if it says so."""
+    """A part of a system. name, and ``depends_on``: the names of siblings that come first; ``path``: where it lies, if it says so.
+
+    methods: those that its definition adds to ``asdf:perform``. around_compile: a function that calls the one that compiles a file.
+    """
 
     lisp_name = "ASDF::COMPONENT"
+    lisp_slots = {"RELATIVE-PATHNAME": "relative_pathname"}
 
     def __init__(self, name, parent=None, depends_on=(), path=None):
         self.name, self.parent, self.depends_on, self.path = name, parent, list(depends_on), path
+        self.methods, self.around_compile = [], None
 
     @property
     def pathname(self):
         """The file or folder."""
         return self.parent.pathname / (self.name if self.path is None else self.path)
+
+    @property
+    def relative_pathname(self):
+        """The slot that older libraries read: what its definition says of where it lies."""
+        return self.name if self.path is None else lisp_path(self.path)
 
     @property
     def system(self):
@@ -98,7 +114,10 @@ class SourceFile(Component):
     @property
     def pathname(self):
         """The ``.lisp`` or ``.hy`` file; the ``.lisp`` file if there is none of them."""
-        folder, name = self.parent.pathname, self.name if self.path is None else self.path
+        folder, name = self.parent.pathname, str(self.name if self.path is None else self.path)
+        if is_of_program(self):
+            suffix = sym("ASDF::SOURCE-FILE-TYPE").function(self, self.parent)
+            return folder / (name if not suffix or name.endswith(f".{suffix}") else f"{name}.{suffix}")
         candidates = [folder / name, folder / f"{name}.lisp", folder / f"{name}.hy"]
         return next(
             (candidate for candidate in candidates if candidate.is_file()),
@@ -124,15 +143,26 @@ class System(Module):
     def __init__(self, name, folder=None):
         super().__init__(name)
         self.folder, self.file = folder, None
-        self.options, self.in_order_to, self.methods = {}, {}, []
+        self.options, self.in_order_to = {}, {}
+        self.without_sbcl = False  # whether its definition was read as on a Lisp that it does not know; then its files are, too
 
     @property
     def pathname(self):
         return self.folder if self.path is None else self.folder / self.path
 
     @property
+    def relative_pathname(self):
+        return lisp_path(self.pathname)
+
+    @property
     def version(self):
         return self.options.get("VERSION")
+
+
+class PackageInferredSystem(System):
+    """A system of which each file is one, too; see ``package_inferred.py``."""
+
+    lisp_name = "ASDF::PACKAGE-INFERRED-SYSTEM"
 
 
 define_printer(
@@ -164,6 +194,8 @@ _TEXT_OPTIONS = {
     "VERSION",
     "LONG-NAME",
     "MAILTO",
+    "DEFSYSTEM-DEPENDS-ON",
+    "WEAKLY-DEPENDS-ON",
     "HOMEPAGE",
     "BUG-TRACKER",
     "SOURCE-CONTROL",
@@ -186,12 +218,15 @@ def define_system(form, folder, file=None, positions=None, load=None):
     for other in _listed(name, "DEFSYSTEM-DEPENDS-ON", table.get("DEFSYSTEM-DEPENDS-ON")):
         if load is not None and (needed := _dependency(name, other)):
             load(needed[0])
-    made = System(name, folder)
+    cls = _class_named(table["CLASS"], PackageInferredSystem) if table.get("CLASS") else System
+    table = {**{symbol_name(key): thunk() for key, thunk in default_initargs(cls).items()}, **table}
+    made = _made(cls, name, folder)
     made.file = file
     made.path = _path(table.get("PATHNAME"))
     made.options = {key: value for key, value in table.items() if key in _TEXT_OPTIONS}
     made.options["VERSION"] = _version(table.get("VERSION"), folder)
     made.depends_on = [needed for item in _listed(name, "DEPENDS-ON", table.get("DEPENDS-ON")) if (needed := _dependency(name, item))]
+    made.around_compile = table.get("AROUND-COMPILE")
     made.components = _components(made, table)
     _in_order_to(made, table.get("IN-ORDER-TO"))
     system = systems.get(name)
@@ -200,13 +235,19 @@ def define_system(form, folder, file=None, positions=None, load=None):
     else:
         for method in system.methods:
             remove_method(PERFORM, method)
+        system.__class__ = type(made)
         vars(system).update(vars(made))
         for component in system.components:
             component.parent = system
+    _perform_methods(system, items, positions)
+    return system
+
+
+def _perform_methods(component, items, positions=None):
+    """Add the methods of the options ``:perform`` in the list ``items`` of keywords and values."""
     for key, value in zip(items[::2], items[1::2]):
         if symbol_name(key) == "PERFORM":
-            _perform_method(system, value, positions)
-    return system
+            _perform_method(component, value, positions)
 
 
 def _options(system, items):
@@ -329,6 +370,8 @@ def _component(parent, form):
         if not isinstance(item, Cons) or holds(item.cdr.car)
     ]  # (:feature f "x")
     made = _made(_class_of_component(parent, form.car), component_name(form.cdr.car), parent, depends, _path(options.get("PATHNAME")))
+    made.around_compile = options.get("AROUND-COMPILE")
+    _perform_methods(made, list(form.cdr.cdr or ()))
     if isinstance(made, Module):
         made.components = _components(made, options)
     return made
@@ -338,18 +381,33 @@ def _class_of_component(parent, kind):
     """The class of a component: ASDF's, or one that the program has made of it with ``defclass``, in the current package or ASDF."""
     if symbol_name(kind) == "FILE" and parent.default_component_class is not None:
         kind = parent.default_component_class
-    places = [PACKAGE.value, find_package("ASDF")] if isinstance(kind, Keyword) else [kind.package]
-    symbols = [place.lookup(symbol_name(kind))[0] for place in places if place is not None]
+    return _class_named(kind, _KINDS.get(symbol_name(kind), StaticFile))
+
+
+def _class_named(kind, default):
+    """The class of components that the symbol or string ``kind`` names: that of the program, or ``default``."""
+    places = [kind.package] if isinstance(kind, Symbol) and not isinstance(kind, Keyword) else [PACKAGE.value, find_package("ASDF")]
+    symbols = [place.lookup(string_designator(kind).upper())[0] for place in places if place is not None]
     known = [cls for symbol in symbols if isinstance(symbol, Symbol) and issubclass(cls := find_class(symbol, None) or object, Component)]
-    return known[0] if known else _KINDS.get(symbol_name(kind), StaticFile)
+    return known[0] if known else default
+
+
+def _own_class(cls):
+    """The class of ASDF that a class of components is, or is made of."""
+    return next(base for base in cls.__mro__ if base.__module__ == __name__)
+
+
+def is_of_program(component):
+    """Whether the class of a component is one of the program's own."""
+    return type(component).__module__ != __name__
 
 
 def _made(cls, *parts):
-    """The component of the class ``cls``; one of the program's own is made as ``make-instance`` makes it."""
-    ours = next(base for base in cls.__mro__ if base.__module__ == __name__)
+    """The component or system of the class ``cls``; one of the program's own is made as ``make-instance`` makes it."""
+    ours = _own_class(cls)
     if cls is ours:
         return cls(*parts)
-    made = sym("MAKE-INSTANCE").function(cls, keyword("NAME"), parts[0])
+    made = sym("MAKE-INSTANCE").function(cls, keyword("NAME"), parts[0], keyword("ALLOW-OTHER-KEYS"), True)
     ours.__init__(made, *parts)
     return made
 
@@ -396,18 +454,18 @@ def _in_order_to(system, form):
                 system.depends_on += [(name, None) for name in names]
 
 
-def _perform_method(system, form, positions):
-    """``:perform (test-op [qualifier] (operation component) . body)``: a method for this system."""
+def _perform_method(component, form, positions):
+    """``:perform (test-op [qualifier] (operation component) . body)``: a method for this system, file or module."""
     parts = list(form) if isinstance(form, Cons) else []
     qualifiers = [parts.pop(1)] if len(parts) > 1 and isinstance(parts[1], Symbol) else []
     if len(parts) < 2 or not is_symbol(parts[0]) or not isinstance(parts[1], Cons) or len(list(parts[1])) != 2:
-        return error(CompileError("DEFSYSTEM ~A: :PERFORM is (operation (o c) form ...), not ~S.", system.name, form))
-    operation = OPERATIONS.get(symbol_name(parts[0]))
-    if operation is None:
+        return error(CompileError("DEFSYSTEM ~A: :PERFORM is (operation (o c) form ...), not ~S.", component.name, form))
+    operation = OPERATIONS.get(symbol_name(parts[0])) or find_class(parts[0], None)
+    if not (isinstance(operation, type) and issubclass(operation, Operation)):
         return error(
             CompileError(
                 "DEFSYSTEM ~A: :PERFORM of the unknown operation ~S; there are ~{~A~^, ~}.",
-                system.name,
+                component.name,
                 parts[0],
                 list_from([name.lower() for name in OPERATIONS]),
             )
@@ -415,8 +473,8 @@ def _perform_method(system, form, positions):
     variables = [item.car if isinstance(item, Cons) else item for item in parts[1]]
     function = evaluate(
         lisp_list(sym("LAMBDA"), list_from(variables), lisp_list(sym("DECLARE"), lisp_list(sym("IGNORABLE"), *variables)), *parts[2:]),
-        str(system.file) if system.file else None,
+        str(component.system.file) if component.system.file else None,
         positions,
     )
-    system.methods.append(add_method(PERFORM, qualifiers, [operation, EqlSpecializer(system)], function, uses_next=False))
+    component.methods.append(add_method(PERFORM, qualifiers, [operation, EqlSpecializer(component)], function, uses_next=False))
     return None

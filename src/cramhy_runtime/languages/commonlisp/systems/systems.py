@@ -10,11 +10,10 @@ from __future__ import annotations
 
 import functools
 import os
-from contextlib import nullcontext
 from pathlib import Path
 
 from cramhy_runtime.kernel.images import per_image
-from cramhy_runtime.ground.conditions import CompileError, SimpleError, error, handler_bind, warn
+from cramhy_runtime.ground.conditions import SimpleError, error, handler_bind, warn
 from cramhy_runtime.ground.dispatch.generic_functions import FunctionInTheWay
 from cramhy_runtime.ground.restarts import find_restart, invoke_restart
 from cramhy_runtime.ground.data import Cons, Symbol, list_from
@@ -23,19 +22,25 @@ from ..compiler.compilation_unit import compilation_unit
 from ..evaluation.definitions import RedefinitionWarning
 from ..evaluation.evaluator import PACKAGE, evaluate
 from ..files.files import lisp_path
+from ..reader.dispatch_macros import FEATURES
 from ..streams.streams import ERROR_OUTPUT, output_stream
-from cramhy_runtime.ground.packages import Package, find_package, keyword, near_names, register, string_designator, sym
-from . import loader, missing_messages
+from cramhy_runtime.ground.packages import Package, find_package, near_names, register, string_designator, sym
+from . import loader, missing_messages, package_inferred, performing
+from .component_order import files_of
 from .for_sbcl import lacking, read_for_sbcl, speaks_of_sbcl
 from cramhy_runtime.storage.dependencies import file_state, unchanged
 from cramhy_runtime.storage.dependency_tracing import is_library
 from cramhy_runtime.ros import search_folders
 from cramhy_runtime.ros.definition_files import package_name
 from cramhy_runtime.ros.search_folders import crawls, look_again, crawling_once
-from .system_definitions import Module, SourceFile, System, define_system, holds, systems
+from .system_definitions import PERFORM, LoadOp, System, define_system, systems
 
 
-class MissingComponent(SimpleError):
+class SystemDefinitionError(SimpleError):
+    lisp_name = "ASDF::SYSTEM-DEFINITION-ERROR"
+
+
+class MissingComponent(SystemDefinitionError):
     lisp_name = "ASDF::MISSING-COMPONENT"
 
 
@@ -45,7 +50,6 @@ _finders: list = []
 _read: dict = per_image({})
 """``.asd`` file → its time and size when it was read."""
 _reading: list = per_image([])
-_loaded: dict = per_image({})
 _loading: list = per_image([])
 CENTRAL_REGISTRY = sym("ASDF::*CENTRAL-REGISTRY*")
 preferred: set = per_image(set())
@@ -53,11 +57,8 @@ preferred: set = per_image(set())
 chosen: dict = per_image({})
 """Name of a system that cramhy contains, too → the ``.asd`` file that the user has loaded, or has put into the central registry."""
 NOT_TO_BE_HAD = {
-    "sb-bsd-sockets": "it is part of SBCL; Python's socket module does its work",
-    "sb-rt": "it is part of SBCL; Debian's rt is the same library, apart from its name",
     "sb-concurrency": "it is part of SBCL; cram-utilities has queues, and waiting on a fluent does the work of a mailbox",
     "sb-cltl2": "it is part of SBCL and asks its compiler, which is another here",
-    "uffi": "it calls functions of C, which cramhy cannot; Python's ctypes does its work",
     "usocket": "it opens sockets by functions of the system; Python's socket module does its work",
     "osicat": "it calls functions of C, which cramhy cannot; Python's os module does its work",
     "gsll": "it calls the GNU Scientific Library; cram-math, and numpy by (py:import numpy), do its work",
@@ -132,13 +133,23 @@ OF_ALL_LISPS = {"alexandria", "cl-utilities", "split-sequence"}
 """Libraries that know nothing of CRAM, of which cramhy contains a rewritten form: a real one on ROS_PACKAGE_PATH comes first. All others
 depend on how cramhy is made; `prefer` takes them from there."""
 
+OF_EACH_GENERATION = frozenset(
+    "cram-robot-interfaces cram-common-failures cram-designator-specification cram-common-designators cram-plan-occasions-events cram-tf"
+    " cram-mobile-pick-place-plans cram-pr2-description cram-robot-pose-gaussian-costmap cram-bullet-reasoning-belief-state"
+    " cram-btr-spatial-relations-costmap".split()
+)
+"""CRAM's interfaces and plans, which cramhy contains as CRAM's branch master has them. The branch devel has others under the same names,
+and its demos are written for those. Where a checkout of devel is on ROS_PACKAGE_PATH, its own come first."""
+SIGN_OF_DEVEL = "cram-manipulation-interfaces.asd"
+"""A system that devel has, and master has not."""
+
 
 def _ask_registry(name):
     """If the user's central registry or ROS_PACKAGE_PATH has a system ``name`` that cramhy contains, too, take that one."""
     if name in preferred or not (name in built_in or f"{name}.asd" in libraries()):
         return
     path = next((folder / f"{name}.asd" for folder in central_registry() if os.path.isfile(folder / f"{name}.asd")), None)
-    if path is None and name in OF_ALL_LISPS:
+    if path is None and (name in OF_ALL_LISPS or name in OF_EACH_GENERATION and _find_below(SIGN_OF_DEVEL, True)):
         path = _find_below(f"{name}.asd", True)
     if path is not None:
         load_asd(path)
@@ -190,6 +201,10 @@ LIBRARY_PACKAGES = {
     "CRAM-PR2-ENVIRONMENT-MANIPULATION": "cram-pr2-environment-manipulation",
     "PR2-EM": "cram-pr2-environment-manipulation",
     "PR2-ENV-MAN": "cram-pr2-environment-manipulation",
+    "SB-BSD-SOCKETS": "sb-bsd-sockets",
+    "SB-BSD-SOCKETS-INTERNAL": "sb-bsd-sockets",
+    "SB-RT": "sb-rt",
+    "SB-ROTATE-BYTE": "sb-rotate-byte",
     "FIVEAM": "fiveam",
     "5AM": "fiveam",
     "IT.BESE.FIVEAM": "fiveam",
@@ -207,6 +222,7 @@ LIBRARY_PACKAGES = {
     "CLOSER-COMMON-LISP-USER": "closer-mop",
     "C2CL-USER": "closer-mop",
     "CFFI": "cffi",
+    "UFFI": "uffi",
     "CFFI-ROS-UTILS": "cffi-ros-utils",
     "CRAM-COMMON-FAILURES": "cram-common-failures",
     "COMMON-FAIL": "cram-common-failures",
@@ -331,6 +347,7 @@ def _read_definitions(path):
     text = path.read_text(encoding="utf-8")
     if not speaks_of_sbcl(text) or is_library(str(path)):
         return _evaluate_definitions(path, text)
+    features = FEATURES.value
     with read_for_sbcl(True):
         _evaluate_definitions(path, text)
     made = [system for system in systems.values() if system.file == path]
@@ -339,11 +356,13 @@ def _read_definitions(path):
         return None
     for system in made:
         system.file = None
+    FEATURES.value = features  # without those that the first reading has added
     with read_for_sbcl(False):
         _evaluate_definitions(path, text)
     for system in made:
         if system.file is None and system is not main:
             forget_system(system.name)
+        system.without_sbcl = system.file is not None
     if main.file is None:  # it is there for Lisps that it knows
         with read_for_sbcl(True):
             _evaluate_definitions(path, text)
@@ -389,6 +408,8 @@ def find_system(name, required_by=None):
     if path is not None:
         load_asd(path)
     system = systems.get(name)
+    if system is None:
+        system = package_inferred.infer(name)
     if system is None and name in LEFT_OUT:
         system = System(name, Path(__file__).parents[3])
         system.options["DESCRIPTION"] = LEFT_OUT[name]
@@ -451,36 +472,16 @@ def _load_system(name, force=False, required_by=None, version=None):
         check_version(system, version, required_by)
         chain = "".join(_load_system(other, required_by=name, version=least) for other, least in system.depends_on)
         chain = _instead_of_ours(name, lambda: _load_components(system, chain, force))
-        loaded[name] = chain
+        if force or loaded.get(name) != chain:
+            loaded[name] = chain
+            PERFORM(LoadOp(), system)
         return chain
     finally:
         _loading.pop()
 
 
 def _load_components(system, chain, force):
-    if _is_replaced(system):
-        return chain
-    files = [component.pathname for component in files_of(system)]
-    with _features_for(system, files):
-        for path in files:
-            chain = _load_component(path, chain, force)
-    return chain
-
-
-def _features_for(system, files):
-    """A context in which ``*features*`` has SBCL or not, as the ``files`` of a system need it. Who asked for the feature is told."""
-    lacks = None if is_library(str(system.file)) else lacking(files)
-    if lacks is None:
-        return nullcontext()
-    if lacks and holds(keyword("SBCL")) and system.name not in loaded:
-        stream = output_stream(ERROR_OUTPUT.value)
-        more = f" and {len(lacks) - 3} more" if len(lacks) > 3 else ""
-        stream.fresh_line()
-        stream.write(
-            f"; The system {system.name} is read without the feature SBCL: it would name {', '.join(lacks[:3])}{more}, not had here.\n"
-        )
-        stream.flush()
-    return read_for_sbcl(not lacks)
+    return chain if _is_replaced(system) else performing.load_components(system, chain, force)
 
 
 def _is_replaced(system):
@@ -515,73 +516,12 @@ loaded: dict = per_image({})
 """Name of each system that was loaded → its fingerprint."""
 
 
-def loaded_files():
-    """The files of systems that were loaded."""
-    return list(_loaded)
-
-
-def _load_component(path, chain, force):
-    known = _loaded.get(path)
-    if known is not None and known[0] == chain and unchanged(path, known[1]) and not force:
-        return known[2]
-    _loaded.pop(path, None)
-    state = file_state(path)
-    fingerprint = loader.load_file(path, chain)
-    _loaded[path] = (chain, state, fingerprint)
-    return fingerprint
-
-
 def forget_system(name):
     """Forget the definition of the system ``name`` and that its files were loaded; whether there was one."""
     system = systems.pop(name, None)
     loaded.pop(name, None)
     if system is None:
         return False
-    for component in files_of(system):
-        _loaded.pop(component.pathname, None)
+    performing.forget_files(system)
     _read.pop(system.file, None)
     return True
-
-
-def files_of(module):
-    """The source files of a system or module, in the order of loading."""
-    for component in _ordered(module):
-        if isinstance(component, Module):
-            yield from files_of(component)
-        elif isinstance(component, SourceFile):
-            yield component
-
-
-def _ordered(module):
-    """The components of ``module`` so that each comes after those it depends on, otherwise as they stand."""
-    by_name = {component.name: component for component in module.components}
-    done, active, order = set(), [], []
-
-    def visit(component):
-        if component.name in done:
-            return
-        if component.name in active:
-            error(
-                "Circular dependency in system ~A: ~{~A~^ -> ~} -> ~A",
-                module.system.name,
-                list_from(active[active.index(component.name) :]),
-                component.name,
-            )
-        active.append(component.name)
-        for other in component.depends_on:
-            if other not in by_name and other in module.without:
-                continue
-            if other not in by_name:
-                error(
-                    CompileError(
-                        "DEFSYSTEM ~A: ~S depends on ~S, which is not a component beside it.", module.system.name, component.name, other
-                    )
-                )
-            visit(by_name[other])
-        active.pop()
-        done.add(component.name)
-        order.append(component)
-
-    for component in module.components:
-        visit(component)
-    return order

@@ -33,7 +33,9 @@ _TYPES = {
     "SB-KERNEL::LOGICAL-HOST": lambda obj: isinstance(obj, LogicalHost),
     "SB-PRETTY::PPRINT-DISPATCH-TABLE": lambda obj: getattr(obj, "lisp_name", None) == "SB-PRETTY:PPRINT-DISPATCH-TABLE",
 }
+define_own_type(sym("SB-PRETTY:PPRINT-DISPATCH-TABLE"), _TYPES["SB-PRETTY::PPRINT-DISPATCH-TABLE"])
 _PREDICATES = {
+    "SB-IMPL::STREAM-FILE-STREAM": lambda obj: getattr(obj, "pathname", None) is not None,
     "SB-IMPL::IS-A-VALID-SEQUENCE-TYPE-SPECIFIER-P": is_sequence_type,
     "SB-IMPL::LOGICAL-HOST-NAME-P": lambda obj: str(obj).upper() in logical_hosts,
     "SB-KERNEL::LITERAL": lambda obj: obj.__class__ is str,

@@ -43,6 +43,7 @@ from cramhy_runtime.ground.packages import Package, is_symbol, sym
 from cramhy_runtime.storage.dependency_tracing import run
 from cramhy_runtime.ground.ports import PORTS
 from ..packages.package_errors import check_symbol
+from ..syntax.declaration_names import check_type_name
 from .specifier_shapes import bad_operator, bad_specifier, check_specifier, is_operator
 
 LISP_NAMES = "typep type-of upgraded-complex-part-type"
@@ -53,6 +54,11 @@ LISP_NAMES = "typep type-of upgraded-complex-part-type"
 
 def _is_function(obj):
     return callable(obj) and not isinstance(obj, (type, Symbol)) and obj.__class__ is not UndefinedFunction
+
+
+def _is_generic_function(obj):
+    """Also of a function that becomes one when a program defines a method on it."""
+    return isinstance(obj, GenericFunction) or hasattr(obj.__class__, "acts_as_generic") or getattr(obj, "opening", None) is not None
 
 
 def _is_string(obj):
@@ -116,8 +122,8 @@ _ATOMIC = {
     "SIGNED-BYTE": is_integer,
     "FUNCTION": _is_function,
     "COMPILED-FUNCTION": _is_function,
-    "GENERIC-FUNCTION": lambda obj: isinstance(obj, GenericFunction) or hasattr(obj.__class__, "acts_as_generic"),
-    "STANDARD-GENERIC-FUNCTION": lambda obj: isinstance(obj, GenericFunction) or hasattr(obj.__class__, "acts_as_generic"),
+    "GENERIC-FUNCTION": _is_generic_function,
+    "STANDARD-GENERIC-FUNCTION": _is_generic_function,
     "PACKAGE": lambda obj: isinstance(obj, Package),
     "PATHNAME": lambda obj: isinstance(obj, (Pathname, PurePath)),
     "CLASS": lambda obj: isinstance(obj, type),
@@ -185,6 +191,8 @@ def _class_predicate(cls):
         return lambda obj: True
     if isinstance(cls, BuiltInClass):
         return lambda obj: cls in lisp_mro(obj.__class__)
+    if cls is class_of(object):  # the class of the class T, which is Python's own
+        return lambda obj: isinstance(obj, cls) or obj is object
     return lambda obj: isinstance(obj, cls) or cls in lisp_mro(obj.__class__)
 
 
@@ -398,6 +406,7 @@ def define_type(symbol, expander, documentation=None, lambda_list=None):
     are; it returns the specifier that is meant. Optional arguments default to ``*`` (ANSI 3.4.8), which the macro sees to.
     """
     check_symbol(symbol, "defining ~S as a type specifier", symbol)
+    check_type_name(symbol)
     if symbol in _BUILT_IN:
         return error(SimpleError("~S is a type of Common Lisp and cannot be defined again. Choose another name.", symbol))
     expander.__doc__, expander.__lisp_lambda_list__ = documentation, lambda_list
@@ -467,7 +476,9 @@ def type_of(object):
         return array_type(object)
     if isinstance(object, FunctionType | BuiltinFunctionType):
         return sym("COMPILED-FUNCTION")
-    return class_name(class_of(object))
+    cls = class_of(object)
+    name = class_name(cls)
+    return name if not isinstance(cls, StandardClass) or symbol_class(name) is cls else cls  # it may have lost its name
 
 
 def _part_type(number):

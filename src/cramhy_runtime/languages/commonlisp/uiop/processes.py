@@ -19,7 +19,7 @@ from ..files.files import path_of
 from ..pathnames.pathname_objects import Pathname
 from ..printer.printer import prin1_to_string
 from ..python.python_calls import watch
-from ..streams.basic_streams import FileOutput, InputStream, StringInputStream, StringOutputStream
+from ..streams.basic_streams import FdStream, FileOutput, InputStream, StringInputStream, StringOutputStream
 from .pathnames import parse_native_namestring
 from .utilities import TEXT
 from .streams import finish_outputs, slurp_input_stream, text_left, vomit_output_stream
@@ -44,10 +44,8 @@ class ProcessInfo:
         self.output = self.input = self.error_output = None
 
 
-class ProgramText(InputStream):
+class ProgramText(InputStream, FdStream):
     """What a program writes, line by line."""
-
-    lisp_name = "SB-SYS::FD-STREAM"
 
     def __init__(self, file: IO[str]) -> None:
         super().__init__()

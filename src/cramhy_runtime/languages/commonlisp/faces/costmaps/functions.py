@@ -265,15 +265,21 @@ def make_constant_height_function(height: Any) -> Any:
     return lambda x, y: lisp_list(height)
 
 
-def make_orientation_generator(main_direction_function: Any, *, samples: Any = 1, sample_step: Any = None) -> Any:
-    """A generator that keeps the orientations so far; without any, it gives ``samples`` around the direction, ``sample-step`` apart."""
+def make_orientation_generator(
+    main_direction_function: Any, *, samples: Any = 1, sample_step: Any = None, sample_offset: Any = None
+) -> Any:
+    """A generator that keeps the orientations so far; without any, it gives ``samples`` around the direction, ``sample-step`` apart.
+
+    sample_offset: how far the direction is turned, in radians; ``None`` for 0.
+    """
     direction = function_of(main_direction_function)
     if samples.__class__ is not int or samples < 1:
         return wrong_type(samples, lisp_list(sym("INTEGER"), 1), "SAMPLES", package=PACKAGE)
     step = 0.0 if sample_step is None else _real(sample_step, "SAMPLE-STEP")
     if samples > 1 and sample_step is None:
         return error("~d orientations are wanted, and :SAMPLE-STEP, the angle between them, is missing.", samples)
-    generate = generators.orientations(lambda x, y: _real(one(direction(x, y)), "DIRECTION"), samples, step)
+    offset = 0.0 if sample_offset is None else _real(sample_offset, "SAMPLE-OFFSET")
+    generate = generators.orientations(lambda x, y: _real(one(direction(x, y)), "DIRECTION") + offset, samples, step)
 
     def orientations(x, y, previous):
         given = generate(x, y, previous)
@@ -282,10 +288,10 @@ def make_orientation_generator(main_direction_function: Any, *, samples: Any = 1
     return orientations
 
 
-def make_angle_to_point_generator(position: Any, *, samples: Any = 1, sample_step: Any = None) -> Any:
-    """A generator of orientations towards a point."""
+def make_angle_to_point_generator(position: Any, *, samples: Any = 1, sample_step: Any = None, sample_offset: Any = None) -> Any:
+    """A generator of orientations towards a point; see `make_orientation_generator`."""
     x, y = numpy_vector(position)[:2].tolist()
-    return make_orientation_generator(generators.towards(x, y), samples=samples, sample_step=sample_step)
+    return make_orientation_generator(generators.towards(x, y), samples=samples, sample_step=sample_step, sample_offset=sample_offset)
 
 
 def cached(costmap: Any, function: Any) -> Any:

@@ -56,7 +56,7 @@ def description_form(pairs):
     if all(_is_constant(entry) for entry in entries):
         return lisp_list(QUOTE, list_from([_constant(entry) for entry in entries]))
     form = Cons(LIST, list_from(entries))
-    return form if all(_is_constant(entry) or entry.car is LIST for entry in entries) else lisp_list(PRESENT, form)
+    return form if all(_is_constant(entry) or _is_list(entry) for entry in entries) else lisp_list(PRESENT, form)
 
 
 def _property(pair):
@@ -147,6 +147,11 @@ def _is_constant(form):
     if isinstance(form, Cons):
         return form.car is QUOTE
     return not isinstance(form, Symbol) or isinstance(form, Keyword)
+
+
+def _is_list(form):
+    """Whether the value of ``form`` is a property in any case; that of a variable in its place, ``(a location ?where)``, may be nil."""
+    return isinstance(form, Cons) and form.car is LIST
 
 
 def _constant(form):

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 LISP_NAMES = """
 make-world physical-p copy-world thing-color stuck-things ignored-contacts ignore-contact add-description remove-thing find-thing things
 thing-name thing-world thing-pose set-thing-pose thing-types thing-mass thing-bounds part-bounds machine-joints machine-joint
-set-machine-joint machine-links machine-link machine-description attach detach attachments contacts settle stable visibility
+set-machine-joint machine-links machine-link machine-description attach detach attachments grips contacts settle stable visibility
 read-description description-text looked-on-p remark-seen remark-grasp
 """
 
@@ -167,9 +167,9 @@ def machine_description(machine: Machine) -> Description:
     return machine.description
 
 
-def attach(machine: Machine, item: Item, link: str, *, loose: Any = None) -> None:
+def attach(machine: Machine, item: Item, link: str, *, loose: Any = None, grasp: Any = None) -> None:
     """Let a link hold an item."""
-    machine.world.attach(machine.name, item.name, str(link), loose is not None)
+    machine.world.attach(machine.name, item.name, str(link), loose is not None, grasp)
 
 
 def detach(machine: Machine, item: Item, link: Any = None) -> None:
@@ -180,6 +180,11 @@ def detach(machine: Machine, item: Item, link: Any = None) -> None:
 def attachments(machine: Machine) -> Cons | None:
     """A list of (name . links) for each item that a machine holds."""
     return list_from(Cons(name, list_from(grip.link for grip in grips)) for name, grips in machine.holds.items())
+
+
+def grips(machine: Machine, item: Item) -> Cons | None:
+    """A list (link loose grasp) for each link that holds an item."""
+    return list_from(lisp_list(grip.link, boolean(grip.loose), grip.grasp) for grip in machine.holds.get(item.name, ()))
 
 
 def contacts(world: World, thing: Thing | None = None) -> Cons | None:

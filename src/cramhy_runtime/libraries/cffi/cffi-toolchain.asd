@@ -1,0 +1,3 @@
+(defsystem "cffi-toolchain"
+  :description "Nothing: C is neither asked nor compiled here. See cffi."
+  :depends-on ("cffi"))

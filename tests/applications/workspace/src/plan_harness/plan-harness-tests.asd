@@ -1,0 +1,3 @@
+(defsystem plan-harness-tests
+  :depends-on (cram-language fiveam)
+  :components ((:file "harness")))

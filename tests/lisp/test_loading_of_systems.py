@@ -1,0 +1,284 @@
+"""How systems are loaded: for SBCL or another Lisp, by methods of ``perform``, as their packages say."""
+
+from __future__ import annotations
+
+import pytest
+
+
+def logging(text):
+    return f"(push {text} cl-user::*log*)"
+
+
+AS_ASKED = "#+sbcl (push :as-sbcl cl-user::*log*) #-sbcl (push :as-another cl-user::*log*)"
+
+
+@pytest.mark.parametrize(
+    ("text", "read"),
+    [
+        ("#+sbcl (sb-ext:gc)", ":AS-SBCL"),
+        (f"'({'(' * 3000}a{')' * 3000}) #+sbcl (sb-ext:gc)", ":AS-SBCL"),
+        ("#+sbcl (defun of-kernel () (sb-kernel:no-such-thing))", ":AS-ANOTHER"),
+        ("#+sbcl (defun of-kernel () (sb-ext::no-such-thing))", ":AS-ANOTHER"),
+        ("#-sbcl (defun of-kernel () (sb-kernel:no-such-thing))", ":AS-SBCL"),
+        ("#+(and sbcl no-such) (sb-kernel:no-such-thing)", ":AS-SBCL"),
+        ("#+sbcl (defpackage :of-sbcl-1 (:use :cl #+sbcl #:sb-gray))", ":AS-SBCL"),
+        ("#+sbcl (defpackage :of-sbcl-2 (:use :cl #+sbcl #:sb-no-such))", ":AS-ANOTHER"),
+        ('#+sbcl (defpackage :of-sbcl-3 (:use "CL") (:import-from :sb-ext #:no-such-thing))', ":AS-ANOTHER"),
+        ("#+sbcl (defpackage :of-sbcl-4 (:use :cl) (:import-from #:sb-ext #:gc))", ":AS-SBCL"),
+        ('#| sb-kernel:no-such |# ; sb-kernel:no-such\n (list "sb-kernel:no-such" \'#.(+ 1 2) #p"x" #xff #c(1 2) \'|sb-x:y|)', ":AS-SBCL"),
+        ("#+no-such #~what #+sbcl (defun of-kernel () (sb-kernel:no-such-thing))", ":AS-ANOTHER"),
+    ],
+    ids=lambda value: None,
+)
+def test_a_file_is_read_for_sbcl_if_it_then_names_only_what_is_here(write, run, text, read):
+    """Those before and behind it say nothing of SBCL here, and see no feature."""
+    write("for-all.asd", '(defsystem "for-all" :depends-on ("for-one") :components ((:file "for-all-x")))')
+    write("for-one.asd", '(defsystem "for-one" :depends-on ("for-first") :components ((:file "for-one-x")))')
+    write("for-first.asd", '(defsystem "for-first" :components ((:file "for-first-x")))')
+    write("for-one-x.lisp", f"{text}\n{AS_ASKED}")
+    for name in ("all", "first"):
+        write(
+            f"for-{name}-x.lisp",
+            f'(push (if (find (format nil "SB~a" :cl) *features* :test #\'string=) :{name}-too :{name}) cl-user::*log*)',
+        )
+    assert run("(asdf:load-system :for-all) (reverse *log*)") == f"(:FIRST {read} :ALL)"
+
+
+DEFINITIONS = {
+    "components": ('(:file "of-d") #+sbcl (:file "of-a") #-sbcl (:file "of-b")', "", "(:D :A)"),
+    "feature of a component": ('(:file "of-d") (:file "of-a" :if-feature :sbcl) (:file "of-b" :if-feature (:not :sbcl))', "", "(:D :A)"),
+    "what is not had": ('(:file "of-d") #+sbcl (:file "of-c") #-sbcl (:file "of-b")', "", "(:D :B)"),
+    "part that is not had": ('(:file "of-d") #+sbcl (:file "of-a") #-sbcl (:file "of-b")', "#+sbcl :sb-no-such", "(:D :B)"),
+    "part that is not had, as a feature": ('(:file "of-d")', "(:feature :sbcl (:require :sb-no-such))", "(:D)"),
+}
+
+
+@pytest.mark.parametrize("case", DEFINITIONS)
+def test_the_definition_of_a_system_is_read_as_its_files_are(write, run, case):
+    components, needed, expected = DEFINITIONS[case]
+    write("of-sbcl.asd", f'(defsystem "of-sbcl" :depends-on ({needed}) :components ({components}))')
+    for name in "abd":
+        write(f"of-{name}.lisp", logging(f":{name}"))
+    write("of-c.lisp", "(sb-kernel:no-such-thing)")
+    assert run("(asdf:load-system :of-sbcl) (reverse *log*)") == expected
+
+
+def test_a_system_that_is_only_for_lisps_that_it_knows_is_read_for_sbcl(write, run):
+    write("only-known.asd", '#+(or sbcl cmu) (defsystem "only-known" :components ((:file "known-x")))')
+    write("known-x.lisp", f"{AS_ASKED} (defun never () #+sbcl (when nil (sb-ext::no-such-thing)))")
+    assert run("(asdf:load-system :only-known) *log*") == "(:AS-ANOTHER)"
+
+
+def test_an_asd_file_may_refuse_lisps_that_it_does_not_know(write, run):
+    write("refuses.asd", '#-(or allegro sbcl) (error "Another Lisp, please.") (defsystem "refuses" :components ((:file "refuses-x")))')
+    write("refuses-x.lisp", AS_ASKED)
+    assert run("(asdf:load-system :refuses) *log*") == "(:AS-SBCL)"
+
+
+def test_features_that_a_system_read_for_sbcl_adds_stay(write, run):
+    write("adds.asd", '(defsystem "adds" :components ((:file "adds-x")))')
+    write("adds-x.lisp", "#+sbcl (sb-ext:gc) (pushnew :added-by-adds *features*)")
+    assert run("(let ((before *features*)) (asdf:load-system :adds) (equal *features* (cons :added-by-adds before)))") == "T"
+    run("(setf *features* (remove :added-by-adds *features*))")
+
+
+def test_who_asks_for_sbcl_is_told_which_systems_are_read_without_it(write, run, capsys):
+    write("without.asd", '(defsystem "without" :components ((:file "without-x")))')
+    write("without-x.lisp", f"#+sbcl (list 'sb-kernel::a 'sb-kernel::b 'sb-kernel::c 'sb-kernel::d 'sb-ext:gc) {AS_ASKED}")
+    assert run("(let ((*features* (cons :sbcl *features*))) (asdf:load-system :without)) *log*") == "(:AS-ANOTHER)"
+    assert capsys.readouterr().err == (
+        "; without-x.lisp of the system without is read without the feature SBCL: SB-KERNEL:A, SB-KERNEL:B, SB-KERNEL:C and 1 more"
+        " cannot be had here.\n"
+    )
+
+
+PERFORMED = {
+    "after loading a system": (
+        '(defsystem "performed" :components ((:file "p-a")))'
+        "(defmethod asdf:perform :after ((o asdf:load-op) (c (eql (asdf:find-system :performed)))) (push :after cl-user::*log*))",
+        "(:A :AFTER)",
+    ),
+    "in the definition of a file": (
+        '(defsystem "performed" :components ((:file "p-a" :perform (load-op :before (o c) (push (component-name c) cl-user::*log*)))))',
+        '("p-a" :A)',
+    ),
+    "around compiling a class of files": (
+        "(defclass own-source (asdf:cl-source-file) ())"
+        "(defmethod asdf:perform :around ((o asdf:compile-op) (c own-source))"
+        " (let ((*read-base* 16)) (push :around cl-user::*log*) (call-next-method)))"
+        '(defsystem "performed" :components ((:own-source "p-number")))',
+        "(:AROUND 255)",
+    ),
+    "instead of compiling": (
+        "(defclass not-compiled (asdf:cl-source-file) ()) (defmethod asdf:perform ((o asdf:compile-op) (c not-compiled)) nil)"
+        '(defsystem "performed" :default-component-class not-compiled :components ((:file "p-a")))',
+        "(:A)",
+    ),
+    "of data": (
+        "(defclass data (asdf:static-file) ())"
+        "(defmethod asdf:perform ((o asdf:load-op) (c data)) (push (pathname-type (asdf:component-pathname c)) cl-user::*log*))"
+        '(defsystem "performed" :components ((:file "p-a") (:data "x.txt") (:static-file "y.txt")))',
+        '(:A "txt")',
+    ),
+    "where the program puts a class of files": (
+        "(defclass in-folder (asdf:cl-source-file) ())"
+        "(defmethod asdf:component-pathname ((c in-folder))"
+        ' (merge-pathnames (make-pathname :directory (list :relative "there")) (call-next-method)))'
+        '(defsystem "performed" :components ((:in-folder "p-there")))',
+        "(:THERE)",
+    ),
+    "with a type of the program": (
+        '(defclass cl-file (asdf:cl-source-file) ((type :initform "cl"))) (defsystem "performed" :components ((:cl-file "p-cl")))',
+        "(:CL)",
+    ),
+    "with a type that a method tells": (
+        '(defclass typed (asdf:cl-source-file) ()) (defmethod asdf:source-file-type ((c typed) (s asdf:module)) "cl")'
+        '(defsystem "performed" :components ((:typed "p-cl")))',
+        "(:CL)",
+    ),
+    "around compiling, by a hook": (
+        '(defsystem "performed" :around-compile (lambda (next) (let ((*read-base* 16)) (funcall next))) :components ((:file "p-number")))',
+        "(255)",
+    ),
+    "around compiling, by the name of a hook": (
+        "(defun cl-user::hook (next) (push :hook cl-user::*log*) (funcall next))"
+        '(defsystem "performed" :components ((:module "m" :pathname "" :around-compile "cl-user::hook" :components ((:file "p-a")))))',
+        "(:HOOK :A)",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", PERFORMED)
+def test_methods_of_perform_take_part_in_loading(write, run, case):
+    definition, expected = PERFORMED[case]
+    write("performed.asd", definition)
+    for name, text in {"a.lisp": ":a", "number.lisp": "FF", "cl.cl": ":cl"}.items():
+        write(f"p-{name}", logging(text))
+    write("x.txt", "data")
+    write("there/p-there.lisp", logging(":there"))
+    assert run("(asdf:load-system :performed) (asdf:load-system :performed) (reverse *log*)") == expected
+
+
+def test_operations_of_the_program(write, run):
+    write(
+        "operated.asd",
+        """(defclass document-op (asdf:operation) ((style :initarg :style :initform :short :accessor style)))
+(defsystem "operated" :components ((:file "o-a")))
+(defmethod asdf:perform ((o document-op) (c asdf:system)) (push (list (asdf:component-name c) (style o)) cl-user::*log*))""",
+    )
+    write("o-a.lisp", logging(":a"))
+    assert run("(asdf:find-system :operated) (asdf:operate 'asdf-user::document-op :operated) *log*") == '(("operated" :SHORT) :A)'
+    assert run("(asdf:oos (asdf:make-operation 'asdf-user::document-op) :operated) (first *log*)") == '("operated" :SHORT)'
+
+
+def test_a_package_inferred_system_loads_the_files_of_its_packages(write, run):
+    """ASDF manual, section 6.5: each file is a system of its own, and its ``defpackage`` says what it depends on."""
+    write("inferred.asd", '(defsystem "inferred" :class :package-inferred-system :depends-on ("inferred/main"))')
+    write("main.lisp", f"(defpackage :inferred/main (:use :cl :inferred/sub/one) (:import-from #:inferred/two)) {logging(':main')}")
+    write("sub/one.lisp", f"(uiop:define-package :inferred/sub/one (:mix :cl :other)) {logging(':one')}")
+    write("two.lisp", f"(defpackage :inferred/two (:use :cl)) {logging(':two')}")
+    write(
+        "other-system.asd", '(asdf:register-system-packages "other-system" \'(:other)) (defsystem "other-system" :components ((:file "o")))'
+    )
+    write("o.lisp", f"(defpackage :other (:use :cl)) {logging(':other')}")
+    assert run("(asdf:find-system :other-system) (asdf:load-system :inferred) (reverse *log*)") == "(:OTHER :ONE :TWO :MAIN)"
+
+
+@pytest.mark.parametrize(
+    ("form", "value"),
+    [
+        ('(asdf:coerce-name "X")', '"X"'),
+        ("(asdf:coerce-name :some-name)", '"some-name"'),
+        ('(asdf:primary-system-name "a/b/c")', '"a"'),
+        ("(asdf:operation-done-p 'asdf:load-op (asdf:find-system :asked))", "NIL"),
+        ("(mapcar #'asdf:component-name (asdf:required-components :asked))", '("needed" "asked")'),
+        ("(mapcar #'asdf:component-name (mapcar #'cdr (asdf:traverse 'asdf:load-op :asked)))", '("q-a" "q-b")'),
+        ("(asdf:component-depends-on (asdf:make-operation 'asdf:load-op) (asdf:find-system :asked))", '((ASDF:LOAD-OP "needed"))'),
+        ('(asdf:component-sideway-dependencies (asdf:find-component :asked \'("m" "q-b")))', '("q-a")'),
+        ('(asdf:component-find-path (asdf:find-component :asked \'("m" "q-b")))', '("asked" "m" "q-b")'),
+        ('(namestring (asdf:component-relative-pathname (asdf:find-component :asked \'("m" "q-b"))))', '"q-b.lisp"'),
+        (
+            '(pathname-name (first (asdf:input-files (asdf:make-operation \'asdf:compile-op) (asdf:find-component :asked \'("m" "q-b")))))',
+            '"q-b"',
+        ),
+        ('(asdf:source-file-type (asdf:find-component :asked \'("m" "q-b")) (asdf:find-system :asked))', '"lisp"'),
+        ("(asdf:system-homepage (asdf:find-system :asked))", '"there"'),
+        ("(let ((s (asdf:find-system :asked))) (setf (asdf:component-property s :p) 7) (asdf:component-property s :p))", "7"),
+        ("(pathname-name (asdf:system-definition-pathname :asked))", '"asked"'),
+        ("(and (asdf:registered-system :asked) (asdf:system-registered-p :no-such-system) t)", "NIL"),
+        ('(let (n) (asdf:map-systems (lambda (s) (push (asdf:component-name s) n))) (and (find "asked" n :test #\'string=) t))', "T"),
+        ("(handler-case (asdf:find-system :no-such-system) (asdf:system-definition-error () :error))", ":ERROR"),
+        ("(subtypep 'asdf:program-op 'asdf:operation)", "T"),
+        (
+            "(handler-case (asdf:operate 'asdf:program-op :asked) (error (e) (princ-to-string e)))",
+            '"PROGRAM-OP of the system asked writes a file of machine code, and cramhy makes none. (asdf:load-system \\"asked\\") loads it."',
+        ),
+    ],
+)
+def test_what_asdf_tells_of_systems_and_operations(write, run, form, value):
+    write("needed.asd", '(defsystem "needed")')
+    write(
+        "asked.asd",
+        '(defsystem "asked" :depends-on ("needed") :homepage "there" :components'
+        ' ((:module "m" :components ((:file "q-a") (:file "q-b" :depends-on ("q-a"))))))',
+    )
+    write("m/q-a.lisp", "")
+    write("m/q-b.lisp", "")
+    assert run(f"(asdf:find-system :asked) {form}").replace("\n", " ").replace("  ", " ") == value
+
+
+@pytest.mark.parametrize(
+    "name", ["uiop/package:define-package", "uiop/utility:if-let", "asdf/system:system", "asdf/find-system:find-system"]
+)
+def test_the_parts_of_asdf_and_uiop_have_packages(run, name):
+    assert run(f"(eq '{name} '{name.partition('/')[0]}:{name.partition(':')[2]})") == "T"
+
+
+def test_a_class_of_systems_has_options_by_default(write, run):
+    write(
+        "defaults.asd",
+        """(defclass own-file (asdf:cl-source-file) ())
+(defclass own-system (asdf:system) ((extra :initarg :extra :initform 1 :accessor extra))
+  (:default-initargs :version "2.1" :author "Who" :default-component-class 'own-file :extra 5))
+(defsystem "defaults" :class own-system :author "Somebody" :components ((:file "d-a")))""",
+    )
+    write("d-a.lisp", logging(":a"))
+    assert (
+        run(
+            """(asdf:load-system :defaults) (let ((s (asdf:find-system :defaults)))
+          (list (asdf:component-version s) (asdf:system-author s) (asdf-user::extra s) (type-of s) (mapcar #'type-of (asdf:component-children s))))"""
+        ).replace("\n ", "")
+        == '("2.1" "Somebody" 5 ASDF-USER::OWN-SYSTEM (ASDF-USER::OWN-FILE))'
+    )
+
+
+def test_features_that_only_the_first_reading_of_a_definition_adds_are_gone(write, run):
+    write(
+        "added-first.asd",
+        "#+sbcl (pushnew :first-reading *features*)"
+        '(defsystem "added-first" :components (#+first-reading (:file "no-such") #+sbcl (:file "of-c") (:file "f-a")))',
+    )
+    write("of-c.lisp", "(sb-kernel:no-such-thing)")
+    write("f-a.lisp", logging(":a"))
+    assert run("(asdf:load-system :added-first) (list *log* (uiop:featurep :first-reading))") == "((:A) NIL)"
+
+
+def test_the_slot_relative_pathname(write, run):
+    write("lies.asd", '(defsystem "lies" :components ((:module "m" :pathname "in/there/" :components ((:file "l-a")))))')
+    assert run('(namestring (slot-value (asdf:find-component :lies "m") \'asdf::relative-pathname))') == '"in/there"'
+    assert run("(equal (slot-value (asdf:find-system :lies) 'asdf::relative-pathname) (asdf:system-source-directory :lies))") == "T"
+
+
+def test_sizes_and_the_order_of_bytes_as_sbcl_has_them(run):
+    assert (
+        run("(list sb-vm:n-word-bits sb-vm:n-byte-bits (constantp 'sb-vm:n-word-bits) sb-c:*backend-byte-order*)")
+        == "(64 8 T :LITTLE-ENDIAN)"
+    )
+
+
+def test_the_files_of_a_definition_that_is_read_for_another_lisp_are_so_too(write, run):
+    """The file that is only for SBCL is left out, and the others do not count on it."""
+    write("both-ways.asd", '(defsystem "both-ways" :components (#+sbcl (:file "of-c") (:file "both-x")))')
+    write("of-c.lisp", "(sb-kernel:no-such-thing)")
+    write("both-x.lisp", AS_ASKED)
+    assert run("(asdf:load-system :both-ways) *log*") == "(:AS-ANOTHER)"
