@@ -132,7 +132,7 @@ for _name in ("add", "sub", "mul", "truediv", "floordiv", "mod", "pow"):
         setattr(SingleFloat, f"__{_side}{_name}__", _in_singles(f"__{_side}{_name}__"))
 
 
-FLOATS = frozenset({float, SingleFloat})
+FLOATS: frozenset[type] = frozenset({float, SingleFloat})
 """The classes of all floats."""
 
 
