@@ -102,7 +102,7 @@ def solve(m, goal, k, b):
     return (predicate.call, k, *arguments)
 
 
-def _with_end(m, k, functor, arguments, end, lengths):
+def _with_end(m: Machine, k: object, functor: Symbol, arguments: list[object], end: Var, lengths: list[int]) -> tuple[object, ...]:
     """The step that proves a goal whose ``arguments`` end in an unset variable, for heads of the first of ``lengths``, then the others."""
     if len(lengths) > 1:
         m.choices.append((_with_next_end, k, len(m.trail), functor, arguments, end, lengths[1:]))
@@ -111,7 +111,7 @@ def _with_end(m, k, functor, arguments, end, lengths):
     return (find_predicate(functor, lengths[0]).call, k, *arguments, *others)
 
 
-def _with_next_end(m, step):
+def _with_next_end(m: Machine, step: tuple[object, object, int, Symbol, list[object], Var, list[int]]) -> tuple[object, ...]:
     m.choices.pop()
     return _with_end(m, step[1], *step[3:])
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 import itertools
 from weakref import WeakSet
 
-from cramhy_runtime.ground.data import Cons, list_from
+from cramhy_runtime.ground.data import Cons, Symbol, list_from
 from cramhy_runtime.ground.packages import common, is_symbol
 from cramhy_runtime.kernel.images import Cell, part
 
@@ -227,7 +227,7 @@ def arguments_of(goal):
     return arguments
 
 
-def lengths_of_heads(functor, least):
+def lengths_of_heads(functor: Symbol, least: int) -> list[int]:
     """The numbers of arguments, ``least`` or more, that clauses of ``functor`` have, in the order of the clauses.
 
     A head that ends in a variable has no length of its own. Of a functor with a handler, or a built-in, nothing is known.
@@ -235,7 +235,7 @@ def lengths_of_heads(functor, least):
     entry = functors.get(functor)
     if entry is None or entry.handler is not None or entry.native:
         return []
-    lengths = []
+    lengths: list[int] = []
     for clause in entry.clauses:
         length, cell = 0, clause.head.cdr
         while isinstance(cell, Cons):
