@@ -246,7 +246,7 @@ def define_system(form, folder, file=None, positions=None, load=None):
 def _perform_methods(component, items, positions=None):
     """Add the methods of the options ``:perform`` in the list ``items`` of keywords and values."""
     for key, value in zip(items[::2], items[1::2]):
-        if symbol_name(key) == "PERFORM":
+        if isinstance(key, Symbol) and symbol_name(key) == "PERFORM":
             _perform_method(component, value, positions)
 
 
