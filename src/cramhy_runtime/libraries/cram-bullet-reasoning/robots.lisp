@@ -150,11 +150,12 @@ argument in devel."
   (:method ((item item)) nil))
 
 (defgeneric object-attached (robot object &key loose)
-  (:documentation "The links of ROBOT that hold OBJECT, and the grasps of each; with :LOOSE only those that hold it loosely.")
-  (:method ((robot robot-object) (object object) &key loose)
-    (let ((grips (remove-if-not (lambda (grip) (or (not loose) (second grip))) (robot-world:grips robot object))))
+  (:documentation "The links of ROBOT that hold OBJECT, and the grasps of each; with :LOOSE only those that hold it loosely.
+Only robots hold objects, and only items are held.")
+  (:method ((robot robot-object) (item item) &key loose)
+    (let ((grips (remove-if-not (lambda (grip) (or (not loose) (second grip))) (robot-world:grips robot item))))
       (values (mapcar #'first grips) (mapcar #'third grips))))
-  (:method ((item item) (object object) &key loose)
+  (:method ((holder object) (object object) &key loose)
     (declare (ignore loose))
     nil))
 
