@@ -12,6 +12,7 @@ from ...packages.face_definition import define_face
 from ...syntax.operator_macros import export
 from ....operators import ACTIONLIB
 from ...objects.classes import alias_class
+from cramhy_runtime.ground.floats import literal_float
 from cramhy_runtime.ground.classes import register_class
 from cramhy_runtime.ground.packages import ensure_package, on_demand, sym
 
@@ -51,9 +52,9 @@ def define_faces():
             "wait-for-result": simple_client.wait_for_the_result,
         },
         variables={
-            "*action-server-timeout*": client.CONNECTED,
-            "*status-publish-interval*": goal_server.PERIOD,
-            "*gc-interval*": goal_server.MEMORY,
+            "*action-server-timeout*": literal_float(client.CONNECTED),
+            "*status-publish-interval*": literal_float(goal_server.PERIOD),
+            "*gc-interval*": literal_float(goal_server.MEMORY),
         },
         export="exec-callback-tag abort-goal action-client feedback-signal goal-handle server-lost",
         internal="build-goal end-goal tell-feedback",  # macros expand into them: a kept file names them, and so makes the packages
