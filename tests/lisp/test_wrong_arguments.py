@@ -150,7 +150,6 @@ WRONG = """
 (cut:pool-value 1 2)
 (cut:new-pool-value nil 2)
 (cut:delete-pool-value nil 2)
-(cut:equalize-lists-of-lists-lengths '(1) '(2))
 (cpm:input 1)
 (cpm:cancel nil)
 (cpm:caller "a")

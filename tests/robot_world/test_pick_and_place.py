@@ -65,7 +65,7 @@ def simulated(*forms):
 def test_the_world_begins_with_kitchen_robot_and_what_was_spawned(ask):
     assert ask("(mapcar #'btr:name (btr:objects btr:*current-bullet-world*))") == "(:FLOOR :KITCHEN CRAM-PR2-DESCRIPTION:PR2 BOTTLE-1)"
     assert ask("(near (place-of 'bottle-1) -2.0 -0.9 0.823)") == "T"
-    assert ask('(btr:joint-state (btr:get-robot-object) "torso_lift_joint")') == "0.15d0"
+    assert ask('(btr:joint-state (btr:get-robot-object) "torso_lift_joint")') == "0.15000000596046448d0"
 
 
 def test_a_bottle_goes_from_the_table_to_the_island(ask):

@@ -30,7 +30,7 @@ from .dynamic import binding, special
 from . import plain_answers  # noqa: F401  the ports have answers from here on
 from .ports import PORTS
 from .python_exceptions import from_python
-from .packages import CURRENT, ensure_package, find_package_or_error, intern, is_symbol, sym, symbol_name
+from .packages import CURRENT, ensure_package, find_package_or_error, intern, is_symbol, sym
 from .restarts import *  # noqa: F403  they are part of this module's interface, as the classes are
 from .restarts import compute_restarts, innermost_restarts, restart_case, with_condition_restarts, with_simple_restart
 
@@ -487,8 +487,7 @@ def package_does_not_exist(name, hint=None):
         (sym("RETRY"), lambda: find_package_or_error(name), "Retry finding the package."),
         (sym("USE-VALUE"), find_package_or_error, "Specify a different package", ask_value),
     ]
-    shown = symbol_name(name) if is_symbol(name) else name  # a symbol stands for its name
-    return restart_case(restarts, lambda: error(types.PackageDoesNotExist(shown), hint=hint))
+    return restart_case(restarts, lambda: error(types.PackageDoesNotExist(name), hint=hint))
 
 
 def program_error(control, *arguments):
