@@ -33,7 +33,7 @@ def test_a_world_is_inspected(world):
     _, text, actions, parts = content(world.call('(swank:init-inspector "btr:*current-bullet-world*")'))
     assert "The object is a world with 1 thing.\nBALL: #<" in text and list(actions) == ["[simulate 1 s]"]
     _, text, actions, _ = content(world.call(f"(swank:inspect-nth-part {parts[0]})"))
-    assert "The object is a thing in a world.\n" in text and "Mass in kg: 0.5\n" in text and "Pose:       #<" in text
+    assert "The object is a thing in a world.\n" in text and "Mass in kg: 0.5d0\n" in text and "Pose:       #<" in text
     _, text, *_ = content(world.call(f"(swank:inspector-call-nth-action {actions['[see what it touches]']})"))
     assert text.startswith('The object is a SYMBOL.\nName:     "NIL"')  # an empty list: the floor is no thing
     world.call("(swank:inspector-pop)")
