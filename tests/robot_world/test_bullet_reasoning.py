@@ -94,7 +94,11 @@ def test_what_a_world_answers(ask, form, answer):
         ("(prolog:prolog '(btr:assert ?w (btr:object :cup cup ((0 0 1) (0 0 0 1)))))", "(at 'cup)", "(-1.8d0 -0.9d0 0.76d0)"),
         ("(prolog:prolog '(btr:retract ?w (btr:object cup)))", "(mapcar #'btr:name (btr:objects *world*))", "(:KITCHEN PR2 BOTTLE-1)"),
         ("(btr:remove-object *world* 'cup)", "(named 'cup)", "NIL"),
-        ('(setf (btr:joint-state (named \'pr2) "torso_lift_joint") 0.2)', '(btr:joint-state (named \'pr2) "torso_lift_joint")', "0.20000000298023224d0"),
+        (
+            '(setf (btr:joint-state (named \'pr2) "torso_lift_joint") 0.2)',
+            '(btr:joint-state (named \'pr2) "torso_lift_joint")',
+            "0.20000000298023224d0",
+        ),
         (
             '(btr:set-robot-state-from-joints \'(("torso_lift_joint" 0.1) ("nothing" 2)) (named \'pr2))',
             '(btr:joint-state (named \'pr2) "torso_lift_joint")',

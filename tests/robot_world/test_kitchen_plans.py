@@ -49,7 +49,10 @@ def test_a_bottle_that_is_elsewhere_is_not_found(ask):
 
 def test_the_base_waits_for_the_arms_that_park_beside_it(ask):
     """As long as the arms are before it, they would hit the table; the base is the first in the form."""
-    assert ask('(with-simulated-robot (get-ready *counter*) (btr:joint-state (btr:get-robot-object) "torso_lift_joint"))') == "0.30000001192092896d0"
+    assert (
+        ask('(with-simulated-robot (get-ready *counter*) (btr:joint-state (btr:get-robot-object) "torso_lift_joint"))')
+        == "0.30000001192092896d0"
+    )
 
 
 def test_frames_follow_bare_motions(ask):
