@@ -66,8 +66,12 @@ def session_with_kitchen():
 
 @pytest.fixture
 def ask(session_with_kitchen):
-    """A function: the printed value of the last form of a text, or the text of its error. Each test begins with a copy of the same world."""
+    """A function: the printed value of the last form of a text, or the text of its error.
+
+    Each test begins with a copy of the same world, and with the same luck: costmaps draw places.
+    """
     session_with_kitchen.evaluate_text(AS_IT_WAS)
+    session_with_kitchen.evaluate_text("(setf *random-state* (sb-ext:seed-random-state 0))")
 
     def asked(form):
         try:

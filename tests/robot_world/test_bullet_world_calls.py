@@ -218,7 +218,7 @@ def test_what_is_called_answers(ask, form, answer):
     [
         # the belief state
         ("(let ((btr-belief:*spawn-debug-window* nil)) (btr-belief:setup-world-database) (list (mapcar #'btr:name (btr:objects btr:*current-bullet-world*)) (typep btr-belief:*robot-urdf* 'cl-urdf:robot) (typep btr-belief:*kitchen-urdf* 'cl-urdf:robot) (btr:joint-state (btr:get-robot-object) \"torso_lift_joint\")))",
-         "((:FLOOR :KITCHEN CRAM-PR2-DESCRIPTION:PR2 MUG-1) T T 0.15d0)"),
+         "((:FLOOR :KITCHEN CRAM-PR2-DESCRIPTION:PR2 MUG-1) T T 0.15000000596046448d0)"),
         ("(list btr-belief:*robot-parameter* btr-belief:*kitchen-parameter*)", '("robot_description" "kitchen_description")'),
         ("(let ((tf (make-instance 'cl-tf:transformer))) (setf (btr:pose (robot)) (btr:ensure-pose '((1 2 0) (0 0 0 1)))) (btr-belief:set-tf-from-bullet :transformer tf)"
          " (near 2 (cl-transforms:y (cl-transforms:translation (cl-transforms-stamped:lookup-transform tf \"map\" \"base_footprint\")))))", "T"),
