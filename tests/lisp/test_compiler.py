@@ -289,3 +289,15 @@ def test_a_literal_vector_stays_one_in_the_macros_of_the_standard(evaluate, form
 
 def test_gensym_names_with_the_counter_and_then_counts(evaluate):
     assert evaluate('(let ((*gensym-counter* 5)) (list (gensym "F") (gensym) *gensym-counter*))') == "(#:F5 #:G6 7)"
+
+
+@pytest.mark.parametrize(
+    "form, value",
+    [
+        ("(/ (+ 1 (atan -100)) 36893488147419103232)", "-1.5200423e-20"),
+        ("(/ (+ -36893488147419103232 (atan -100)) -36893488147419103232)", "1.0"),
+        ("(let ((x (sin 1d0)) (y (cos 2d0))) (/ (* x y 3) 36893488147419103232))", "-2.8474576893470936d-20"),
+    ],
+)
+def test_an_operation_is_divided_by_an_integer_that_no_machine_word_holds(session, form, value):
+    assert session.evaluate_text(f"(prin1-to-string (funcall (compile nil '(lambda () {form}))))") == [value]

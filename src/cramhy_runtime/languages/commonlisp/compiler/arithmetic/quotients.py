@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..core import expression, word
-from .operations import AND, ARITHMETIC, FIXNUM, IF, INT_CLASS, IS, ArithmeticGenerator, Operand
+from .operations import AND, ARITHMETIC, FIXNUM, IF, INT_CLASS, IS, ArithmeticGenerator, Operand, Operation
 from ..kinds import DIVIDE, DOUBLE, FLOATS, INT, NUMBER, SINGLE, THING, exactly, raw
 
 OVER, WHOLE_OVER, REST, NOT = map(word, "/ // % not".split())
@@ -30,7 +30,7 @@ class QuotientGenerator(ArithmeticGenerator):
             self.settle(operands)
             return slow
         if not unknown and self.kind_in(operation, 0):
-            return self.known_quotient(operation, one, other, is_raw, slow)
+            return self.known_quotient(operation, operands, is_raw, slow)
         self.settle(operands)
         if all(operand.kind & INT and not operand.raw for operand in operands):
             slow = self.whole_quotient(one, other, unknown, slow)
@@ -72,10 +72,11 @@ class QuotientGenerator(ArithmeticGenerator):
             IF, tests[0] if len(tests) == 1 else expression(AND, *tests), expression(WHOLE_OVER, one.later, other.later), slow
         )
 
-    def known_quotient(self, operation, one, other, is_raw, slow):
-        """A quotient of a float by what is not 0."""
-        if self.kind_in(operation, 0) == SINGLE:
-            self.settle([one, other])
+    def known_quotient(self, operation, operands, is_raw, slow):
+        """A quotient of a float by what is not 0. What is divided may be an operation of its own."""
+        one, other = operation.parts
+        if one.__class__ is Operation or self.kind_in(operation, 0) == SINGLE:
+            self.settle(operands)
             return expression(IF, other.later, self.bare_model(operation, 0, None), slow)
         if one.first is not one.later and other.first is not other.later:
             self.settle([one, other])
