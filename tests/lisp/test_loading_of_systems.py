@@ -26,6 +26,8 @@ AS_ASKED = "#+sbcl (push :as-sbcl cl-user::*log*) #-sbcl (push :as-another cl-us
         ('#+sbcl (defpackage :of-sbcl-3 (:use "CL") (:import-from :sb-ext #:no-such-thing))', ":AS-ANOTHER"),
         ("#+sbcl (defpackage :of-sbcl-4 (:use :cl) (:import-from #:sb-ext #:gc))", ":AS-SBCL"),
         ('#| sb-kernel:no-such |# ; sb-kernel:no-such\n (list "sb-kernel:no-such" \'#.(+ 1 2) #p"x" #xff #c(1 2) \'|sb-x:y|)', ":AS-SBCL"),
+        ("#+sbcl (defvar *c* '(#1=(a . #1#) #2=(#2# b) . #3=(:use . #3#)))", ":AS-SBCL"),
+        ("#+sbcl (defvar *c* '#1=((:import-from sb-kernel . #2=(no-such . #2#)) . #1#))", ":AS-ANOTHER"),
         ("#+no-such #~what #+sbcl (defun of-kernel () (sb-kernel:no-such-thing))", ":AS-ANOTHER"),
     ],
     ids=lambda value: None,
