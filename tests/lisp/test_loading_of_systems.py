@@ -284,3 +284,15 @@ def test_the_files_of_a_definition_that_is_read_for_another_lisp_are_so_too(writ
     write("of-c.lisp", "(sb-kernel:no-such-thing)")
     write("both-x.lisp", AS_ASKED)
     assert run("(asdf:load-system :both-ways) *log*") == "(:AS-ANOTHER)"
+
+
+@pytest.mark.parametrize("kind, suffix", [("cl-source-file.cl", "cl"), ("cl-source-file.lsp", "lsp"), ("own-cl", "cl")])
+def test_files_of_lisp_may_have_other_suffixes(write, run, kind, suffix):
+    write(
+        "suffixed.asd",
+        f"(defclass own-cl (asdf:cl-source-file.cl) ()) (defsystem suffixed :default-component-class {kind} :components"
+        ' ((:file "s-one") (:cl-source-file "s-two")))',
+    )
+    write(f"s-one.{suffix}", logging(":one"))
+    write("s-two.lisp", logging(":two"))
+    assert run("(asdf:load-system :suffixed) (reverse *log*)") == "(:ONE :TWO)"
