@@ -26,6 +26,8 @@ AS_ASKED = "#+sbcl (push :as-sbcl cl-user::*log*) #-sbcl (push :as-another cl-us
         ('#+sbcl (defpackage :of-sbcl-3 (:use "CL") (:import-from :sb-ext #:no-such-thing))', ":AS-ANOTHER"),
         ("#+sbcl (defpackage :of-sbcl-4 (:use :cl) (:import-from #:sb-ext #:gc))", ":AS-SBCL"),
         ('#| sb-kernel:no-such |# ; sb-kernel:no-such\n (list "sb-kernel:no-such" \'#.(+ 1 2) #p"x" #xff #c(1 2) \'|sb-x:y|)', ":AS-SBCL"),
+        ("#+sbcl (defvar *c* '(#1=(a . #1#) #2=(#2# b) . #3=(:use . #3#)))", ":AS-SBCL"),
+        ("#+sbcl (defvar *c* '#1=((:import-from sb-kernel . #2=(no-such . #2#)) . #1#))", ":AS-ANOTHER"),
         ("#+no-such #~what #+sbcl (defun of-kernel () (sb-kernel:no-such-thing))", ":AS-ANOTHER"),
     ],
     ids=lambda value: None,
@@ -282,3 +284,15 @@ def test_the_files_of_a_definition_that_is_read_for_another_lisp_are_so_too(writ
     write("of-c.lisp", "(sb-kernel:no-such-thing)")
     write("both-x.lisp", AS_ASKED)
     assert run("(asdf:load-system :both-ways) *log*") == "(:AS-ANOTHER)"
+
+
+@pytest.mark.parametrize("kind, suffix", [("cl-source-file.cl", "cl"), ("cl-source-file.lsp", "lsp"), ("own-cl", "cl")])
+def test_files_of_lisp_may_have_other_suffixes(write, run, kind, suffix):
+    write(
+        "suffixed.asd",
+        f"(defclass own-cl (asdf:cl-source-file.cl) ()) (defsystem suffixed :default-component-class {kind} :components"
+        ' ((:file "s-one") (:cl-source-file "s-two")))',
+    )
+    write(f"s-one.{suffix}", logging(":one"))
+    write("s-two.lisp", logging(":two"))
+    assert run("(asdf:load-system :suffixed) (reverse *log*)") == "(:ONE :TWO)"

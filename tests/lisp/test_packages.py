@@ -102,3 +102,25 @@ def test_local_nicknames_hold_in_their_package_only(lisp):
     lisp("(defpackage :th (:use :cl) (:local-nicknames (:geometry :ta)))")
     assert lisp('(let ((*package* (find-package :th))) (package-name (symbol-package (read-from-string "geometry:x"))))') == "TA"
     assert lisp("(find-package :geometry)") is None
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        "(deftype of-lock () 'integer)",
+        "(defun of-lock ())",
+        "(defmacro of-lock ())",
+        "(defvar of-lock)",
+        "(defclass of-lock () ())",
+        "of-new",
+    ],
+)
+def test_a_lock_does_not_hold_in_the_package_itself(lisp, form):
+    """Real SBCL 2.2.9 defines each of them without a word, and refuses them from another package."""
+    lisp("(progn (when (find-package :own) (sb-ext:unlock-package :own) (delete-package :own)) (make-package :own :use '(:cl))"
+         " (intern \"OF-LOCK\" :own) (sb-ext:lock-package :own))")  # fmt: skip
+    refused = f'(handler-case (eval (read-from-string "{form.replace("of-", "own::of-")}")) (package-error () :refused))'
+    assert lisp(refused) is lisp(":refused")
+    assert lisp(
+        f'(let ((*package* (find-package :own))) (eval \'(quote #.(let ((*package* (find-package :own))) (read-from-string "(progn {form.replace("of-new", "nil")})")))) :done)'
+    ) is lisp(":done")

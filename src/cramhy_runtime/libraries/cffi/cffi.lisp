@@ -5,7 +5,7 @@
   (:use #:common-lisp)
   (:nicknames #:cffi-sys)
   (:export
-   #:*built-in-float-types* #:*built-in-integer-types* #:*darwin-framework-directories* #:*default-foreign-encoding* #:*foreign-library-directories* #:callback #:close-foreign-library
+   #:*built-in-float-types* #:*built-in-integer-types* #:*darwin-framework-directories* #:*default-foreign-encoding* #:*foreign-library-directories* #:callback #:canonicalize-symbol-name-case #:close-foreign-library
    #:convert-from-foreign #:convert-to-foreign #:defbitfield #:defcallback #:defcenum #:defcfun #:defcstruct #:defctype #:defcunion
    #:defcvar #:define-c-struct-wrapper #:define-foreign-library #:define-foreign-type #:define-parse-method #:defcfun-helper-forms
    #:expand-from-foreign #:expand-to-foreign #:foreign-alloc #:foreign-bitfield-symbols #:foreign-bitfield-value
@@ -21,11 +21,28 @@
    #:with-foreign-object #:with-foreign-objects #:with-foreign-pointer #:with-foreign-pointer-as-string #:with-foreign-slots
    #:with-foreign-string #:with-foreign-strings #:with-pointer-to-vector-data))
 
+(defpackage #:cffi-features
+  (:use #:common-lisp)
+  (:export #:cffi-feature-p #:darwin #:flat-namespace #:no-foreign-funcall #:no-long-long #:ppc32 #:unix #:windows #:x86 #:x86-64))
+
 (in-package #:cffi)
 
 (defvar *foreign-library-directories* '())
 (defvar *darwin-framework-directories* '())
 (defvar *default-foreign-encoding* :utf-8)
+
+(defun cffi-features:cffi-feature-p (feature)
+  "Whether FEATURE, a symbol of CFFI-FEATURES or an expression as behind #+, holds: of the keywords of the same names."
+  (if (consp feature)
+      (ecase (intern (string (first feature)) :keyword)
+        (:and (every #'cffi-features:cffi-feature-p (rest feature)))
+        (:or (some #'cffi-features:cffi-feature-p (rest feature)))
+        (:not (not (cffi-features:cffi-feature-p (second feature)))))
+      (and (member (intern (string feature) :keyword) *features*) t)))
+
+(defun canonicalize-symbol-name-case (name)
+  "NAME as a symbol of the standard readtable is called."
+  (string-upcase name))
 
 (define-condition foreign-not-implemented (error)
   ((operation :initarg :operation :reader operation) (name :initarg :name :initform nil :reader name))

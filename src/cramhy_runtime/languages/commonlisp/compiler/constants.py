@@ -89,7 +89,9 @@ class Constants:
             if is_circular(obj):
                 raise NotStorable(obj)
             value = self.builder(obj, top=True)
-            if kind != "object":
+            if kind == "function.python":
+                value = expression(word("Lpython_function"), value)
+            elif kind != "object":
                 for attribute in kind.split("."):
                     value = expression(word("."), value, word(attribute))
             self.make(name, value)

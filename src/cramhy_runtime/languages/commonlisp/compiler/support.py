@@ -12,6 +12,7 @@ from ..collections.lists import cars
 from ..collections.sequence_types import characters, elements, in_turns, same_kind
 import math
 from fractions import Fraction
+from functools import partial
 from itertools import zip_longest
 from operator import itemgetter
 from types import FunctionType
@@ -325,6 +326,22 @@ def not_(value):
     return None if truth(value) else True
 
 
+def python_function(symbol):
+    """The Python function behind the standard function ``symbol``.
+
+    A program may have made the standard function generic since its call was compiled and stored, as CLOSE for streams of its own. Then it
+    is a function that hands on keywords as Lisp's.
+    """
+    function = symbol.function
+    python = getattr(function, "python", None)
+    return partial(_with_lisp_keywords, function) if python is None else python
+
+
+def _with_lisp_keywords(function, *arguments, **keywords):
+    pairs = [each for name, value in keywords.items() for each in (keyword(name.strip("_").replace("_", "-").upper()), value)]
+    return function(*arguments, *pairs)
+
+
 NAMESPACE = {
     "LFrameExit": FrameExit,
     "Lends_here": ends_here,
@@ -334,6 +351,7 @@ NAMESPACE = {
     "Lvalue": value_of,
     "Lfdefinition": fdefinition,
     "Lsetf_function": setf_function,
+    "Lpython_function": python_function,
     "Lundefined": undefined,
     "Lcallable": called_function,
     "Lall_values": all_values,

@@ -16,7 +16,17 @@ from cramhy_runtime.ground.condition_types import PackageError, formatted
 from cramhy_runtime.ground.conditions import error, restart_case
 from cramhy_runtime.ground.data import UNBOUND, Cons, Symbol, list_from
 from cramhy_runtime.ground.dynamic import binding, special
-from cramhy_runtime.ground.packages import COMMON_LISP_USER, KEYWORD, ensure_package, is_symbol, redefined, sym, symbol_name, symbol_package
+from cramhy_runtime.ground.packages import (
+    COMMON_LISP,
+    COMMON_LISP_USER,
+    KEYWORD,
+    ensure_package,
+    is_symbol,
+    redefined,
+    sym,
+    symbol_name,
+    symbol_package,
+)
 from ..streams.streams import QUERY_IO, output_stream
 
 PACKAGE = special("*PACKAGE*", COMMON_LISP_USER)
@@ -61,9 +71,11 @@ class NameConflict(PackageError):
 
 class PackageLockViolation(PackageError):
     lisp_name = "SB-EXT::PACKAGE-LOCK-VIOLATION"
+    within = None
+    """The package that was current when the lock was violated."""
 
     def report(self):
-        where = f" while in package {PACKAGE.value.name}."
+        where = f" while in package {(self.within or PACKAGE.value).name}."
         return formatted(
             f"~@<Lock on package {self.package.name} violated when ~?{where}~:@>",
             (self.format_control, list_from(self.format_arguments or ())),
@@ -111,9 +123,13 @@ def _ask_which(symbols):
 
 
 def locked(package):
-    """Whether the lock of ``package`` is on and not lifted here."""
+    """Whether the lock of ``package`` is on and not lifted here.
+
+    It does not hold for forms that are in the package itself (SBCL's manual, "Implementation Packages"), that of COMMON-LISP apart."""
+    if package is None or not package.locked or PACKAGE.value is package and package is not COMMON_LISP:
+        return False
     lifted = _unlocked.value
-    return package is not None and package.locked and lifted is not True and (lifted is None or package not in lifted)
+    return lifted is not True and (lifted is None or package not in lifted)
 
 
 @contextmanager
@@ -149,6 +165,7 @@ def check_function_name(name, control):
 
 def violated(condition):
     """Signal a lock violation; returns when a restart says to go ahead."""
+    condition.within = PACKAGE.value
 
     def unlock():
         condition.package.locked = False

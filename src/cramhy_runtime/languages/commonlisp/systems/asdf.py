@@ -264,6 +264,7 @@ def define_faces():
         },
         variables={"*central-registry*": None},
         export="defsystem operation component module system cl-source-file static-file doc-file html-file "
+        "cl-source-file.cl cl-source-file.lsp "
         f"missing-component missing-dependency {asdf_protocol.EXPORT} " + " ".join(name.lower() for name in OPERATIONS),
     )
     package = ensure_package("ASDF")

@@ -38,7 +38,6 @@ from .system_definitions import (
 _CLASSES = {
     Operation: """BUILD-OP DEFINE-OP PREPARE-SOURCE-OP DOWNWARD-OPERATION UPWARD-OPERATION SIDEWAY-OPERATION
         SELFWARD-OPERATION NON-PROPAGATING-OPERATION SEQUENTIAL-PLAN""",
-    SourceFile: "CL-SOURCE-FILE.CL CL-SOURCE-FILE.LSP",
     StaticFile: "C-SOURCE-FILE JAVA-SOURCE-FILE COMPILED-FILE",
     System: "PRECOMPILED-SYSTEM PROGRAM-SYSTEM PACKAGE-SYSTEM",
     SimpleError: """OPERATION-ERROR COMPILE-ERROR COMPILE-FAILED COMPILE-WARNED COMPILE-FILE-ERROR COMPILE-FAILED-ERROR COMPILE-WARNED-ERROR
@@ -145,11 +144,11 @@ def action_description(operation: Any, component: Any) -> str:
 
 
 def source_file_type(component: Any, system: Any) -> object:
-    """``asdf:source-file-type``: the slot ``type`` of a class of the program, else "lisp"."""
+    """``asdf:source-file-type``: the slot ``type`` of a class of the program, else what its files of Lisp are called."""
     slot = sym("COMMON-LISP::TYPE")
     if is_of_program(component) and one(slot_exists_p(component, slot)) and one(slot_boundp(component, slot)):
         return one(slot_value(component, slot))
-    return "lisp" if isinstance(component, SourceFile) else None
+    return component.suffix if isinstance(component, SourceFile) else None
 
 
 def component_relative_pathname(component: Any) -> object:

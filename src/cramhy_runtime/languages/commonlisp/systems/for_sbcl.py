@@ -107,22 +107,29 @@ def speaks_of_sbcl(text: str) -> bool:
 
 
 def _taken_by_package(form: Value) -> Iterator[str]:
-    """What the options ``:use`` and ``:import-from`` in a form take from packages of SBCL."""
-    while isinstance(form, Cons):
+    """What the options ``:use`` and ``:import-from`` in a form take from packages of SBCL. A form may be circular."""
+    seen: set[int] = set()
+    waiting = [form]
+    while waiting:
+        form = waiting.pop()
+        if not isinstance(form, Cons) or id(form) in seen:
+            continue
+        seen.add(id(form))
         head, rest = form.car, form.cdr
-        if isinstance(head, Cons):
-            yield from _taken_by_package(head)
-        elif isinstance(head, str) and head.lower() in (":use", ":import-from") and isinstance(rest, Cons):
+        waiting += (rest, head)
+        if isinstance(head, str) and head.lower() in (":use", ":import-from") and isinstance(rest, Cons):
             names = [str(item).lstrip("#:").upper() for item in _elements(rest) if not isinstance(item, Cons)]
             if head.lower() == ":use":
                 yield from (f"{name}:" for name in names if name.startswith("SB-"))
             elif names and names[0].startswith("SB-"):
                 yield from (f"{names[0]}:{name}" for name in names[1:])
-        form = rest
 
 
 def _elements(lst: Value) -> Iterator[Value]:
-    while isinstance(lst, Cons):
+    """The elements of a list, each cons once: behind the first one that comes again nothing is new."""
+    seen: set[int] = set()
+    while isinstance(lst, Cons) and id(lst) not in seen:
+        seen.add(id(lst))
         yield lst.car
         lst = lst.cdr
 

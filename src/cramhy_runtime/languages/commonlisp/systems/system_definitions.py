@@ -110,19 +110,34 @@ class HtmlFile(DocFile):
 
 class SourceFile(Component):
     lisp_name = "ASDF::CL-SOURCE-FILE"
+    suffix = "lisp"
 
     @property
     def pathname(self):
-        """The ``.lisp`` or ``.hy`` file; the ``.lisp`` file if there is none of them."""
+        """The ``.lisp`` or ``.hy`` file; the ``.lisp`` file if there is none of them. A class may want another suffix than ``.lisp``."""
         folder, name = self.parent.pathname, str(self.name if self.path is None else self.path)
         if is_of_program(self):
             suffix = sym("ASDF::SOURCE-FILE-TYPE").function(self, self.parent)
             return folder / (name if not suffix or name.endswith(f".{suffix}") else f"{name}.{suffix}")
-        candidates = [folder / name, folder / f"{name}.lisp", folder / f"{name}.hy"]
+        candidates = [folder / name, folder / f"{name}.{self.suffix}", folder / f"{name}.hy"]
         return next(
             (candidate for candidate in candidates if candidate.is_file()),
-            candidates[0] if name.endswith((".lisp", ".hy")) else candidates[1],
+            candidates[0] if name.endswith((f".{self.suffix}", ".hy")) else candidates[1],
         )
+
+
+class ClFile(SourceFile):
+    """A file of Lisp that is called ``.cl``."""
+
+    lisp_name = "ASDF::CL-SOURCE-FILE.CL"
+    suffix = "cl"
+
+
+class LspFile(SourceFile):
+    """A file of Lisp that is called ``.lsp``."""
+
+    lisp_name = "ASDF::CL-SOURCE-FILE.LSP"
+    suffix = "lsp"
 
 
 class Module(Component):
@@ -343,8 +358,8 @@ def _components(parent, table):
 _KINDS = {
     "FILE": SourceFile,
     "CL-SOURCE-FILE": SourceFile,
-    "CL-SOURCE-FILE.CL": SourceFile,
-    "CL-SOURCE-FILE.LSP": SourceFile,
+    "CL-SOURCE-FILE.CL": ClFile,
+    "CL-SOURCE-FILE.LSP": LspFile,
     "MODULE": Module,
     "DOC-FILE": DocFile,
     "HTML-FILE": HtmlFile,

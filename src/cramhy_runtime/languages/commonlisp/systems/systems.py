@@ -57,7 +57,6 @@ preferred: set = per_image(set())
 chosen: dict = per_image({})
 """Name of a system that cramhy contains, too → the ``.asd`` file that the user has loaded, or has put into the central registry."""
 NOT_TO_BE_HAD = {
-    "sb-concurrency": "it is part of SBCL; cram-utilities has queues, and waiting on a fluent does the work of a mailbox",
     "sb-cltl2": "it is part of SBCL and asks its compiler, which is another here",
     "usocket": "it opens sockets by functions of the system; Python's socket module does its work",
     "osicat": "it calls functions of C, which cramhy cannot; Python's os module does its work",
@@ -204,6 +203,8 @@ LIBRARY_PACKAGES = {
     "SB-BSD-SOCKETS": "sb-bsd-sockets",
     "SB-BSD-SOCKETS-INTERNAL": "sb-bsd-sockets",
     "SB-RT": "sb-rt",
+    "SB-CONCURRENCY": "sb-concurrency",
+    "SB-QUEUE": "sb-queue",
     "SB-ROTATE-BYTE": "sb-rotate-byte",
     "FIVEAM": "fiveam",
     "5AM": "fiveam",
