@@ -48,6 +48,17 @@ def test_crams_own_suites(suite, branch, tmp_path):
     assert failed == set(SUITES[suite])
 
 
+LIBRARIES = Path(CHECKOUTS or "nowhere") / "cl_robotics_libs"
+
+
+@pytest.mark.skipif(not LIBRARIES.is_dir(), reason="CRAMHY_APPLICATIONS names no folder with cl_robotics_libs")
+@pytest.mark.parametrize("suite, tests", [("cl-robot-controllers-tests", 8), ("cl-feature-constraints-tests", 5)])
+def test_the_suites_of_cl_robotics_libs_pass(suite, tests, tmp_path):
+    command = [sys.executable, "-m", "cramhy_runtime.cli", "test", suite]
+    done = subprocess.run(command, cwd=tmp_path, env={**os.environ, "ROS_PACKAGE_PATH": str(LIBRARIES)}, capture_output=True, text=True)
+    assert done.stdout.splitlines()[-1].startswith(f"{tests} passed in "), done.stdout + done.stderr
+
+
 def test_a_suite_with_the_habits_of_crams_own_passes(tmp_path):
     environment = {**os.environ, "ROS_PACKAGE_PATH": str(Path(__file__).parent / "workspace" / "src")}
     command = [sys.executable, "-m", "cramhy_runtime.cli", "test", "plan-harness-tests"]
