@@ -249,7 +249,7 @@ def _add_grade(commands):
         help="what keeps the submission from this machine: bubblewrap, and nothing is graded where that does not work, or cramhy's own "
         "locks alone (bubblewrap where it works)",
     )
-    grade.add_argument("--as-root", action="store_true", help="grade although you are root, which is refused otherwise")
+    grade.add_argument("--as-root", action="store_true", help="grade although you are root (that is refused)")
     grade.add_argument("--json", default=None, metavar="FILE", help="write the result into FILE, too, as JSON (no file)")
     grade.add_argument("--junit", default=None, metavar="FILE", help="write the result into FILE, too, in JUnit's XML (no file)")
     grade.add_argument(
