@@ -59,6 +59,8 @@ def trusted_bytes(path, in_folder=True, mapped=False):
     are replaced as a whole, as `kept_files` does it: a map breaks when its file is cut off.
     """
     path = os.fspath(path)
+    if mapped and os.name == "posix":
+        from mmap import ACCESS_READ, mmap  # before the file is open: to load it needs one more, and a process may have few
     try:
         if in_folder:
             folder = os.path.dirname(path)
@@ -74,8 +76,6 @@ def trusted_bytes(path, in_folder=True, mapped=False):
             if complaint:
                 raise Unusable("distrusted", complaint)
             if mapped and os.name == "posix" and status.st_size:
-                from mmap import ACCESS_READ, mmap
-
                 return mmap(handle, 0, access=ACCESS_READ)
             return file.read()
     except FileNotFoundError:
