@@ -19,7 +19,7 @@ from cramhy_runtime.ground.data import FLOATS, UNBOUND, Character, Cons, Keyword
 from cramhy_runtime.ground.packages import is_symbol, keyword, symbol_name
 from .builtin_classes import BuiltInClass, lisp_mro
 from .class_definition import default_initargs
-from .class_objects import StandardObject, effective_slots, find_slot, may_be_unbound
+from .class_objects import StandardClass, StandardObject, effective_slots, find_slot, may_be_unbound
 from .constructors import instance_constructor
 from cramhy_runtime.ground.classes import when_classes_change
 from .classes import StructureClass, class_name, class_of, find_class_or_error, qualified
@@ -284,13 +284,14 @@ def _python_init(cls, slots):
     return None, {}
 
 
-def applicable_user_methods(generic_function, cls):
-    """The methods of users that could apply to an instance of ``cls`` as first argument."""
-    mro = lisp_mro(cls)
+def applicable_user_methods(generic_function, *argument_classes):
+    """The methods of users that could apply to instances of ``argument_classes`` as first arguments."""
+    mros = [lisp_mro(cls) for cls in argument_classes]
     return [
         method
         for method in generic_function.methods
-        if method.specializers[0] in mro and not getattr(method.function, "lisp_default", False)
+        if all(specializer in mro for specializer, mro in zip(method.specializers, mros))
+        and not getattr(method.function, "lisp_default", False)
     ]
 
 
@@ -419,15 +420,20 @@ def default_allocate_instance(cls, *initargs):
 # --------------------------------------------------------------------------------------------------------------- change-class
 
 
+def _has_slots(cls):
+    """Whether instances of ``cls`` have slots that ``change-class`` can carry over; those of built-in classes have none."""
+    return cls not in _NO_INSTANCES and (isinstance(cls, StandardClass) or hasattr(cls, "initargs") or hasattr(cls, "lisp_slots"))
+
+
 def default_change_class(instance, new_class, *initargs):
     """Make ``instance`` an instance of ``new_class``, keeping the slots that both have (ANSI 7.2)."""
     cls = find_class_or_error(new_class)
-    if instance.__class__ in _NO_INSTANCES:
+    if not _has_slots(type(instance)) or not _has_slots(cls):
         return no_method_for("CHANGE-CLASS", instance, cls, *initargs)
     old = type(instance)
     if initargs:
-        changing = protocol_functions.update_instance_for_different_class.methods
-        _check_initargs(cls, [method for method in changing if not getattr(method.function, "lisp_default", False)], initargs)
+        changing = applicable_user_methods(protocol_functions.update_instance_for_different_class, old, cls)
+        _check_initargs(cls, changing, initargs)
     previous = copy.copy(instance)
     values = {
         slot.name: vars(instance).get(slot.attribute, UNBOUND) if slot.cell is None else slot.cell.value

@@ -22,6 +22,7 @@ from ..reader.dispatch_macros import FEATURES, IMPLIED_FEATURES, with_features
 from ..reader.reader_errors import QuietFailure
 from ..reader.readtables import READTABLE, Readtable, copy_readtable, set_dispatch_macro_character
 from ..reader.text_reader import PACKAGE, SUPPRESS, Reader
+from ..syntax.backquote import Comma
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -118,7 +119,7 @@ def _taken_by_package(form: Value) -> Iterator[str]:
         head, rest = form.car, form.cdr
         waiting += (rest, head)
         if isinstance(head, str) and head.lower() in (":use", ":import-from") and isinstance(rest, Cons):
-            names = [str(item).lstrip("#:").upper() for item in _elements(rest) if not isinstance(item, Cons)]
+            names = [str(item).lstrip("#:").upper() for item in _elements(rest) if not isinstance(item, (Cons, Comma))]
             if head.lower() == ":use":
                 yield from (f"{name}:" for name in names if name.startswith("SB-"))
             elif names and names[0].startswith("SB-"):

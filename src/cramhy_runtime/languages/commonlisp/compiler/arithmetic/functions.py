@@ -121,6 +121,8 @@ class NumberGenerator(QuotientGenerator):
             tests = [expression(IS, noted, FLOAT_CLASS), inside(operand.later)]
             model = rounded(model) if is_raw else self.call("new_single", rounded(model))
             return self.behind(tests, model, slow), is_raw
+        if is_raw:  # the other two answers are not raw here
+            slow = self.called(node, symbol, [operand])
         noted, again = self.noted_class(operand.first)
         test = inside(operand.later)
         single = self.call("new_single", rounded(model))
