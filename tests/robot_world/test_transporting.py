@@ -76,7 +76,9 @@ def session():
 
 @pytest.fixture
 def ask(session):
+    """A function: the printed value of a form, or its error. Each test begins with the same luck: costmaps draw places."""
     session.evaluate_text("(in-package :transporting) (cram-occasions-events:clear-belief)")
+    session.evaluate_text("(setf *random-state* (sb-ext:seed-random-state 1))")
 
     def asked(form):
         caught = f'(handler-case {form} (serious-condition (problem) (format nil "~a: ~a" (type-of problem) problem)))'
