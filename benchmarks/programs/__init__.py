@@ -37,6 +37,6 @@ class Program:
 
 def programs():
     """All programs, in the order of the table."""
-    from . import control, data, numbers, objects
+    from . import control, data, floats, numbers, objects
 
-    return [*numbers.PROGRAMS, *data.PROGRAMS, *objects.PROGRAMS, *control.PROGRAMS]
+    return [*numbers.PROGRAMS, *floats.PROGRAMS, *data.PROGRAMS, *objects.PROGRAMS, *control.PROGRAMS]

@@ -15,7 +15,7 @@ import math
 from cramhy_runtime.ground.condition_types import SimpleTypeError
 from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, LispString, MultipleValues, list_from
-from .element_types import check_element, upgraded_element_type
+from .element_types import FLOAT_CLASSES, check_element, upgraded_element_type
 from .sequence_types import char_of, constant_changed
 from cramhy_runtime.ground.arrays import InvalidArray, InvalidArrayIndex, followers_moved, wrong_rank
 from cramhy_runtime.ground.arrays import (
@@ -130,7 +130,7 @@ def _write(array, storage, index, value):
 
 def aref(array, *subscripts):
     """``aref``: the element at ``subscripts``."""
-    if array.__class__ is list and len(subscripts) == 1:
+    if (array.__class__ is list or array.__class__ is TypedVector) and len(subscripts) == 1:
         index = subscripts[0]
         if index.__class__ is int and 0 <= index < len(array):
             return array[index]
@@ -139,6 +139,11 @@ def aref(array, *subscripts):
 
 def set_aref(value, array, *subscripts):
     """``(setf aref)``."""
+    if array.__class__ is TypedVector and len(subscripts) == 1:
+        index = subscripts[0]
+        if value.__class__ is FLOAT_CLASSES.get(array.element_type) and index.__class__ is int and 0 <= index < len(array):
+            array[index] = value
+            return value
     return _write(array, *_place(array, subscripts), value)
 
 

@@ -14,6 +14,8 @@ from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.arrays import BASE_CHAR, BIT, CHARACTER, STRING_KINDS
 
 _SINGLE, _DOUBLE, _FIXNUM = sym("SINGLE-FLOAT"), sym("DOUBLE-FLOAT"), sym("FIXNUM")
+FLOAT_CLASSES = {_SINGLE: SingleFloat, _DOUBLE: float}
+"""Upgraded element type → the class of its elements, for the kinds of floats."""
 _NAMES = {
     "CHARACTER": CHARACTER,
     "BASE-CHAR": BASE_CHAR,

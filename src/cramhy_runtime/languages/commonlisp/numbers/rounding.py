@@ -11,7 +11,7 @@ import math
 
 from cramhy_runtime.ground.data import MultipleValues
 from cramhy_runtime.ground.floats import SingleFloat, result_class
-from .arithmetic import div2, need_real, normal, overflow, single_of
+from .arithmetic import div2, mul2, need_real, overflow, single_of, sub2
 from .irrational import to_double
 
 LISP_NAMES = "floor ceiling truncate round ffloor fceiling ftruncate fround"
@@ -24,7 +24,7 @@ def _truncated(number, divisor):
         number, divisor = convert(number), convert(divisor)
     try:
         quotient = math.trunc(div2(number, divisor))
-        return quotient, normal(number - quotient * divisor), divisor
+        return quotient, sub2(number, mul2(quotient, divisor)), divisor
     except (OverflowError, ValueError):  # infinity, or not a number
         return overflow("/", number, divisor), 0, divisor
 
@@ -40,7 +40,7 @@ def floor(number, divisor=1):
     if number.__class__ is int and divisor.__class__ is int and divisor:
         return MultipleValues(divmod(number, divisor))
     quotient, rest, divisor = _truncated(need_real(number), need_real(divisor))
-    if rest and (rest < 0) != (divisor < 0):
+    if rest and (number < 0) != (divisor < 0):  # the rest may have lost its sign
         quotient, rest = quotient - 1, rest + divisor
     return MultipleValues((quotient, rest))
 
@@ -48,7 +48,7 @@ def floor(number, divisor=1):
 def ceiling(number, divisor=1):
     """``cl:ceiling``: quotient rounded towards infinity, and rest."""
     quotient, rest, divisor = _truncated(need_real(number), need_real(divisor))
-    if rest and (rest < 0) == (divisor < 0):
+    if rest and (number < 0) == (divisor < 0):
         quotient, rest = quotient + 1, rest - divisor
     return MultipleValues((quotient, rest))
 
@@ -67,7 +67,9 @@ def _float_rounder(name, rounder):
     def function(number, divisor=1):
         quotient, rest = rounder(number, divisor)
         kind = result_class(number, divisor)
-        # Minus zero is kept: (fceiling -0.5) is -0.0. Rationals, and fround, know none.
+        # Minus zero is kept: (fceiling -0.5) is -0.0. Rationals, and fround, know none. Of minus zero nothing is left.
+        if number == 0 and rounder is not round_:
+            rest = abs(rest)
         if quotient == 0 and rounder is not round_ and isinstance(rest, float) and _negative(number) != _negative(divisor):
             return MultipleValues((kind(-0.0), rest))
         return MultipleValues((kind(quotient), rest))

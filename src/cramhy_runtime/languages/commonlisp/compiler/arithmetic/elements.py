@@ -1,7 +1,7 @@
 """Elements of arrays: ``aref``, ``svref``, ``elt``, ``length`` and their ``setf``.
 
-A simple general vector is a Python list, and an element of it is one subscript behind the tests of the class and the bounds. Of a
-simple array with two axes the element is found by its row and its column. Other arrays, and all errors, are the functions' business.
+A simple vector is a Python list or a `TypedVector`, and an element of it is one subscript behind the tests of the class and the bounds.
+Of a simple array with two axes the element is found by its row and its column. Other arrays, and all errors, are the functions' business.
 """
 
 from __future__ import annotations
@@ -9,12 +9,12 @@ from __future__ import annotations
 from cramhy_runtime.ground.packages import sym
 from .. import nodes
 from ..core import TRUE, Symbol, expression, word
-from .operations import AND, DOT, IF, INT_CLASS, IS, ArithmeticGenerator
+from .operations import AND, DOT, IF, INT_CLASS, IS, OR, ArithmeticGenerator
 from ..kinds import INT, exactly, never_negative
 
 AREF, SVREF, ELT, LENGTH = map(sym, "AREF SVREF ELT LENGTH".split())
 ELEMENTS = {AREF, SVREF, ELT}
-LESS, GET, VECTOR, MATRIX = map(word, "< get Lvector Larray".split())
+LESS, GET, VECTOR, TYPED_VECTOR, MATRIX = map(word, "< get Lvector Ltyped_vector Larray".split())
 ROWS, COLUMNS, STORAGE = map(word, "rows columns storage".split())
 
 
@@ -34,7 +34,12 @@ class ArrayGenerator(ArithmeticGenerator):
         tests, place = self.place(operands)
         function = word(self.constants.name("function", symbol))
         slow = self.positioned(expression(function, *(self.argument(operand) for operand in operands)), node)
-        return slow if tests is None else expression(IF, expression(AND, *tests), place, slow)
+        if tests is None:
+            return slow
+        if symbol is not SVREF and len(operands) == 2:
+            typed = expression(IS, self.class_of(operands[0].later), TYPED_VECTOR)
+            tests[0] = expression(OR, tests[0], typed)
+        return expression(IF, expression(AND, *tests), place, slow)
 
     def argument(self, operand):
         """An operand as an argument of a function, which takes no several values."""

@@ -9,8 +9,9 @@ from __future__ import annotations
 from cramhy_runtime.ground.packages import sym
 from .. import nodes
 from ..core import expression, word
-from .operations import AND, FLOAT_CLASS, IF, INT_CLASS, IS, LARGEST, OR, SINGLE_CLASS, rounded
+from .operations import AND, FLOAT_CLASS, IF, INT_CLASS, IS, LARGEST, OR, SINGLE_CLASS
 from .quotients import QuotientGenerator
+from .single_rounding import rounded
 from ..kinds import (
     ABS,
     COERCE,

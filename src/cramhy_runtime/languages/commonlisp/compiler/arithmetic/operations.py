@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import sys
 
-from cramhy_runtime.ground.floats import LARGEST_SINGLE, SPLITTER, SingleFloat
+from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.packages import sym
 from .. import nodes
 from ..core import NONE, TRUE, Symbol, expression, word
@@ -22,6 +22,7 @@ from ..declared_types import GREATEST_FIXNUM, LEAST_FIXNUM
 from ..destinations import FIRST_OF_VALUES, RAW, VALUE
 from ..environment import Variable
 from ..loop_shapes import quiet
+from .single_rounding import RESULT, rounded, shape_of_product, shape_of_sum
 from ..kinds import (
     DIVIDE,
     DOUBLE,
@@ -42,6 +43,7 @@ from ..kinds import (
     exactly,
     kind_of,
     magnitude,
+    never_negative,
     raw,
 )
 
@@ -63,12 +65,11 @@ OPERATORS = {PLUS: word("+"), MINUS: word("-"), TIMES: word("*"), DIVIDE: word("
 COMPARISONS = {sym(name): word(name) for name in ("<", ">", "<=", ">=", "=")}
 
 LARGEST = sys.float_info.max
-LEAST_SQUARE, LARGEST_SQUARE = 2.0**-252, LARGEST_SINGLE**2
 SMALL_INTEGERS = 2**24
 """Integers up to here are single-floats."""
-BELOW, TIMES_SIGN, MINUS_SIGN = word("<="), word("*"), word("-")
+BELOW = word("<=")
 INT_CLASS, FLOAT_CLASS, SINGLE_CLASS = word("Lint"), word("Lfloat"), word("Lsingle")
-CLASS, CLASSES, RESULT, PRODUCT = word("__class__"), word("Lc"), word("Lr"), word("Lp")
+CLASS, CLASSES = word("__class__"), word("Lc")
 IS, IS_NOT, AND, OR, IF, DOT, SETX = map(word, "is is-not and or if . setx".split())
 MOST_LEAVES, MOST_OPERATIONS = 5, 8
 FIXNUM = 1 << 10
@@ -124,22 +125,6 @@ def bare(symbol, one, other, size, other_size):
     if both & SINGLE and (DOUBLE if both & DOUBLE else SINGLE) not in (one, other):
         return 0  # nobody would know whether the result is to be rounded
     return combined(one, other)
-
-
-def rounded(model, product=True, slow=None):
-    """The single-float nearest to ``model``, a float that is a result of one operation with singles.
-
-    Veltkamp's splitting rounds what is within the range of singles that have all 24 bits. ``product``: whether the result may be smaller
-    than these and yet not be exact, which a sum is not. ``slow``: what computes the result with all that may be said about it.
-    """
-    noted = expression(SETX, RESULT, model)
-    if product:
-        inside = expression(BELOW, LEAST_SQUARE, expression(TIMES_SIGN, noted, RESULT), LARGEST_SQUARE)
-    else:
-        inside = expression(BELOW, -LARGEST_SINGLE, noted, LARGEST_SINGLE)
-    split = expression(SETX, PRODUCT, expression(TIMES_SIGN, RESULT, SPLITTER))
-    nearest = expression(MINUS_SIGN, split, expression(MINUS_SIGN, PRODUCT, RESULT))
-    return expression(IF, inside, nearest, slow or expression(word("Lrounded"), RESULT))
 
 
 class ArithmeticGenerator:
@@ -445,12 +430,15 @@ class ArithmeticGenerator:
             if kind & INT and size > 24:  # a single may not hold it exactly
                 exact = self.call("in_single", models[index])
                 if nameable(models[index]):
-                    exact = expression(IF, expression(BELOW, -SMALL_INTEGERS, models[index], SMALL_INTEGERS), models[index], exact)
+                    below = [] if never_negative(each.node) else [-SMALL_INTEGERS]
+                    exact = expression(IF, expression(BELOW, *below, models[index], SMALL_INTEGERS), models[index], exact)
                 models[index] = exact
         slow = None
         if part.parts[0].__class__ is part.parts[1].__class__ is Operand and used is None:
             slow = self.unwrapped(self.generic(part), SINGLE)
-        return rounded(expression(OPERATORS[part.symbol], *models), part.symbol is TIMES or part.symbol is DIVIDE, slow)
+        shaping = {TIMES: shape_of_product, PLUS: shape_of_sum}.get(part.symbol)
+        shape = shaping and shaping(part.parts[0].node, part.parts[1].node)
+        return rounded(expression(OPERATORS[part.symbol], *models), part.symbol is TIMES or part.symbol is DIVIDE, slow, shape)
 
     def needs_check(self, operation, kind):
         """Whether a result of ``kind`` may be infinite because of a product."""

@@ -15,14 +15,15 @@ from cramhy_runtime.ground.packages import sym
 from .. import nodes
 from ..facts import OPERANDS_OF, find_kinds, walk
 from .operations import COMPARISONS
-from ..kinds import DIVIDE, DOUBLE, FIXNUM_BITS, FLOATS, INFINITE, INT, MACHINE, NONE_YET, SINGLE, SMOOTH, SQRT, exactly, kind_of
+from ..kinds import BOOLEAN, DIVIDE, DOUBLE, FIXNUM_BITS, FLOATS, INFINITE, INT, NONE_YET, SINGLE, SMOOTH, SQRT, THING, kind_of
+from ..kinds import kind_of_type
 
 WHOLE_ARGUMENTS = {sym(name) for name in "MOD REM EVENP ODDP LOGAND LOGIOR LOGXOR ASH GCD LCM ISQRT".split()}
 INDEXED = {sym(name) for name in "AREF SVREF ELT".split()}
 MAKE_ARRAY = sym("MAKE-ARRAY")
 LARGEST, FEW, MANY = 500, 4, 12
 """The most nodes of a body that is made twice; the least number of operations in one that is run often, by a loop or by calling itself,
-and in any other one."""
+and in any other one. With floats one less pays."""
 
 
 def guesses(node):
@@ -48,14 +49,18 @@ def guesses(node):
                 if value.__class__ is nodes.LocalVariable and value.variable in candidates and not isinstance(variable, Symbol):
                     if not variable.writes and not value.variable.writes:
                         candidates[variable] = candidates[value.variable]
+        elif kind is nodes.Checked:
+            if item.value.__class__ is nodes.LocalVariable and item.value.variable in candidates and kind_of_type(item.type) == INT:
+                candidates[item.value.variable].add("whole")
         elif kind is nodes.Call:
             operations += item.symbol in OPERANDS_OF
             often = often or item.symbol is node.name
             _note(item, candidates)
-    if operations < (FEW if often else MANY):
-        return {}
     found = {variable: _guess(variable, candidates[variable]) for variable in node.parameters.required if variable in candidates}
-    return {variable: kind for variable, kind in found.items() if kind}
+    found = {variable: kind for variable, kind in found.items() if kind}
+    if operations + any(kind & FLOATS for kind in found.values()) < (FEW if often else MANY):
+        return {}
+    return found
 
 
 def _note(call, candidates):
@@ -75,8 +80,9 @@ def _note(call, candidates):
         for leaf in leaves:
             if leaf.__class__ is nodes.Constant:
                 signs.add({INT: "number", SINGLE: "single", DOUBLE: "double"}.get(kind_of(leaf), "other"))
-            elif exactly(kind_of(leaf), MACHINE) and kind_of(leaf) != INT:
-                signs.add("double" if kind_of(leaf) & DOUBLE else "single")
+            elif kind_of(leaf) & FLOATS and not kind_of(leaf) & (BOOLEAN | THING):
+                # what began as a single may become a double if a parameter is one, but nothing else does so
+                signs.add("single" if kind_of(leaf) & SINGLE else "double")
             elif leaf.__class__ is not nodes.LocalVariable or leaf.variable not in candidates:
                 signs.add("other")
         if symbol is DIVIDE or symbol is SQRT or symbol in SMOOTH:
