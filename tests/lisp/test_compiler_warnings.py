@@ -336,6 +336,20 @@ def test_a_type_that_nobody_defines(lisp):
     assert printed(lisp('(handler-case (handler-case (error "x") (no-such-error () 1)) (error () 2))')) == ["2"]  # it fits nothing
 
 
+@pytest.mark.parametrize(
+    ("type_", "undefined"),
+    [
+        ("(or simple-error type-error)", []),
+        ("(and error (not type-error))", []),
+        ("(or simple-error (not no-such-error))", ["NO-SUCH-ERROR"]),
+    ],
+)
+@pytest.mark.parametrize("form", ["(handler-case x (%s () 1))", "(handler-bind ((%s (lambda (c) c))) x)"])
+def test_the_types_in_a_compound_type_of_a_handler(lisp, form, type_, undefined):
+    said = lisp.said(f"(defun f (x) {form % type_})")
+    assert re.findall("undefined type: (.*)", said) == [f"COMMON-LISP-USER::{name}" for name in undefined]
+
+
 def test_a_function_that_becomes_a_macro(lisp):
     lisp("(defun changing-kind (x) x)")
     assert printed(

@@ -296,3 +296,13 @@ def test_files_of_lisp_may_have_other_suffixes(write, run, kind, suffix):
     write(f"s-one.{suffix}", logging(":one"))
     write("s-two.lisp", logging(":two"))
     assert run("(asdf:load-system :suffixed) (reverse *log*)") == "(:ONE :TWO)"
+
+
+@pytest.mark.parametrize("end", ["", '#-sbcl (error "Only for the Lisps that it knows.")'], ids=["before it", "before and behind it"])
+def test_a_definition_that_refuses_other_lisps_is_read_for_sbcl(write, run, end):
+    """Its files name what is not here, so it would be read for a Lisp that it does not know, and it signals an error then."""
+    text = '(defsystem "known-lisps" :components (#+sbcl (:file "k-sbcl") (:file "k-a")))'
+    write("known-lisps.asd", text + end if end else '#-(or ecl sbcl) (error "This is an unsupported Lisp.")' + text)
+    write("k-sbcl.lisp", "(when (find-package :no-such-package) (sb-kernel::no-such-thing))" + logging(":sbcl"))
+    write("k-a.lisp", logging(":a"))
+    assert run("(asdf:load-system :known-lisps) (reverse *log*)") == "(:SBCL :A)"

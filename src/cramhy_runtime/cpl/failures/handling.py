@@ -310,11 +310,11 @@ def assert_no_nlx(forms, thunk):
         return error("Asserted~%  ~@<~A~:>~%not to perform a non-local exit. Caught attempt to do so.", forms)
 
 
-def composite_failures(failure):
+def composite_failures(failure: Any) -> Any:
     """The failures in a ``composite-failure``, a Lisp list."""
     return failure.failures if isinstance(failure, CompositeFailure) else type_error(failure, "COMPOSITE-FAILURE")
 
 
-def envelop_error(failure):
+def envelop_error(failure: Any) -> Any:
     """The error in the envelope ``failure``."""
     return failure.error if isinstance(failure, CommonLispErrorEnvelope) else type_error(failure, "COMMON-LISP-ERROR-ENVELOPE")

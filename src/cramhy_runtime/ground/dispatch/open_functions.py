@@ -54,8 +54,9 @@ def lambda_list_of(function):
 def open_to_methods(function, name, lambda_list=None, *classes, method=None, when_opened=None):
     """Let users define methods on ``function``, which is the function of ``"PACKAGE::NAME"`` or ``"(setf PACKAGE::NAME)"``.
 
-    lambda_list: text; without it, that of ``function``, for arguments of any class. classes: of its required arguments, ``None`` for any. method: what its first method does, if that is not
-    ``function`` itself. when_opened: called with the generic function. Returns the `Opening`.
+    lambda_list: text; without it, that of ``function``, for arguments of any class. classes: of its required arguments, ``None`` for any.
+    method: what its first method does, if that is not ``function`` itself. when_opened: called with the generic function. Returns the
+    `Opening`.
     """
     name = lisp_list(sym("SETF"), sym(name[6:-1])) if name.startswith("(setf ") else sym(name)
     if lambda_list is None:

@@ -13,7 +13,7 @@ import os
 from pathlib import Path
 
 from cramhy_runtime.kernel.images import per_image
-from cramhy_runtime.ground.conditions import SimpleError, error, handler_bind, warn
+from cramhy_runtime.ground.conditions import Error, SimpleError, error, handler_bind, handler_case, warn
 from cramhy_runtime.ground.dispatch.generic_functions import FunctionInTheWay
 from cramhy_runtime.ground.restarts import find_restart, invoke_restart
 from cramhy_runtime.ground.data import Cons, Symbol, list_from
@@ -358,13 +358,13 @@ def _read_definitions(path):
     for system in made:
         system.file = None
     FEATURES.value = features  # without those that the first reading has added
-    with read_for_sbcl(False):
-        _evaluate_definitions(path, text)
+    with read_for_sbcl(False):  # one that is only for Lisps that it knows may say so by an error
+        was_read = handler_case([(Error, lambda condition: False)], lambda: _evaluate_definitions(path, text) or True)
     for system in made:
         if system.file is None and system is not main:
             forget_system(system.name)
-        system.without_sbcl = system.file is not None
-    if main.file is None:  # it is there for Lisps that it knows
+        system.without_sbcl = was_read and system.file is not None
+    if main.file is None or not was_read:  # it is there for Lisps that it knows
         with read_for_sbcl(True):
             _evaluate_definitions(path, text)
     return None
