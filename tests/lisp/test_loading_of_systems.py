@@ -306,3 +306,23 @@ def test_a_definition_that_refuses_other_lisps_is_read_for_sbcl(write, run, end)
     write("k-sbcl.lisp", "(when (find-package :no-such-package) (sb-kernel::no-such-thing))" + logging(":sbcl"))
     write("k-a.lisp", logging(":a"))
     assert run("(asdf:load-system :known-lisps) (reverse *log*)") == "(:SBCL :A)"
+
+
+def test_babel_is_loaded_when_a_user_of_cffi_names_it(write, run, session):
+    """The original's CFFI depends on it, so its users do not name the system."""
+    write("babel.asd", '(defsystem "babel" :components ((:file "strings")))')
+    write("strings.lisp", "(defpackage :babel (:use :cl) (:export #:octets)) (defun babel:octets (text) (map 'list #'char-code text))")
+    write("calls-c.asd", '(defsystem "calls-c" :depends-on ("cffi") :components ((:file "c-a")))')
+    write("c-a.lisp", f"(defun text-for-c (text) (babel:octets text)) {logging('(text-for-c ' + chr(34) + 'ab' + chr(34) + ')')}")
+    assert run("(asdf:load-system :calls-c) *log*") == "((97 98))"
+    session.evaluate_text("(delete-package :babel)", "<test>")
+
+
+def test_babel_that_is_nowhere(run):
+    assert run('(handler-case (read-from-string "babel:octets") (error (c) (princ-to-string c)))') == '"Package BABEL does not exist."'
+
+
+@pytest.mark.parametrize("name", ["ASDF-UTILS", "ASDF-DRIVER"])
+def test_what_uiop_was_called_once(run, name):
+    """Under these names ASDF 2.27 to 3.1 had it, and files of that time call functions in it."""
+    assert run(f"(eq (find-package :{name}) (find-package :uiop))") == "T"

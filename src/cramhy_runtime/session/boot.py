@@ -84,7 +84,7 @@ def _complete():
         for face in FACES:
             face.define()
         systems.provide_system(SYSTEMS)
-        packages.on_demand.update(systems.LIBRARY_PACKAGES)
+        packages.on_demand.update({**systems.LIBRARY_PACKAGES, **systems.WITH_CFFI})
         packages.on_demand.update(dict.fromkeys(TF_PACKAGES, define_tf))
         packages.on_demand["ROBOT-WORLD"] = define_robot_world
         packages.on_demand.update(dict.fromkeys(("ACTIONLIB-LISP", "ACTIONLIB"), define_actionlib))

@@ -256,6 +256,9 @@ LIBRARY_PACKAGES = {
     "OCCUPANCY-GRID-COSTMAP": "cram-occupancy-grid-costmap",
 }
 """Their packages: the library is loaded when its package is first named."""
+WITH_CFFI = {"BABEL": "babel", "BABEL-ENCODINGS": "babel"}
+"""Packages of systems that the original's CFFI depends on, so that its users need not name them. They are loaded from ROS_PACKAGE_PATH, if they
+are there, when the package is first named: compiling Babel takes longer than most programs that load CFFI."""
 
 
 @functools.cache
@@ -317,6 +320,12 @@ def known_systems():
         *LEFT_OUT,
         *(path.stem for crawl in crawls() for path in _asd_files(crawl)),
     }
+
+
+def load_library(name):
+    """Load the system ``name`` because somebody named one of its packages; of `WITH_CFFI` only those that are there."""
+    if name not in WITH_CFFI.values() or find_asd(name) is not None:
+        load_system(name)
 
 
 # --------------------------------------------------------------------------------------------------------------- reading
