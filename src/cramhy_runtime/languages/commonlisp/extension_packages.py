@@ -39,6 +39,7 @@ LATE = (
     "SB-INT",
     "SB-INTROSPECT",
     "SB-KERNEL",
+    "SB-IMPL",
     "SB-UNIX",
     "SB-VM",
     "SB-C",

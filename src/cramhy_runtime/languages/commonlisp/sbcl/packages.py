@@ -16,12 +16,13 @@ from cramhy_runtime.ground.packages import find_package_or_error, sym
 from cramhy_runtime.utilities import threads as utility_threads
 
 from ..packages.face_definition import define_face
+from ..reader import readtables
 from ..streams import streams
 from ..syntax.operator_macros import define, export
 from ..types.types import define_type
 from ..evaluation.function_facts import lambda_list_of
 from ..numbers import float_traps
-from . import atomics, backtraces, deadlines, extensions, internals, mutexes, operators, posix, threads, timers, weak_pointers
+from . import atomics, backtraces, deadlines, extensions, internals, mutexes, operators, posix, reader_internals, threads, timers, weak_pointers
 
 
 def _setters(package: str, setters: dict[str, object]) -> None:
@@ -202,6 +203,15 @@ def define_kernel() -> None:
     _macros("SB-KERNEL")
 
 
+def define_implementation() -> None:
+    """What programs take from SB-IMPL: the parts of a readtable."""
+    names = """character-macro-array character-macro-hash-table dispatch-tables assert-not-standard-readtable"""
+    functions = {reader_internals: names, "%fun-name": reader_internals.fun_name}
+    variables = {"*standard-readtable*": readtables.STANDARD, "*default-external-format*": sym(":UTF-8")}
+    define_face("SB-IMPL", functions=functions, variables=variables)
+    _setters("SB-IMPL", {"dispatch-tables": reader_internals.set_dispatch_tables})
+
+
 def define_unix() -> None:
     """What programs ask of SB-UNIX: the current folder."""
     define_face("SB-UNIX", functions={"posix-getcwd/": internals.posix_getcwd})
@@ -253,6 +263,7 @@ MAKERS = {
     "SB-MOP": define_metaobjects,
     "SB-PCL": define_metaobjects,
     "SB-KERNEL": define_kernel,
+    "SB-IMPL": define_implementation,
     "SB-UNIX": define_unix,
     "SB-INTROSPECT": define_introspection,
     "SB-VM": define_machine,
