@@ -326,3 +326,13 @@ def test_babel_that_is_nowhere(run):
 def test_what_uiop_was_called_once(run, name):
     """Under these names ASDF 2.27 to 3.1 had it, and files of that time call functions in it."""
     assert run(f"(eq (find-package :{name}) (find-package :uiop))") == "T"
+
+
+def test_the_file_of_a_system_is_compiled_where_it_lies(write, run):
+    """Programs ask so for files beside theirs, when they are read, when macros are expanded, or when they run."""
+    write("beside.asd", '(defsystem "beside" :components ((:file "b-a")))')
+    asked = "(defmacro here () (file-namestring *compile-file-pathname*))" + logging("#.(pathname-name *compile-file-truename*)")
+    path = write("b-a.lisp", asked + logging("(here)") + logging("(equal *compile-file-truename* (or *load-truename* 1))"))
+    assert run("(asdf:load-system :beside) (reverse *log*)") == '("b-a" "b-a.lisp" T)'
+    assert run("(list *compile-file-truename* *compile-file-pathname*)") == "(NIL NIL)"
+    assert run(f'(setf *log* nil) (handler-case (load "{path}") (error () :not-compiled))') == ":NOT-COMPILED"

@@ -22,7 +22,20 @@ from ..syntax.operator_macros import define, export
 from ..types.types import define_type
 from ..evaluation.function_facts import lambda_list_of
 from ..numbers import float_traps
-from . import atomics, backtraces, deadlines, extensions, internals, mutexes, operators, posix, reader_internals, threads, timers, weak_pointers
+from . import (
+    atomics,
+    backtraces,
+    deadlines,
+    extensions,
+    internals,
+    mutexes,
+    operators,
+    posix,
+    reader_internals,
+    threads,
+    timers,
+    weak_pointers,
+)
 
 
 def _setters(package: str, setters: dict[str, object]) -> None:
