@@ -257,8 +257,8 @@ LIBRARY_PACKAGES = {
 }
 """Their packages: the library is loaded when its package is first named."""
 WITH_CFFI = {"BABEL": "babel", "BABEL-ENCODINGS": "babel"}
-"""Packages of systems that the original's CFFI depends on, so that its users need not name them. They are loaded from ROS_PACKAGE_PATH, if they
-are there, when the package is first named: compiling Babel takes longer than most programs that load CFFI."""
+"""Packages of systems that the original's CFFI depends on, so that its users need not name them. They are loaded from ROS_PACKAGE_PATH, if
+they are there, when the package is first named: compiling Babel takes longer than most programs that load CFFI."""
 
 
 @functools.cache

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 
 LISP_NAMES = """
 make-world physical-p copy-world thing-color stuck-things ignored-contacts ignore-contact add-description remove-thing find-thing things
-thing-name thing-world thing-pose set-thing-pose thing-types thing-mass thing-stays set-thing-stays thing-bounds part-bounds machine-joints machine-joint
+thing-name thing-world thing-pose set-thing-pose thing-types thing-mass thing-stays set-thing-stays
+thing-bounds part-bounds machine-joints machine-joint
 set-machine-joint machine-links machine-link machine-description attach detach attachments grips contacts settle stable visibility
 read-description description-text looked-on-p remark-seen remark-grasp
 """
