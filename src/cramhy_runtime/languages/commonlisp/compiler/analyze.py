@@ -63,6 +63,7 @@ class Analyzer(Scrutiny):
         self.filename = filename
         self.positions = positions if positions is not None else FormPlaces()
         self.at_once = at_once
+        self.circle_check = None  # what looks for circles in expansions, where one was in a call of a user's macro
         self._at = None
         self.begin_scrutiny()
 
@@ -159,6 +160,8 @@ class Analyzer(Scrutiny):
             else:
                 expansion, expanded = macroexpand_1(form, env)
         if expanded:
+            if self.circle_check is not None:
+                self.circle_check(expansion)
             self.positions.inherit(expansion, form)
         return expansion, expanded
 
