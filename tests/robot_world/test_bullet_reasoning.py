@@ -178,3 +178,12 @@ def test_with_movie_gives_the_values_of_its_body_and_writes_a_gif_also_when_it_f
     assert ask(f'(btr:with-movie ("{other}" :width 40 :height 30) (error "It is broken."))') == "It is broken."
     assert other.exists()
     assert ask('(btr:with-movie ("run.png") (error "It never begins."))').startswith("What kind of movie is run.png to be?")
+
+
+@pytest.mark.parametrize("one, other", [("pr2", ":kitchen"), (":kitchen", "pr2")])
+def test_contact_gives_the_links_of_both_where_both_have_links(ask, one, other):
+    """First those of the first. A plan of CRAM asks so whether a hand has gripped a handle."""
+    ask("(setf (btr:pose (named 'pr2)) (btr:ensure-pose '((0.9 0.9 0) (0 0 0 1))))")
+    links = ask(f"(all '(btr:contact ?w {one} {other} ?link) '?link)").strip("()").replace('"', "").split()
+    of_robot = [name in ask("(btr:link-names (named 'pr2))") for name in links]
+    assert set(of_robot) == {True, False} and of_robot == sorted(of_robot, reverse=one == "pr2")

@@ -138,6 +138,19 @@ def test_robots_touch_furniture_but_neither_floor_nor_themselves(world):
     assert {other.thing.name for _, other in world.contacts("pr2")} == {"kitchen"}
 
 
+def test_robots_touch_no_plane_while_items_do(world):
+    """In CRAM a plane has the mask of items only, so that a robot whose lowest link ends on the floor is not in collision."""
+    world.add_item("ground", (Shape("plane", ()),), placement(), mass=0)
+    world.add_item("bottle", BOTTLE, placement((3.0, 3.0, 0.05)))
+    for height in (0.0, -0.02, 0.5):
+        world.put("pr2", placement((0.0, 0.5, height)))
+        assert world.contacts("pr2") == []
+    world.put("pr2", placement((0.0, 0.5, -0.02)))
+    assert [{part.thing.name for part in pair} for pair in world.contacts("ground")] == [{"ground", "bottle"}]
+    world.put("bottle", placement((0.0, 0.5, 0.1)))
+    assert {other.thing.name for _, other in world.contacts("pr2")} == {"bottle"}
+
+
 def test_a_copy_goes_its_own_way(world):
     world.add_item("bottle", BOTTLE, placement(TABLE))
     world.attach("pr2", "bottle", "r_wrist_roll_link")

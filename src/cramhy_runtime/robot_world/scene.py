@@ -101,6 +101,8 @@ class Scene:
         self._half = np.where(self.is_plane[:, None], 0.0, model.geom_aabb[:, 3:])
         standing = [part.body for part in self.parts if isinstance(part.thing, Machine) and part.thing.fixed]
         self._fixed = np.isin(model.geom_bodyid, standing) | self.is_plane
+        machines = [part.body for part in self.parts if isinstance(part.thing, Machine)]
+        self._of_machine = np.isin(model.geom_bodyid, machines)
         self._machines, self._items = [], []
         for thing in self.things:
             parts = [part for part in self.parts if part.thing is thing]
@@ -182,13 +184,15 @@ class Scene:
         """The pairs of parts of different things that touch; ``None`` stands for the floor. of: only those of this thing, which then comes
         first.
 
-        What is fixed, furniture and planes, does not touch each other.
+        What is fixed, furniture and planes, does not touch each other. Robots do not touch planes either: in CRAM a plane has the collision
+        mask of items only.
         """
         lowest, highest = self.boxes()
         mine = np.flatnonzero(self._part_of_geom >= 0) if of is None else self._geoms_of(of)
         near = self._near(lowest, highest, mine, TOUCHING)
         near &= self._thing_of_geom[mine, None] != self._thing_of_geom
         near &= ~(self._fixed[mine, None] & self._fixed)
+        near &= ~((self.is_plane[mine, None] & self._of_machine) | (self._of_machine[mine, None] & self.is_plane))
         found: dict[tuple[int, int], None] = {}
         for row, other in zip(*map(np.ndarray.tolist, np.nonzero(near)), strict=True):
             geom = mine[row]
@@ -205,8 +209,10 @@ class Scene:
             near &= (lowest[:, axis] <= high[:, axis, None]) & (highest[:, axis] >= low[:, axis, None])
         for plane in np.flatnonzero(self.is_plane):
             normal = self.data.geom_xmat[plane].reshape(3, 3)[:, 2]
-            corners = np.where(normal > 0, lowest[mine], highest[mine])
-            near[:, plane] = (corners - self.data.geom_xpos[plane]) @ normal <= distance
+            corners = np.where(normal > 0, lowest, highest)
+            reaching = (corners - self.data.geom_xpos[plane]) @ normal <= distance
+            near[:, plane] = reaching[mine]
+            near[mine == plane] = reaching
         return near
 
     def _geoms_of(self, thing: Item | Machine) -> np.ndarray:

@@ -217,7 +217,7 @@
 
   (<- (contact ?world ?name ?other-name ?link)
     (%object ?world ?name ?object)
-    (lisp-fun contacts-with-links ?world ?object ?others)
+    (lisp-fun touching-links ?world ?object ?others)
     (member (?other-name . ?link) ?others))
 
   (<- (object-not-in-collision ?world ?name)
@@ -316,6 +316,14 @@
 (defun below-link-p (object robot link)
   "Whether the middle of OBJECT is as low as that of a link, or lower."
   (<= (z (bounding-box-center (aabb object))) (z (first (robot-world:part-bounds robot link)))))
+
+(defun touching-links (world object)
+  "A list (name . link) of the objects that touch OBJECT: first with the links of OBJECT at which they do, then with their own."
+  (let ((contacts (robot-world:contacts world object)))
+    (remove-duplicates
+     (append (loop for (nil own-link other nil) in contacts when (and other own-link) collect (cons (name other) own-link))
+             (loop for (nil nil other link) in contacts when (and other link) collect (cons (name other) link)))
+     :test #'equal :from-end t)))
 
 (defun contacts-with-links (world object)
   "A list (name . link) for each object that touches OBJECT; the link is that of whichever has links."
