@@ -175,6 +175,14 @@ def test_predicates_with_a_time_give_each_member_of_the_chain_once(lisp):
     assert lisp("(answers `(desig-value ,*d* ?v ?t))") == "(((?V . ONE) (?T . 5)) ((?V . TWO) (?T)))"
 
 
+@pytest.mark.parametrize("predicate", ["current-designator", "newest-effective-designator"])
+def test_of_no_designator_the_current_one_is_nil(lisp, predicate):
+    """As (current-desig nil) is; plans give nil where an action has no such part. What is no designator, and no nil, has none."""
+    assert lisp(f"(answers '({predicate} nil ?found))") == "(((?FOUND)))"
+    assert lisp(f"(answers '({predicate} 3 ?found))") == "NIL"
+    assert lisp(f"(answers '({predicate} nil 3))") == "NIL"
+
+
 def test_other_predicates(lisp):
     lisp("(defvar *d* (a location (pose p) (location other) (n 1))) (defvar *m* (a motion (n 1)))")
     assert lisp("(list (answers `(desig-location-prop ,*d* ?p)) (answers `(desig-location-prop ,*m* ?p)))") == "((((?P . :P))) NIL)"

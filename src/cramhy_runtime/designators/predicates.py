@@ -10,6 +10,9 @@ Their default clauses only check, with ``*break-on-lisp-errors*``, the class of 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol
 from cramhy_runtime.prolog.engine.fact_groups import built_in_group
@@ -214,18 +217,24 @@ def designator(m, first, *rest):
                 yield
 
 
+def _unify_found(m: Any, desig: object, result: object, function: Callable[[Any], object]) -> bool:
+    """Whether ``result`` unifies with what ``function`` finds for a designator; plans pass nil where an action has no such part."""
+    found = deref(desig)
+    if found is None:
+        return bool(m.unify(result, None))
+    return isinstance(found, Designator) and bool(m.unify(result, function(found)))
+
+
 @test("DESIG::CURRENT-DESIGNATOR", group="DESIG::DESIGNATORS")
 def current_designator(m, desig, current):
-    """``(current-designator d current)``: the youngest designator of its chain."""
-    found = _designator(m, desig)
-    return found is not None and m.unify(current, youngest(found))
+    """``(current-designator d current)``: the youngest designator of its chain; of nil it is nil."""
+    return _unify_found(m, desig, current, youngest)
 
 
 @test("DESIG::NEWEST-EFFECTIVE-DESIGNATOR", group="DESIG::DESIGNATORS")
 def newest_effective(m, desig, effective):
-    """``(newest-effective-designator d effective)``: the youngest effective designator of its chain, or nil."""
-    found = _designator(m, desig)
-    return found is not None and m.unify(effective, newest_effective_designator(found))
+    """``(newest-effective-designator d effective)``: the youngest effective designator of its chain, or nil; of nil it is nil."""
+    return _unify_found(m, desig, effective, newest_effective_designator)
 
 
 @predicate("DESIG::DESIG-LOCATION-PROP", group="DESIG::LOCATION-DESIGNATORS")
