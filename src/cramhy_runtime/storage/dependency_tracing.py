@@ -138,8 +138,9 @@ class Trace:
 
     def see(self, code: CodeType, names: dict[str, Any]) -> None:
         """The user's function with that code and these globals runs."""
-        if id(code) not in self._codes:
-            self._codes[id(code)] = code
+        key = id(code)
+        if key not in self._codes:
+            self._codes[key] = code
             if not is_library(code.co_filename):
                 self.ran = self.ran or code.co_filename.endswith((".py", ".hy"))
                 for observe in OBSERVERS:
