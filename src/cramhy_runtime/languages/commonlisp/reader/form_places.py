@@ -80,9 +80,9 @@ class FormPlaces(dict):
                 self[key] = place
                 self._sources[key] = self._sources.get(outer, form)
 
-    def source(self, form):
-        """The form that was read from which ``form`` has its place."""
-        return self._sources.get(id(form), form)
+    def source(self, key, form):
+        """The form that was read from which ``form``, whose ``id`` is ``key``, has its place."""
+        return self._sources.get(key, form)
 
     def of_symbol(self, symbol, form):
         """(line, column) of ``symbol`` in the list ``form``: where it stands least deep, the first of these; ``None`` if nowhere."""
