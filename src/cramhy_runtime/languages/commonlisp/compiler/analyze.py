@@ -148,6 +148,7 @@ class Analyzer(Scrutiny):
             shorter = self.compiler_macro_expansion(form, env)
             return self._call(form, env) if shorter is form else self.form(shorter, env)
         if isinstance(head, Cons) and head.car is LAMBDA:
+            self.lambda_call(head, tuple_of(form), env)
             return CallValue(self.function(head, env), self.arguments(form, env))
         told = "~S cannot be called: the head of a form must be a symbol or a lambda expression."
         return error(CompileError(told, head, position=self.place(), called=form))
@@ -318,7 +319,7 @@ class Analyzer(Scrutiny):
         for symbol in [*(symbol for symbol, _ in dynamic), *(() if parsed.aux else specials)]:  # the LET* of &AUX declares them again
             inner.variables[symbol] = SpecialVariable(symbol)
         around = self.muffled, self.notinline
-        self.declare(specifiers, own, inner)
+        self.declare(specifiers, [*own, *(symbol for symbol, _ in parsed.aux)], inner)
         if parsed.aux:
             aux = lisp_list(*(lisp_list(symbol, form) for symbol, form in parsed.aux))
             declared = [Cons(DECLARE, lisp_list(*specifiers))] if specifiers else []

@@ -14,9 +14,10 @@ from cramhy_runtime.ground.data import Cons, Keyword, Symbol
 from . import compilation_unit
 from .compilation_unit import Mention
 from ..syntax.declaration_names import EXTENSIONS, is_declared, is_extension
-from ..syntax.function_shapes import wrong_call
+from ..syntax.function_shapes import wrong_call, wrong_call_of_lambda
 from cramhy_runtime.ground.packages import COMMON_LISP, sym
 from ..standard_names import missing
+from cramhy_runtime.ground.dispatch.methods import Shape
 from cramhy_runtime.ground.ports import PORTS
 from .environment import Variable, function_key
 
@@ -129,7 +130,8 @@ class Scrutiny:
             head, rest = specifier.car, list(_elements(specifier.cdr))
             if head is IGNORE or head is IGNORABLE:
                 for name in rest:
-                    self._ignore(head, name, by_symbol, env, specifier)
+                    if not isinstance(name, Symbol) or name not in variables:  # else the LET* of &AUX will know it
+                        self._ignore(head, name, by_symbol, env, specifier)
             elif head is NOTINLINE:
                 self.notinline |= {name for name in rest if isinstance(name, Symbol)}
             elif is_extension(head, "MUFFLE-CONDITIONS"):
@@ -141,9 +143,9 @@ class Scrutiny:
             elif head is OPTIMIZE:
                 self._optimize(specifier, rest)
             elif head is TYPE:
-                self._type(rest[0] if rest else None, rest[1:], env, specifier)
+                self._type(rest[0] if rest else None, [name for name in rest[1:] if name not in variables], env, specifier)
             elif (isinstance(head, (Symbol, Cons)) or head is True) and PORTS.types.known(head):
-                self._type(head, rest, env, specifier)
+                self._type(head, [name for name in rest if name not in variables], env, specifier)
             else:
                 self._unrecognized(specifier)
 
@@ -236,6 +238,12 @@ class Scrutiny:
             return
         for control, *rest in wrong_call(name, shape, arguments):
             self.warn(SimpleWarning, control, *rest)
+
+    def lambda_call(self, expression, arguments, env):
+        """Judge a call of a lambda expression."""
+        if self.unit is not None and isinstance(expression.cdr, Cons) and not (self.at_once and env.scope.parent is None):
+            for control, *rest in wrong_call_of_lambda(Shape(expression.cdr.car), arguments):
+                self.warn(SimpleWarning, control, *rest)
 
 
 def _elements(lst):

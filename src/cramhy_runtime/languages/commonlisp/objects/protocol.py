@@ -18,7 +18,7 @@ from ..packages.package_errors import check_function_name
 from . import instances, slots
 from .builtin_classes import CLASSES
 from .class_definition import define_class
-from .class_objects import direct_slots, effective_slots
+from .class_objects import Slot, direct_slots, effective_slots
 from .classes import class_name, find_class_or_error
 from cramhy_runtime.ground.dispatch.generic_functions import (
     GenericFunction,
@@ -283,7 +283,14 @@ def class_direct_subclasses(class_):
 
 
 def class_slots(class_):
+    structure = getattr(class_, "lisp_structure", None)
+    if structure is not None:
+        return list_from([_slot_of_structure(slot, class_) for slot in structure.slots])
     return list_from(list(effective_slots(class_).values()))
+
+
+def _slot_of_structure(slot, class_):
+    return Slot(slot.name, slot.attribute, (slot.keyword,), slot.initform, None, slot.type, class_)
 
 
 def class_direct_slots(class_):

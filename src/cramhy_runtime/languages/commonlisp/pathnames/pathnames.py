@@ -143,7 +143,8 @@ def parse_namestring(thing, host=None, defaults=None, *, start=0, end=None, junk
 
 
 def _host(designator):
-    return designator if designator is UNIX else logical_host(designator)
+    """The host that a host, a logical host or a string names; the empty string is the host of the files."""
+    return UNIX if designator is UNIX or isinstance(designator, (str, LispString)) and not str(designator) else logical_host(designator)
 
 
 def pathnamep(obj):
