@@ -236,18 +236,9 @@ def add_method(generic_function, method):
     if not isinstance(generic_function, GenericFunction) or not isinstance(method, Method):
         return no_method_for("ADD-METHOD", generic_function, method)
     owner = method.generic_function
-    if owner is not generic_function and method in owner.methods:
+    if owner is not generic_function and owner is not None:
         return error(SimpleError("The method ~S is already part of the generic function ~S.", method, owner))
-    generics.add_method(
-        generic_function,
-        method.qualifiers,
-        method.specializers,
-        method.function,
-        uses_next=method.uses_next,
-        per_class=method.per_class,
-        documentation=method.documentation,
-        shape=method.shape,
-    )
+    generics.enter_method(generic_function, method)
     return generic_function
 
 

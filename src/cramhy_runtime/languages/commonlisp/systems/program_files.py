@@ -78,6 +78,8 @@ def load(designator, *, verbose=UNSUPPLIED, print=UNSUPPLIED, if_does_not_exist=
     """
     show = _show_values if _flag(print, LOAD_PRINT) is not None else None
     if isinstance(designator, Stream):
+        if _flag(verbose, LOAD_VERBOSE) is not None:
+            say(f";; loading stuff from {prin1_to_string(designator)}")
         return _load_stream(designator, show)
     if not isinstance(designator, (str, LispString, os.PathLike)):
         return type_error(designator, "(OR STRING PATHNAME STREAM)")
