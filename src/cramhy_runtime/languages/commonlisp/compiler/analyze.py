@@ -82,11 +82,12 @@ class Analyzer(Scrutiny):
     def form(self, form, env):
         """The node of ``form``."""
         if isinstance(form, Cons):
-            position = self.positions.get(id(form))
+            key = id(form)
+            position = self.positions.get(key)
             if position is None:
                 return self._compound(form, env)
             outer, self._at = self._at, position
-            around, self.source = self.source, self.positions.source(form)
+            around, self.source = self.source, self.positions.source(key, form)
             try:
                 node = self._compound(form, env)
                 if node.position is None:
