@@ -1,4 +1,4 @@
-"""Quotients and rests of floats are SBCL's where a rest is rounded, overflows, or is zero."""
+"""Quotients and rests of floats are SBCL's where a rest is rounded, overflows, or is zero, and where zero is divided by zero."""
 
 import pytest
 
@@ -18,6 +18,44 @@ ANSWERS = {
     "(fround -0.0 3)": "(0.0 -0.0)",
     "(floor -0.0 3)": "(0 -0.0)",
 }
+
+UNDEFINED = """
+(/ 0 0.0d0)
+(/ 0.0d0 0)
+(/ 0.0 0.0)
+(/ 0 0.0)
+(/ -0.0 0.0)
+(/ 0.0d0 0.0)
+(rem 0.0 0.0)
+(mod 0.0 0)
+(floor 0.0 0.0)
+(truncate 0 0.0d0)
+(round 0.0 0)
+(ceiling 0.0d0 0)
+(ffloor 0.0 0.0)
+(fround 0.0 0.0)
+(/ #c(0.0 0.0) 0.0)
+(/ 0 #c(0.0 0.0))
+(/ #c(0.0 0.0) #c(0.0 0.0))
+(let ((x 0.0)) (/ x x))
+(funcall (lambda (a b) (declare (double-float a b)) (/ a b)) 0d0 0d0)
+(funcall (lambda (a b) (declare (single-float a b)) (/ a b)) 0.0 0.0)
+(reduce #'/ '(0.0 0.0))
+(apply #'/ '(0.0 0))
+""".strip().splitlines()
+BY_ZERO = """
+(/ 0 0)
+(/ 1.0 0.0)
+(/ 1/2 0.0)
+(/ 0.0)
+(mod 1.0 0.0)
+(rem 1.0 0)
+(floor 0 0)
+(/ 5 0.0 0.0)
+(/ #c(1.0 0.0) 0)
+(expt 0.0 -1)
+""".strip().splitlines()
+ANSWERS |= dict.fromkeys(UNDEFINED, "FLOATING-POINT-INVALID-OPERATION") | dict.fromkeys(BY_ZERO, "DIVISION-BY-ZERO")
 
 
 @pytest.fixture(scope="module")

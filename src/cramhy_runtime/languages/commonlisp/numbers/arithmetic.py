@@ -15,7 +15,7 @@ import math
 import sys
 from fractions import Fraction
 
-from cramhy_runtime.ground.conditions import DivisionByZero, FloatingPointOverflow, error, type_error
+from cramhy_runtime.ground.conditions import DivisionByZero, FloatingPointInvalidOperation, FloatingPointOverflow, error, type_error
 from cramhy_runtime.ground.data import MultipleValues, lisp_list, one
 from cramhy_runtime.ground.floats import LARGEST_SINGLE, SPLITTER, SingleFloat, new_single, rational_to_float32, to_float32
 from cramhy_runtime.ground.packages import sym
@@ -113,8 +113,10 @@ def normal(value):
 
 
 def division_by_zero(operation, *operands):
-    """Signal that ``operation`` (the name of a CL function) divided by zero."""
-    return error(DivisionByZero(sym(operation), lisp_list(*operands)))
+    """Signal that ``operation`` (the name of a CL function) divided by zero; if zero by a zero and one is a float, it has no meaning."""
+    undefined = all(operand == 0 for operand in operands) and not all(isinstance(operand, int) for operand in operands)
+    kind = FloatingPointInvalidOperation if undefined else DivisionByZero
+    return error(kind(sym(operation), lisp_list(*operands)))
 
 
 def overflow(operation, *operands):
