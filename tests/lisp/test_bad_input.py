@@ -44,6 +44,9 @@ ERRORS = {  # form: a part of the report
     "`(a . #1=(b . #1#))": CIRCULAR,
     "(eval '#1=(list 1 . #1#))": CIRCULAR,
     "(compile nil '(lambda () . #1=(1 . #1#)))": CIRCULAR,
+    "(progn (defmacro pick (a b) (list 'list a b)) (eval '(pick 1 #1=(progn #1#))))": CIRCULAR,
+    "(progn (defmacro pick (a b) (list 'list a b)) (eval '(let ((x 1)) (pick x #1=(+ 1 #1#)))))": CIRCULAR,
+    "(progn (defmacro pick (a b) (list 'list a b)) (eval '(lambda () (progn (pick 1 #1=(2 . #1#))))))": CIRCULAR,
     "(typep 1 '#1=(or #1# integer))": EXHAUSTED,
     "(progn (defmacro endless () '(endless)) (endless))": ENDLESS,
     "(progn (defmacro endless (x) `(endless (,x ,x))) (endless 1))": ENDLESS,
@@ -94,6 +97,12 @@ ANSWERS = {
     "(let ((x (list 1 2 3)) (*print-length* 5)) (setf (cdr (last x)) x) (prin1-to-string x))": '"(1 2 3 1 2 ...)"',
     "(length (format nil (make-string 100000 :initial-element #\\~)))": "50000",
     '(length (format nil "~1000000d" 1))': "1000000",
+    "(progn (defmacro third-of (a b c) (list 'progn c)) (eval '(third-of #1=(1 . #1#) 2 3)))": "3",
+    "(progn (defmacro steps (n &rest more) (if (= n 5) n `(steps ,(1+ n) ,@more))) (eval '#1=(steps 0 #1#)))": "5",
+    "(progn (eval '(defun stepping () #1=(steps 0 #1#))) (stepping))": "5",
+    "(progn (eval '(defmacro to-steps () #1=(steps 0 #1#))) (eval '(to-steps)))": "5",
+    "(funcall (compile nil '(lambda () #1=(steps 0 #1#))))": "5",
+    "(eval '(let ((x 1)) (when x (list x (third-of #1=(x #1#) 2 x)))))": "(1 1)",
 }
 
 

@@ -336,6 +336,20 @@ def test_a_type_that_nobody_defines(lisp):
     assert printed(lisp('(handler-case (handler-case (error "x") (no-such-error () 1)) (error () 2))')) == ["2"]  # it fits nothing
 
 
+@pytest.mark.parametrize(
+    ("type_", "undefined"),
+    [
+        ("(or simple-error type-error)", []),
+        ("(and error (not type-error))", []),
+        ("(or simple-error (not no-such-error))", ["NO-SUCH-ERROR"]),
+    ],
+)
+@pytest.mark.parametrize("form", ["(handler-case x (%s () 1))", "(handler-bind ((%s (lambda (c) c))) x)"])
+def test_the_types_in_a_compound_type_of_a_handler(lisp, form, type_, undefined):
+    said = lisp.said(f"(defun f (x) {form % type_})")
+    assert re.findall("undefined type: (.*)", said) == [f"COMMON-LISP-USER::{name}" for name in undefined]
+
+
 def test_a_function_that_becomes_a_macro(lisp):
     lisp("(defun changing-kind (x) x)")
     assert printed(
@@ -360,3 +374,37 @@ def test_a_local_function_that_nobody_calls_is_looked_at_though_it_is_not_made(l
     (function,) = lisp("#'unmade")
     assert function() == 2
     assert not [const for const in function.__code__.co_consts if hasattr(const, "co_code")]
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        ("((lambda (x) x))", "function called with zero arguments, but wants exactly one"),
+        ("(funcall #'(lambda (x &optional y) (list x y)) 1 2 3)", "function called with three arguments, but wants at most two"),
+        ("(funcall (lambda (x y &rest r) (list x y r)) 1)", "function called with one argument, but wants at least two"),
+        ("((lambda (x &key a) (list x a)) 1 :b 2)", "function called with unknown argument keyword :B"),
+        ("((lambda (x &key a) (list x a)) 1 :b 2 :c 3)", "function called with unknown argument keywords :B, :C"),
+        ("(funcall (lambda (x &key a) (list x a)) 1 :a)", "function called with odd number of arguments in keyword portion"),
+        ("((lambda (x &key a &allow-other-keys) (list x a)) 1 :b 2)", None),
+        ("((lambda (x &rest r) (list x r)) 1 2 3)", None),
+    ],
+)
+def test_a_wrong_call_of_a_lambda_expression(lisp, call, said):
+    shown = lisp.said(f"(defun f () {call})")
+    assert (f";   {said}\n" in shown and "caught WARNING" in shown) if said else shown == ""
+
+
+def test_declarations_of_variables_behind_aux(lisp):
+    """They are bound behind the other parameters, with the declarations at the head of the body."""
+    assert lisp.said("(defun f (x &aux (y x) (z 1) (w 2)) (declare (ignore y) (type fixnum z) (string w)) (list x z w))") == ""
+    assert "IGNORE declaration for an unknown variable: V" in lisp.said("(defun g (x &aux (y x)) (declare (ignore v)) (list x y))")
+    assert "The variable Y is defined but never used." in lisp.said("(defun h (x &aux (y 1)) x)")
+
+
+def test_the_keywords_of_a_generic_function_are_those_of_its_methods(lisp):
+    text = """(defgeneric convert (token tree &key))
+      (defmethod convert ((token (eql :a)) tree &key (greedyp t)) (list token tree greedyp))
+      (defun call-it (x) (convert :a x :greedyp nil))
+      (defun call-it-later (x) (convert :b x :of-a-method-to-come nil))"""
+    assert lisp.said(text) == ""
+    assert "called with one argument" in lisp.said("(defun call-wrongly (x) (convert x))")

@@ -149,6 +149,35 @@ def test_logical_pathnames_lead_to_files(answer, tmp_path):
     assert answer('(directory "PLANS:KITCHEN;*.LISP")') == '(#P"/here/plans/kitchen/pour.lisp")'
 
 
+def on_one_line(text):
+    return " ".join(text.split())
+
+
+def test_a_stream_on_a_logical_pathname_keeps_it(answer):
+    answer("""(setf (logical-pathname-translations "KEPT")
+                    (list (list "**;*.*.*" (concatenate 'string (namestring *default-pathname-defaults*) "**/*.*"))))""")
+    named = """(list (pathname s) (equal (logical-pathname s) (logical-pathname "KEPT:OLD.TXT.NEWEST")) (file-namestring s)
+                     (translate-logical-pathname s))"""
+    wanted = '(#P"KEPT:OLD.TXT.NEWEST" T "OLD.TXT.NEWEST" #P"/here/old.txt")'
+    assert on_one_line(answer(f'(with-open-file (s "KEPT:OLD.TXT" :direction :output) {named})')) == wanted
+    assert on_one_line(answer(f'(with-open-file (s "KEPT:OLD.TXT") {named})')) == wanted
+    assert on_one_line(answer(f'(let (s) (with-open-file (file "KEPT:OLD.TXT") (setq s file)) {named})')) == wanted
+
+
+def test_a_file_with_a_logical_name_is_renamed_to_one(answer):
+    answer("""(setf (logical-pathname-translations "MOVED")
+                    (list (list "**;*.*.*" (concatenate 'string (namestring *default-pathname-defaults*) "**/*.*"))))""")
+    answer('(with-open-file (s "MOVED:A.TXT" :direction :output) (write-line "text" s))')
+    moves = [
+        ('"MOVED:A.TXT" "MOVED:B"', '(#P"MOVED:B.TXT.NEWEST" #P"/here/a.txt" #P"/here/b.txt")'),
+        ('"MOVED:B.TXT" "c.txt"', '(#P"MOVED:C.TXT.NEWEST" #P"/here/b.txt" #P"/here/c.txt")'),
+        ('"MOVED:C.TXT" (merge-pathnames "d.txt")', '(#P"/here/d.txt" #P"/here/c.txt" #P"/here/d.txt")'),
+        ('"d.txt" "MOVED:E.TXT"', '(#P"MOVED:E.TXT.NEWEST" #P"/here/d.txt" #P"/here/e.txt")'),
+    ]
+    for names, wanted in moves:
+        assert on_one_line(answer(f"(multiple-value-list (rename-file {names}))")) == wanted
+
+
 def test_translations_in_a_circle_are_an_error(answer, complaint):
     answer("""(setf (logical-pathname-translations "RING") '(("**;*.*.*" "RING:**;*.*.*")))""")
     assert complaint('(open "RING:A.B")') == 'SIMPLE-FILE-ERROR The translations of #P"RING:A.B" lead in a circle.'

@@ -296,3 +296,43 @@ def test_files_of_lisp_may_have_other_suffixes(write, run, kind, suffix):
     write(f"s-one.{suffix}", logging(":one"))
     write("s-two.lisp", logging(":two"))
     assert run("(asdf:load-system :suffixed) (reverse *log*)") == "(:ONE :TWO)"
+
+
+@pytest.mark.parametrize("end", ["", '#-sbcl (error "Only for the Lisps that it knows.")'], ids=["before it", "before and behind it"])
+def test_a_definition_that_refuses_other_lisps_is_read_for_sbcl(write, run, end):
+    """Its files name what is not here, so it would be read for a Lisp that it does not know, and it signals an error then."""
+    text = '(defsystem "known-lisps" :components (#+sbcl (:file "k-sbcl") (:file "k-a")))'
+    write("known-lisps.asd", text + end if end else '#-(or ecl sbcl) (error "This is an unsupported Lisp.")' + text)
+    write("k-sbcl.lisp", "(when (find-package :no-such-package) (sb-kernel::no-such-thing))" + logging(":sbcl"))
+    write("k-a.lisp", logging(":a"))
+    assert run("(asdf:load-system :known-lisps) (reverse *log*)") == "(:SBCL :A)"
+
+
+def test_babel_is_loaded_when_a_user_of_cffi_names_it(write, run, session):
+    """The original's CFFI depends on it, so its users do not name the system."""
+    write("babel.asd", '(defsystem "babel" :components ((:file "strings")))')
+    write("strings.lisp", "(defpackage :babel (:use :cl) (:export #:octets)) (defun babel:octets (text) (map 'list #'char-code text))")
+    write("calls-c.asd", '(defsystem "calls-c" :depends-on ("cffi") :components ((:file "c-a")))')
+    write("c-a.lisp", f"(defun text-for-c (text) (babel:octets text)) {logging('(text-for-c ' + chr(34) + 'ab' + chr(34) + ')')}")
+    assert run("(asdf:load-system :calls-c) *log*") == "((97 98))"
+    session.evaluate_text("(delete-package :babel)", "<test>")
+
+
+def test_babel_that_is_nowhere(run):
+    assert run('(handler-case (read-from-string "babel:octets") (error (c) (princ-to-string c)))') == '"Package BABEL does not exist."'
+
+
+@pytest.mark.parametrize("name", ["ASDF-UTILS", "ASDF-DRIVER"])
+def test_what_uiop_was_called_once(run, name):
+    """Under these names ASDF 2.27 to 3.1 had it, and files of that time call functions in it."""
+    assert run(f"(eq (find-package :{name}) (find-package :uiop))") == "T"
+
+
+def test_the_file_of_a_system_is_compiled_where_it_lies(write, run):
+    """Programs ask so for files beside theirs, when they are read, when macros are expanded, or when they run."""
+    write("beside.asd", '(defsystem "beside" :components ((:file "b-a")))')
+    asked = "(defmacro here () (file-namestring *compile-file-pathname*))" + logging("#.(pathname-name *compile-file-truename*)")
+    path = write("b-a.lisp", asked + logging("(here)") + logging("(equal *compile-file-truename* (or *load-truename* 1))"))
+    assert run("(asdf:load-system :beside) (reverse *log*)") == '("b-a" "b-a.lisp" T)'
+    assert run("(list *compile-file-truename* *compile-file-pathname*)") == "(NIL NIL)"
+    assert run(f'(setf *log* nil) (handler-case (load "{path}") (error () :not-compiled))') == ":NOT-COMPILED"

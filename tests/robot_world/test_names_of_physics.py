@@ -130,3 +130,15 @@ def test_no_function_that_is_called_with_nil_ends_in_an_error_of_python(lisp):
     )
     said = " ".join(lisp.error("(btr:attached-objects nil)").split())
     assert said.startswith("There is no applicable method for the generic function #<STANDARD-GENERIC-FUNCTION CRAM-BULLET-REASONING:ATT")
+
+
+def test_an_item_with_the_flag_of_static_objects_does_not_fall(lisp):
+    text = """(let* ((world (a-world)) (body (first (btr:rigid-bodies (btr:object world 'block)))) said)
+      (flet ((note () (btr:simulate world 10)
+                      (push (list (cl-bullet:collision-flags body) (first (last (near (parts (cl-transforms:origin (btr:pose body))))))) said)))
+        (setf (cl-bullet:collision-flags body) :cf-static-object)
+        (note)
+        (setf (cl-bullet:collision-flags body) nil)
+        (note)
+        (reverse said)))"""
+    assert lisp(text) == "(((:CF-STATIC-OBJECT) 1) (NIL 3/10))"

@@ -252,7 +252,7 @@ def _swank(options):
     from . import swank_command
 
     with ExitStack() as closings:
-        return _status(lambda: swank_command.run(lambda: session(options, closings, opened=False), options))
+        return status_of(lambda: swank_command.run(lambda: session(options, closings, opened=False), options))
 
 
 def _jupyter(options):
@@ -271,7 +271,7 @@ def _jupyter(options):
     from cramhy_runtime.jupyter import launching
 
     with ExitStack() as closings:
-        return _status(lambda: launching.run(session(options, closings, opened=False), options.connection_file))
+        return status_of(lambda: launching.run(session(options, closings, opened=False), options.connection_file))
 
 
 def _lsp(options):
@@ -315,7 +315,7 @@ def _run(options):
 
     with ExitStack() as closings:
         closings.callback(end_line)
-        return _status(lambda: _load(options, closings))
+        return status_of(lambda: _load(options, closings))
 
 
 def _load(options, closings):
@@ -333,7 +333,7 @@ def _load(options, closings):
         evaluate_forms(made, options.forms)
 
 
-def _status(work):
+def status_of(work):
     """The exit status that ``work()`` gives; 130 after Ctrl-C, 1 after an error, which is reported."""
     from cramhy_runtime.ground.conditions import Condition
     from cramhy_runtime.repl.session import Interruption
@@ -365,7 +365,7 @@ def _test(options):
 
     unit_tests.limit_tests(options.limit)
     with ExitStack() as closings:
-        return _status(lambda: 0 if session(options, closings, opened=False).test(options.path, options.junit, options.only) else 1)
+        return status_of(lambda: 0 if session(options, closings, opened=False).test(options.path, options.junit, options.only) else 1)
 
 
 def _grade(options):

@@ -75,6 +75,11 @@ def rosrun(arguments):
         print(RUN_USAGE)
         return 0
     package, executable, *words = arguments
+    of_lisp = _of_lisp(package)
+    if executable in of_lisp:
+        from . import lisp_executables
+
+        return lisp_executables.run(package, of_lisp[executable], words)
     status = _known(package, executable)
     if status:
         return status
@@ -83,6 +88,16 @@ def rosrun(arguments):
 
         return keyboard.teleop(words)
     return run([Program(package, executable, words)])
+
+
+def _of_lisp(package):
+    """The Lisp executables of a package of the user's, by name; none of a package that is part of cramhy."""
+    from cramhy_runtime.ros_tools import executables
+
+    from .lisp_executables import lisp_executables
+    from .workspace import folder_of
+
+    return {} if executables.executables(package) else lisp_executables(folder_of(package))
 
 
 def _known(package, executable):
@@ -100,8 +115,11 @@ def _known(package, executable):
         sys.stderr.write(meant(package, list(executables.EXECUTABLES)))
         return 2
     print(f"[rosrun] Couldn't find executable named {executable} below {folder}", file=sys.stderr)
-    if executables.executables(package):
-        print(f"[rosrun] {package} has the executables {', '.join(executables.executables(package))}.", file=sys.stderr)
+    there = executables.executables(package) or sorted(_of_lisp(package))
+    if there:
+        print(f"[rosrun] {package} has the executables {', '.join(there)}.", file=sys.stderr)
+    elif os.path.exists(os.path.join(folder, "CMakeLists.txt")):
+        print("[rosrun] Its CMakeLists.txt names no Lisp program: add_lisp_executable(NAME SYSTEM PACKAGE:FUNCTION).", file=sys.stderr)
     return 3
 
 

@@ -14,6 +14,7 @@ from ..designators.classes import ActionDesignator, DesignatorError, MotionDesig
 from ..designators.resolution import reference
 from cramhy_runtime.ground.condition_types import SimpleWarning
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.images import Cell
 from cramhy_runtime.ground.catching import CATCHABLE, Case, caught
 from cramhy_runtime.ground.conditions import Error, handler_case, warn
 from cramhy_runtime.ground.data import UNBOUND, Cons, MultipleValues, Symbol, UndefinedFunction, lisp_list, one, python_list, truth
@@ -30,6 +31,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from .symbols import sym
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from cramhy_runtime.ground.signatures import GenericOf
     from ..designators.classes import Designator
 
@@ -110,11 +112,27 @@ define_goal(PERFORM, _PATTERN, lambda bindings: generic_perform(bindings.car.cdr
 _own_body = bodies_of(PERFORM)[0]
 
 
+user_reference: Cell[Callable[..., Any] | None] = Cell(None)
+"""The generic function ``try-reference-designator``, when users have defined methods on it."""
+
+
+def reference_through(generic: Callable[..., Any]) -> None:
+    """Let `try_reference_designator` call ``generic`` from now on, a generic function with methods of users."""
+    user_reference.value = generic
+
+
 def try_reference_designator(designator: Designator, error_message: str = "") -> Any:
     """Resolve ``designator`` and return its reference. If that is impossible, fail with ``designator-reference-failure``.
 
     ``error_message`` is a part of its text.
     """
+    if user_reference.value is not None:
+        return user_reference.value(designator, *([error_message] if error_message else []))
+    return plain_reference(designator, error_message)
+
+
+def plain_reference(designator: Designator, error_message: str = "") -> Any:
+    """`try_reference_designator` without the methods of users."""
     task = kernel.current()
     task.handlers = run = _REFUSED, task.handlers
     try:

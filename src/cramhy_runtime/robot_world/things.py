@@ -42,7 +42,7 @@ class Item(Thing):
 
     name: what the world knows it by. shapes: what it is made of, in its own frame. placement: where it is in the world. mass: kilograms; 0
     is for what never moves by itself. types: what it is, the most special first (``("bottle",)``). drawn: it is a drawing only; it touches
-    nothing, and hides nothing from a camera.
+    nothing, and hides nothing from a camera. stays: it does not fall, as if it had no mass.
     """
 
     name: Hashable
@@ -52,6 +52,7 @@ class Item(Thing):
     colour: Colour = GREY
     types: tuple[Hashable, ...] = ()
     drawn: bool = False
+    stays: bool = False
 
     def copy(self) -> Item:
         return replace(self)

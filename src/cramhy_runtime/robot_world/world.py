@@ -114,6 +114,12 @@ class World:
         self._tell()
         return thing
 
+    def let_stay(self, name: Hashable, stays: bool) -> None:
+        """From now on the item ``name`` does not fall, or does so again."""
+        thing = self.thing(name)
+        if isinstance(thing, Item) and thing.stays != stays:
+            thing.stays, self._scene = stays, None
+
     def remove(self, name: Hashable) -> None:
         """Take a thing away; who holds it holds it no more. Errors: `WorldError`, when it is not there."""
         thing = self.thing(name)
@@ -216,7 +222,8 @@ class World:
         return [thing for thing in self.things.values() if not (isinstance(thing, Item) and thing.drawn)]
 
     def _held(self) -> frozenset[Hashable]:
-        return frozenset(item for machine in self.machines() for item in machine.holds)
+        held = frozenset(item for machine in self.machines() for item in machine.holds)
+        return held | {thing.name for thing in self.things.values() if isinstance(thing, Item) and thing.stays}
 
     @property
     def scene(self) -> Scene:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 SYSTEMS = """cram-language cram-utilities cram-prolog cram-designators cram-process-modules cram-language-designator-support
 cram-executive cram-projection cram-execution-trace cram-occasions-events cl-transforms
 cl-transforms-stamped cl-tf cl-tf2 actionlib actionlib-lisp roslisp roslisp-utilities turtlesim asdf uiop trivial-features
-sb-posix sb-thread roslisp-utils roslisp-msg-protocol ros-load-manifest asdf-package-system"""
+sb-introspect sb-posix sb-thread roslisp-utils roslisp-msg-protocol ros-load-manifest asdf-package-system"""
 """The systems of CRAM, ROS and ASDF that need no loading, because they are here. Those of messages are made on demand (ros/messages.py)."""
 
 TF_PACKAGES = ("CL-TRANSFORMS-STAMPED", "TF-TYPES", "CL-TF", "TF", "CL-TF2")
@@ -84,7 +84,7 @@ def _complete():
         for face in FACES:
             face.define()
         systems.provide_system(SYSTEMS)
-        packages.on_demand.update(systems.LIBRARY_PACKAGES)
+        packages.on_demand.update({**systems.LIBRARY_PACKAGES, **systems.WITH_CFFI})
         packages.on_demand.update(dict.fromkeys(TF_PACKAGES, define_tf))
         packages.on_demand["ROBOT-WORLD"] = define_robot_world
         packages.on_demand.update(dict.fromkeys(("ACTIONLIB-LISP", "ACTIONLIB"), define_actionlib))

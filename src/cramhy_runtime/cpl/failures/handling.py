@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.active import ACTIVE
+from cramhy_runtime.kernel.images import Cell
 
 from cramhy_runtime.ground import condition_types as types
 from cramhy_runtime.ground.catching import Cluster, HandlerExit
@@ -53,11 +54,27 @@ _new = SimplePlanFailure.__new__
 _new_handling = BaseException.__new__
 
 
+user_fail: Cell[Callable[..., NoReturn] | None] = Cell(None)
+"""The generic function ``fail``, when users have defined methods on it (``languages/commonlisp/faces/cpl/user_methods.py``)."""
+
+
+def fail_through(generic: Callable[..., NoReturn]) -> None:
+    """Let `fail` call ``generic`` from now on, a generic function with methods of users."""
+    user_fail.value = generic
+
+
+def plain_fail(*arguments: Any) -> NoReturn:
+    """`fail` without the methods of users."""
+    fail_with_advice(None, *arguments)
+
+
 def fail(*arguments: Any) -> NoReturn:
     """``(fail ...)``: fail with a text and its arguments, a condition class with initargs, or a condition object. Never returns.
 
     Handlers run now, on top of this stack. Without arguments the text is ``Plan failure.`` Source: cpl.md 4.2.
     """
+    if user_fail.value is not None:
+        return user_fail.value(*arguments)
     if arguments and arguments[0].__class__ is str:
         condition: Any = _new(SimplePlanFailure)
         condition.format_control, condition.format_arguments = arguments[0], arguments[1:]
@@ -293,11 +310,11 @@ def assert_no_nlx(forms, thunk):
         return error("Asserted~%  ~@<~A~:>~%not to perform a non-local exit. Caught attempt to do so.", forms)
 
 
-def composite_failures(failure):
+def composite_failures(failure: Any) -> Any:
     """The failures in a ``composite-failure``, a Lisp list."""
     return failure.failures if isinstance(failure, CompositeFailure) else type_error(failure, "COMPOSITE-FAILURE")
 
 
-def envelop_error(failure):
+def envelop_error(failure: Any) -> Any:
     """The error in the envelope ``failure``."""
     return failure.error if isinstance(failure, CommonLispErrorEnvelope) else type_error(failure, "COMMON-LISP-ERROR-ENVELOPE")

@@ -377,8 +377,8 @@ def ensure_generic_function(name, lambda_list=None, *, method_combination=None, 
         opening = getattr(old, "opening", None)
         if opening is None and not setf and (symbol.macro is not None or not isinstance(old, UndefinedFunction)):
             _refuse_ordinary(symbol)
-        if not setf and opening is None:
-            PORTS.definitions.check_symbol(symbol, "proclaiming ~S as a function", symbol)
+        if opening is None:
+            PORTS.definitions.check_symbol(symbol, "proclaiming ~S as a function", name)
         function = GenericFunction(name, lambda_list) if opening is None else opening.open()
         if setf:
             symbol.setf_function = function
@@ -505,18 +505,25 @@ def add_method(
     qualifiers: symbols; specializers: see `specializer_of`. per_class: ``function`` is called with the tuple of the argument
     classes and returns the function to call, which may know their slots.
     """
-    specializers = [specializer_of(specializer) for specializer in python_list(specializers)]
-    shape = Shape(lambda_list) if lambda_list is not None else shape or generic_function.shape
     method = Method(
         generic_function,
         tuple(python_list(qualifiers)),
-        specializers,
+        [specializer_of(specializer) for specializer in python_list(specializers)],
         function,
         uses_next if uses_next is DIRECTLY else bool(uses_next),
-        shape,
+        Shape(lambda_list) if lambda_list is not None else shape or generic_function.shape,
         per_class,
         documentation,
     )
+    return enter_method(generic_function, method, user=user)
+
+
+def enter_method(generic_function, method, *, user=True):
+    """Make ``method``, which belongs to no generic function, one of ``generic_function``. Returns the method.
+
+    It replaces one with the same qualifiers and specializers. Errors: `incongruent`, where its lambda list does not fit.
+    """
+    shape, specializers, function = method.shape, method.specializers, method.function
     if not generic_function.shape.agrees_with(shape) or len(specializers) != generic_function.shape.required:
         if generic_function.methods or generic_function.lambda_list is not None:
             return incongruent(generic_function, method)
@@ -524,11 +531,13 @@ def add_method(
     old = find_method_or_none(generic_function, method.qualifiers, specializers)
     if old is not None:
         generic_function.methods.remove(old)
+        old.generic_function = None
     elif user:
         generic_function.user_methods += 1
     if not user:
         generic_function.own_methods = [own for own in generic_function.own_methods if own is not old] + [method]
     generic_function.methods.append(method)
+    method.generic_function = generic_function
     generic_function.combination.check(generic_function, method)
     if hasattr(function, "__dict__"):
         function.__lisp_name__ = generic_function.__lisp_name__
@@ -558,6 +567,7 @@ def remove_method(generic_function, method):
     """``cl:remove-method``: returns the generic function."""
     if method in generic_function.methods:
         generic_function.methods.remove(method)
+        method.generic_function = None
         generic_function.user_methods = max(0, generic_function.user_methods - 1)
         generic_function.forget()
         for watcher in method_watchers:

@@ -38,13 +38,30 @@ class Opening:
         return [] if self.generic is None else [method for method in self.generic.methods if method is not self.first]
 
 
-def open_to_methods(function, name, lambda_list, *classes, method=None, when_opened=None):
+def lambda_list_of(function):
+    """The lambda list of a Python function as text; keyword-only parameters are ``&key``."""
+    code, words = function.__code__, []
+    names = [name.strip("_").replace("_", "-") for name in code.co_varnames]
+    required, positional = code.co_argcount - len(function.__defaults__ or ()), code.co_argcount
+    keys = positional + code.co_kwonlyargcount
+    words += names[:required]
+    words += ["&optional", *names[required:positional]] if required < positional else []
+    words += ["&rest", names[keys]] if code.co_flags & 0x04 else []
+    words += ["&key", *names[positional:keys]] if positional < keys else []
+    return f"({' '.join(words)})"
+
+
+def open_to_methods(function, name, lambda_list=None, *classes, method=None, when_opened=None):
     """Let users define methods on ``function``, which is the function of ``"PACKAGE::NAME"`` or ``"(setf PACKAGE::NAME)"``.
 
-    lambda_list: text. classes: of its required arguments, ``None`` for any. method: what its first method does, if that is not
-    ``function`` itself. when_opened: called with the generic function. Returns the `Opening`.
+    lambda_list: text; without it, that of ``function``, for arguments of any class. classes: of its required arguments, ``None`` for any.
+    method: what its first method does, if that is not ``function`` itself. when_opened: called with the generic function. Returns the
+    `Opening`.
     """
     name = lisp_list(sym("SETF"), sym(name[6:-1])) if name.startswith("(setf ") else sym(name)
+    if lambda_list is None:
+        lambda_list = lambda_list_of(function)
+        classes = (None,) * (function.__code__.co_argcount - len(function.__defaults__ or ()))
     function.opening = opening = Opening(name, lambda_list, classes, method or function, when_opened)
     symbol, setf = function_cell(name)
     function.__lisp_name__ = name

@@ -26,7 +26,7 @@ from .printer.standard_printers import print_slots
 from .streams import streams
 from .tools import user_queries
 from .packages.package_errors import check_symbol
-from .systems.systems import load_system
+from .systems.systems import load_library
 from .tools.advice import hint_for, report_text, show_warnings
 from .types import types
 from .types.type_names import simplified_type
@@ -72,6 +72,7 @@ class _Types:
     known = staticmethod(types.is_known_type)
     test = staticmethod(types.type_test)
     predicate = staticmethod(types.type_predicate)
+    declared = staticmethod(types.declared_predicate)
     expand = staticmethod(types.expand_type)
     of = staticmethod(types.type_of)
     simplified = staticmethod(simplified_type)
@@ -109,7 +110,7 @@ class _User:
 class _Systems:
     def load(self, name):
         """Load a library whose package was named, whatever is bound where that happens: a package without Common Lisp, a readtable."""
-        with_standard_io_syntax(lambda: load_system(name))
+        with_standard_io_syntax(lambda: load_library(name))
 
 
 class _Definitions:

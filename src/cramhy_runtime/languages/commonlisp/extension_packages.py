@@ -27,7 +27,23 @@ INFINITIES = {
 """Constants of SB-EXT: what the printer writes for numbers without end must be read back."""
 
 
-LATE = ("SB-THREAD", "SB-EXT", "SB-SYS", "SB-POSIX", "SB-DEBUG", "SB-GRAY", "SB-MOP", "SB-PCL", "SB-INT", "SB-VM", "SB-C")
+LATE = (
+    "SB-THREAD",
+    "SB-EXT",
+    "SB-SYS",
+    "SB-POSIX",
+    "SB-DEBUG",
+    "SB-GRAY",
+    "SB-MOP",
+    "SB-PCL",
+    "SB-INT",
+    "SB-INTROSPECT",
+    "SB-KERNEL",
+    "SB-IMPL",
+    "SB-UNIX",
+    "SB-VM",
+    "SB-C",
+)
 """The packages of SBCL of which a part comes late; so does the greater part of UIOP."""
 
 

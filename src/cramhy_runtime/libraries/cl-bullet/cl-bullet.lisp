@@ -5,7 +5,7 @@
   (:nicknames #:bullet)
   (:export #:bounding-box #:make-bounding-box #:bounding-box-center #:bounding-box-dimensions #:aabb #:pose #:points
            #:bt-world #:copy-world #:step-simulation
-           #:rigid-body #:name #:mass #:collision-shape #:linear-velocity #:angular-velocity #:clear-forces))
+           #:rigid-body #:name #:mass #:collision-shape #:collision-flags #:linear-velocity #:angular-velocity #:clear-forces))
 
 (in-package #:cl-bullet)
 
@@ -49,6 +49,12 @@
 
 (defgeneric mass (body)
   (:documentation "The kilograms of a body; 0 of one that does not fall."))
+
+(defgeneric collision-flags (body)
+  (:documentation "What Bullet is told of BODY: the list (:CF-STATIC-OBJECT) of one that does not fall, else ()."))
+
+(defgeneric (setf collision-flags) (new-value body)
+  (:documentation "With :CF-STATIC-OBJECT in NEW-VALUE, a keyword or a list, keep BODY from falling; without, let it fall."))
 
 (defun collision-shape (body)
   "The shape of BODY, for CL-BULLET-VIS:COLLISION-SHAPE-COLOR."

@@ -207,6 +207,15 @@ unless INITIAL-POSE is true, it lies on the side on which it lies now."
 (defmethod mass ((body rigid-body))
   (if (body-link body) 0 (robot-world:thing-mass (body-object body))))
 
+(defmethod collision-flags ((body rigid-body))
+  (if (or (body-link body) (robot-world:thing-stays (body-object body))) (list :cf-static-object) '()))
+
+(defmethod (setf collision-flags) (new-value (body rigid-body))
+  (when (body-link body)
+    (error "The link ~a moves with its robot: its collision flags cannot be set." (name body)))
+  (robot-world:set-thing-stays (body-object body) (member :cf-static-object (if (listp new-value) new-value (list new-value))))
+  new-value)
+
 (defmethod collision-shape-color ((body rigid-body))
   (robot-world:thing-color (body-object body)))
 

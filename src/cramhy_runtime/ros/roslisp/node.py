@@ -24,6 +24,7 @@ from . import log_file, logging, master
 from .errors import ros_error
 from .master import MASTER_URI
 from .parameter_values import encode
+from cramhy_runtime.kernel.images import Cell
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
@@ -74,6 +75,10 @@ def fully_qualified_name(name: Text) -> str:
     if here is not None:
         return here.resolve(str(name))
     return names.qualify(str(name), names.as_namespace(os.environ.get("ROS_NAMESPACE")), NODE_NAME.value)
+
+
+command_line: Cell[tuple[str, ...]] = Cell(())
+"""The words behind the name of the program, where it was started by ``rosrun``: ``:cmd-line-args`` of nodes that say nothing else."""
 
 
 def start_ros_node(
@@ -143,6 +148,8 @@ def _naming(here: graph.Graph, name: str, anonymous: object, arguments: Any) -> 
     if not names.is_base_name(name):
         conditions.warn("~a", f"{name} is not a legal ROS base name. This may cause problems with other ROS tools")
     naming = names.Naming(name, os.environ.get("ROS_NAMESPACE") or "/")
+    if arguments is None:
+        arguments = list(command_line.value) or None
     if arguments is not None and not isinstance(arguments, (str, LispString)):
         arguments = python_list(need(arguments, (Cons, list, tuple), "LIST"))
     naming.apply_arguments(

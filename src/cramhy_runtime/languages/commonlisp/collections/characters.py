@@ -87,16 +87,22 @@ _BY_NAME.update(
     BELL="\U0001f514",
 )
 _BY_NAME.update({f"^{chr(64 + code)}": chr(code) for code in range(32)})
+_NUMBERED = "CJK UNIFIED IDEOGRAPH-"
+"""How names begin that are made of the code: for Lisp these characters have names such as ``U4E00``."""
 _CODE_NAME = late_pattern(r"U\+?([0-9A-F]+)", re.IGNORECASE)
 
 
 def char_name(character):
-    """``char-name``: the name, such as ``"Space"`` or ``"LATIN_SMALL_LETTER_A"``; nil without one."""
-    char = char_of(character)
+    """``char-name``: the name, such as ``"Space"`` or ``"LATIN_SMALL_LETTER_A"``."""
+    return character_name(char_of(character))
+
+
+def character_name(char):
+    """The name of the character ``char``, a Python string of length one: ``Space``, ``LATIN_SMALL_LETTER_A``, ``U4E00``."""
     if char in _NAMES:
         return _NAMES[char]
     name = unicodedata.name(char, None)
-    return name.replace(" ", "_") if name else f"U{ord(char):X}"
+    return name.replace(" ", "_") if name and not name.startswith(_NUMBERED) else f"U{ord(char):X}"
 
 
 def name_char(name):
@@ -110,11 +116,17 @@ def name_char(name):
         if match and int(match[1], 16) < 0x110000:
             found = chr(int(match[1], 16))
         else:
-            try:
-                found = unicodedata.lookup(name.replace("_", " ")) if "_" in name or len(name) > 1 else None
-            except (KeyError, UnicodeEncodeError):  # the latter of half a surrogate pair
-                return None
-    return Character(found) if found is not None and len(found) == 1 else None
+            found = _of_unicode(name.upper())
+    return Character(found) if found is not None else None
+
+
+def _of_unicode(name):
+    """The character that `character_name` names so, but for the case; ``None`` if there is none."""
+    try:
+        found = unicodedata.lookup(name.replace("_", " ")) if len(name) > 1 else ""
+    except (KeyError, UnicodeEncodeError):  # the latter of half a surrogate pair
+        return None
+    return found if len(found) == 1 and character_name(found).upper() == name else None  # Python knows other names, too
 
 
 def character(designator):

@@ -16,7 +16,7 @@ import sys
 
 from cramhy_runtime.ground.condition_types import shown_with
 from cramhy_runtime.ground.conditions import Condition, SimpleStyleWarning, SimpleWarning, matches, signal_condition, with_simple_restart
-from cramhy_runtime.ground.data import Cons, Symbol, UndefinedFunction, lisp_list
+from cramhy_runtime.ground.data import Cons, Symbol, UndefinedFunction, lisp_list, python_list
 from cramhy_runtime.ground.dynamic import bind, special, unbind
 from cramhy_runtime.ground.equality import eql_key
 from cramhy_runtime.ground.packages import COMMON_LISP, sym
@@ -34,12 +34,21 @@ MUFFLED = special("CRAMHY::*MUFFLED-CONDITIONS*", ())
 
 class Mention:
     """A place where a function is called or named. ``arguments``: the forms of a call; ``None`` for ``#'f``. ``call``: where the text of
-    the call is, (file, line, column, end line, end column), or ``None``."""
+    the call is, (file, line, column, end line, end column), or ``None``.
 
-    __slots__ = ("name", "arguments", "position", "muffled", "call")
+    position: (file, line, column), ``None``, or a function that returns it, which is called when a warning shows it.
+    """
+
+    __slots__ = ("name", "arguments", "_position", "muffled", "call")
 
     def __init__(self, name, arguments, position, muffled, call=None):
-        self.name, self.arguments, self.position, self.muffled, self.call = name, arguments, position, muffled, call
+        self.name, self.arguments, self._position, self.muffled, self.call = name, arguments, position, muffled, call
+
+    @property
+    def position(self):
+        if callable(self._position):
+            self._position = self._position()
+        return self._position
 
 
 class CompilationUnit:
@@ -269,10 +278,13 @@ def signalling_position():
 
 
 def mention_type(specifier):
-    """Note that the macro call being expanded names a type; one that is undefined at the end of the unit is warned of."""
+    """Note that the macro call being expanded names types; those that are undefined at the end of the unit are warned of."""
     unit = CURRENT.value
     name = specifier.car if isinstance(specifier, Cons) else specifier
-    if unit is not None and isinstance(name, Symbol) and not PORTS.types.known(name):
+    if isinstance(specifier, Cons) and isinstance(name, Symbol) and name.package is COMMON_LISP:
+        for part in python_list(specifier.cdr) if name.name in ("AND", "OR", "NOT") else ():
+            mention_type(part)
+    elif unit is not None and isinstance(name, Symbol) and not PORTS.types.known(name):
         unit.types.append(Mention(name, None, expansion_place(), ()))
 
 

@@ -40,7 +40,7 @@ from .nodes import (
 )
 
 PROGN, FUNCTION, MACROLET = sym("PROGN"), sym("FUNCTION"), sym("MACROLET")
-FUNCALL = sym("FUNCALL")
+FUNCALL, LAMBDA = sym("FUNCALL"), sym("LAMBDA")
 
 
 def special(name):
@@ -488,6 +488,13 @@ def _multiple_value_list(analyzer, form, env):
     return Support("value_list", [MultipleValueProg1(value, [])])
 
 
+def _lambda_expression(form):
+    """The lambda expression that ``form``, as it is or behind ``#'``, is; else ``None``."""
+    if isinstance(form, Cons) and form.car is FUNCTION and isinstance(form.cdr, Cons):
+        form = form.cdr.car
+    return form if isinstance(form, Cons) and form.car is LAMBDA else None
+
+
 @special("FUNCALL")
 def _funcall(analyzer, form, env):
     function, *arguments = parts_of(analyzer, form, 1)
@@ -504,6 +511,8 @@ def _funcall(analyzer, form, env):
             return analyzer.form(shorter, env)
     nodes = [analyzer.form(argument, env) for argument in arguments]
     node = analyzer.form(function, env)
+    if (expression := _lambda_expression(function)) is not None:
+        analyzer.lambda_call(expression, tuple(arguments), env)
     if isinstance(node, FunctionReference):
         analyzer.mention(("setf", node.symbol) if node.setf else node.symbol, env, form, tuple(arguments))
         call = (CallSetf if node.setf else Call)(node.symbol, nodes)

@@ -8,15 +8,18 @@ Texts are SBCL's.
 
 from __future__ import annotations
 
+from functools import partial
+
 from cramhy_runtime.ground.condition_types import shown_with
 from cramhy_runtime.ground.conditions import SimpleStyleWarning, SimpleWarning, error
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol
 from . import compilation_unit
 from .compilation_unit import Mention
 from ..syntax.declaration_names import EXTENSIONS, is_declared, is_extension
-from ..syntax.function_shapes import wrong_call
+from ..syntax.function_shapes import wrong_call, wrong_call_of_lambda
 from cramhy_runtime.ground.packages import COMMON_LISP, sym
 from ..standard_names import missing
+from cramhy_runtime.ground.dispatch.methods import Shape
 from cramhy_runtime.ground.ports import PORTS
 from .environment import Variable, function_key
 
@@ -45,16 +48,19 @@ class Scrutiny:
 
     def symbol_position(self, symbol, form=None):
         """(line, column, end line, end column) of ``symbol`` in the user's text around here, or ``None``."""
-        find = getattr(self.positions, "of_symbol", None)
         form = self.source if form is None else form
-        if find is None or form is None:
-            return None
-        place = find(symbol, form)
+        place = None if form is None else self.positions.of_symbol(symbol, form)
         return place and (*place, place[0], place[1] + len(symbol.name) - 1)
 
     def _at_symbol(self, symbol, form=None):
-        place = self.symbol_position(symbol, form)
-        return (self.filename, *place[:2]) if place else self.place()
+        """(file, line, column) of ``symbol`` in the user's text around here, or else that of the form that is analysed."""
+        form = self.source if form is None else form
+        return self.place() if form is None else _place_in(self.positions, self.filename, symbol, form, self.place())
+
+    def _at_symbol_when_asked(self, symbol, form=None):
+        """A function that returns what `_at_symbol` returns now: the text is searched for the symbol when a warning shows the place."""
+        form = self.source if form is None else form
+        return self.place() if form is None else partial(_place_in, self.positions, self.filename, symbol, form, self.place())
 
     def warn(self, kind, control, *arguments, position=None, **notes):
         self.unit.tell(kind, control, *arguments, position=position or self.place(), muffled=self.muffled, **notes)
@@ -129,7 +135,8 @@ class Scrutiny:
             head, rest = specifier.car, list(_elements(specifier.cdr))
             if head is IGNORE or head is IGNORABLE:
                 for name in rest:
-                    self._ignore(head, name, by_symbol, env, specifier)
+                    if not isinstance(name, Symbol) or name not in variables:  # else the LET* of &AUX will know it
+                        self._ignore(head, name, by_symbol, env, specifier)
             elif head is NOTINLINE:
                 self.notinline |= {name for name in rest if isinstance(name, Symbol)}
             elif is_extension(head, "MUFFLE-CONDITIONS"):
@@ -141,9 +148,9 @@ class Scrutiny:
             elif head is OPTIMIZE:
                 self._optimize(specifier, rest)
             elif head is TYPE:
-                self._type(rest[0] if rest else None, rest[1:], env, specifier)
+                self._type(rest[0] if rest else None, [name for name in rest[1:] if name not in variables], env, specifier)
             elif (isinstance(head, (Symbol, Cons)) or head is True) and PORTS.types.known(head):
-                self._type(head, rest, env, specifier)
+                self._type(head, [name for name in rest if name not in variables], env, specifier)
             else:
                 self._unrecognized(specifier)
 
@@ -193,7 +200,7 @@ class Scrutiny:
             return
         head = specifier.car if isinstance(specifier, Cons) else specifier
         if isinstance(head, Symbol) and not isinstance(head, Keyword) and not PORTS.types.known(head):
-            self.unit.types.append(Mention(head, None, self._at_symbol(head, form), self.muffled))
+            self.unit.types.append(Mention(head, None, self._at_symbol_when_asked(head, form), self.muffled))
 
     # --------------------------------------------------------------------------------------------------------------- calls
 
@@ -209,7 +216,7 @@ class Scrutiny:
         if self.at_once and env.scope.parent is None:
             return  # the form itself makes the call, and the error tells
         if arguments is None or form is None or id(form) not in self.positions:
-            position, call = self._at_symbol(name[1] if isinstance(name, tuple) else name), None
+            position, call = self._at_symbol_when_asked(name[1] if isinstance(name, tuple) else name), None
         else:
             position, call = self.place(), (self.filename, *self._at)
         unit.mentions.append(Mention(name, arguments, position, self.muffled, call))
@@ -236,6 +243,18 @@ class Scrutiny:
             return
         for control, *rest in wrong_call(name, shape, arguments):
             self.warn(SimpleWarning, control, *rest)
+
+    def lambda_call(self, expression, arguments, env):
+        """Judge a call of a lambda expression."""
+        if self.unit is not None and isinstance(expression.cdr, Cons) and not (self.at_once and env.scope.parent is None):
+            for control, *rest in wrong_call_of_lambda(Shape(expression.cdr.car), arguments):
+                self.warn(SimpleWarning, control, *rest)
+
+
+def _place_in(positions, filename, symbol, form, otherwise):
+    """(file, line, column) of ``symbol`` in ``form``, which was read from the file; ``otherwise`` if it does not stand there."""
+    place = positions.of_symbol(symbol, form)
+    return (filename, *place) if place else otherwise
 
 
 def _elements(lst):

@@ -1,13 +1,14 @@
 """Code that contains itself: ``#1=(progn #1#)`` is a text that can be read and a program that no compiler can finish.
 
-A quoted list may be circular; that is data. Elsewhere a circle is an error before anything looks at the form, because macros,
-special forms and the compiler all walk lists to their ends.
+A quoted list may be circular; that is data. So may be what stands in a call of a user's macro, which makes of it what it likes: there
+each expansion is looked at. Elsewhere a circle is an error before anything looks at the form, because macros of Common Lisp, special
+forms and the compiler all walk lists to their ends.
 """
 
 from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import CompileError, error
-from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.ground.data import Cons, Symbol
 from cramhy_runtime.ground.packages import sym
 
 QUOTE = sym("QUOTE")
@@ -16,12 +17,31 @@ _MANY = 10_000  # conses: more than most forms have, fewer than one would wait f
 
 
 def refuse_circular_code(form, place=lambda part: None):
-    """Signal a compile-error when ``form`` contains itself outside of a quoted constant.
+    """Signal a compile-error when ``form`` contains itself outside of a quoted constant and of calls of users' macros.
 
-    place: the position of a list in the user's text, or ``None``.
+    place: the position of a list in the user's text, or ``None``. Returns whether there is a circle in a call of a user's macro, so that
+    expansions have to be looked at, too.
     """
     if form.__class__ is not Cons or _ends(form):
-        return
+        return False
+    if _circle(form, _is_quoted) is None:
+        return False
+    part = _circle(form, lambda cell: _is_quoted(cell) or _calls_user_macro(cell))
+    if part is None:
+        return True
+    return error(CompileError("The form contains itself. Only a quoted list may be circular.", position=place(part) or place(form)))
+
+
+def _is_quoted(cell):
+    return cell.car is QUOTE
+
+
+def _calls_user_macro(cell):
+    return isinstance(cell.car, Symbol) and cell.car.macro is not None and not (cell.car.package and cell.car.package.built_in)
+
+
+def _circle(form, is_opaque):
+    """A list in ``form`` that contains itself, ``None`` if there is none. Conses that are opaque are not looked into."""
     state, path = {}, [form]  # the state of a cons: its parts are being looked at, or have been
     while path:
         cell = path[-1]
@@ -31,17 +51,16 @@ def refuse_circular_code(form, place=lambda part: None):
             state[id(cell)] = _DONE
             continue
         state[id(cell)] = _OPEN
-        if cell.car is QUOTE:
+        if is_opaque(cell):
             continue
         for part in (cell.cdr, cell.car):
             if part.__class__ is Cons:
                 seen = state.get(id(part))
                 if seen is _OPEN:
-                    error(
-                        CompileError("The form contains itself. Only a quoted list may be circular.", position=place(part) or place(form))
-                    )
+                    return part
                 if seen is None:
                     path.append(part)
+    return None
 
 
 def _ends(form):

@@ -67,7 +67,13 @@ def traced_like(old, new):
     return new if retrace is None else retrace(new)
 
 
-class RedefinitionWarning(condition_types.SimpleWarning):
+class Redefinition(condition_types.SimpleWarning):
+    """Something is defined again, from another place."""
+
+    lisp_name = "SB-KERNEL::REDEFINITION-WARNING"
+
+
+class RedefinitionWarning(Redefinition):
     """A function is defined again, from another place."""
 
     lisp_name = "SB-KERNEL::REDEFINITION-WITH-DEFUN"

@@ -56,12 +56,14 @@ class Unit:
         self.constants = backend.Constants()
         self.names = {}
         self.alone, self.source = False, None
+        self.circular = False  # whether a circle stands in a call of a user's macro
 
     def statements(self, form):
         """The statements (core forms) that one top-level form is compiled to. They leave its values in the global ``Lresult``."""
         backend = compiler()
         analyzer = backend.Analyzer(self.filename, self.positions, at_once=self.at_once, macro_expander=macro_expander)
         analyzer._at = self.positions.get(id(form))
+        analyzer.circle_check = self.check_expansion if self.circular else None
         try:
             node = analyzer.toplevel(form, self.names)
             statements = backend.Generator(self.constants).toplevel(node)
@@ -114,7 +116,14 @@ class Unit:
 
     def refuse_circle(self, form):
         """Signal an error when ``form`` is code that contains itself."""
-        refuse_circular_code(form, lambda part: (self.filename, *self.positions[id(part)][:2]) if id(part) in self.positions else None)
+        self.circular = refuse_circular_code(form, self._place)
+
+    def check_expansion(self, expansion):
+        """Signal an error when what a macro made of a form with a circle is code that contains itself."""
+        refuse_circular_code(expansion, self._place)
+
+    def _place(self, part):
+        return (self.filename, *self.positions[id(part)][:2]) if id(part) in self.positions else None
 
     def toplevel_parts(self, form, alone=True):
         """The forms that ``form`` consists of as a top-level form, each after the one before it has been dealt with.
@@ -168,10 +177,11 @@ class Unit:
                 yield scoped
 
     def expand(self, form):
-        place = (self.filename, *self.positions[id(form)][:2]) if id(form) in self.positions else None
-        with expanding(current(), form, place):
+        with expanding(current(), form, self._place(form)):
             expansion, expanded = macroexpand_1(form)
         if expanded:
+            if self.circular:
+                self.check_expansion(expansion)
             self.positions.inherit(expansion, form)
         return expansion, expanded
 
@@ -244,6 +254,7 @@ def compile_lambda(form, environment=None, text=None):
     text = text or unit
     analyzer = backend.Analyzer(text.filename, text.positions, macro_expander=macro_expander)
     analyzer.source, analyzer._at = text.source, text.positions.get(id(text.source))
+    analyzer.circle_check = unit.check_expansion if unit.circular else None
     node = analyzer.toplevel(form) if environment is None else backend.toplevel_with_macros(analyzer, form, environment)
     statements = backend.Generator(unit.constants).toplevel(node)
     unit.namespace.update(unit.constants.take_objects())

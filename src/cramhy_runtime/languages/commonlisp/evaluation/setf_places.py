@@ -38,7 +38,7 @@ def setf_expansion(place, environment=None):
         return error(CompileError("~S is not a place that SETF can assign.", place))
     head = place.car
     if not isinstance(head, Symbol):  # NIL and T may be names of local functions
-        return _function_place(place)
+        return _function_place(place, environment)
     local = environment.function(head) if environment is not None else None
     if local is None:
         expander = (head.compiler_data or {}).get("setf-expander")
@@ -47,10 +47,10 @@ def setf_expansion(place, environment=None):
     expansion, expanded = macroexpand_1(place, environment)  # knows that a local function hides a macro
     if expanded:
         return setf_expansion(expansion, environment)
-    return _function_place(place)
+    return _function_place(place, environment)
 
 
-def _function_place(place):
+def _function_place(place, environment):
     head = place.car
     temporaries, forms, arguments = [], [], []
     for argument in place.cdr or ():
@@ -62,8 +62,10 @@ def _function_place(place):
             forms.append(argument)
             arguments.append(temporary)
     store = gensym("NEW")
-    storing = lisp_list(FUNCALL, lisp_list(FUNCTION, lisp_list(SETF, head)), store, *arguments)
-    if symbol_package(head) is COMMON_LISP and isinstance(head, Symbol):
+    setter = lisp_list(SETF, head)
+    storing = lisp_list(FUNCALL, lisp_list(FUNCTION, setter), store, *arguments)
+    local = environment.function(("setf", head)) if environment is not None else None
+    if local is None and symbol_package(head) is COMMON_LISP and isinstance(head, Symbol):
         storing = lisp_list(PROGN, storing, store)
     return temporaries, forms, [store], storing, Cons(head, list_from(arguments))
 
@@ -332,7 +334,7 @@ def define_setf_function(name, updater, documentation=None):
     """Short ``defsetf``: ``(setf (name a) v)`` is ``(updater a v)``."""
 
     def expander(place, environment):
-        temporaries, forms, stores, _, getter = _function_place(place)
+        temporaries, forms, stores, _, getter = _function_place(place, environment)
         return temporaries, forms, stores, Cons(updater, list_from([*(getter.cdr or ()), stores[0]])), getter
 
     expander.updater = updater
@@ -343,7 +345,7 @@ def define_setf_form(name, count, function, documentation=None):
     """Long ``defsetf``: ``function`` gets the argument forms and the store variables, and gives the storing form."""
 
     def expander(place, environment):
-        temporaries, forms, _, _, getter = _function_place(place)
+        temporaries, forms, _, _, getter = _function_place(place, environment)
         stores = [gensym("NEW") for _ in range(count)]
         return temporaries, forms, stores, one(function(getter.cdr, list_from(stores))), getter
 
@@ -437,7 +439,7 @@ def _apply_place(place, environment):
 
 @place_rule("CAR")
 def _car_place(place, environment):
-    return _function_place(place)
+    return _function_place(place, environment)
 
 
 def _subform_place(name, combine):

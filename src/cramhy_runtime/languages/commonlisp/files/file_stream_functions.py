@@ -7,6 +7,7 @@ from cramhy_runtime.ground.data import UNSUPPLIED, Character, LispString
 from cramhy_runtime.ground.packages import keyword
 from ..streams.external_formats import external_format
 from .file_streams import FileStream
+from ..pathnames.pathnames import ON_NAMED_FILE
 from ..streams.streams import BroadcastStream, Stream, StringInputStream, SynonymStream, input_stream, misused, output_stream
 
 LISP_NAMES = "read-byte write-byte file-position file-length file-string-length stream-external-format"
@@ -59,13 +60,14 @@ def file_length(stream):
     """``file-length``: the number of elements of the file."""
     if isinstance(stream, BroadcastStream):
         return file_length(stream.streams[-1]) if stream.streams else 0
-    if isinstance(stream, SynonymStream):
-        return file_length(stream.stream)
-    if isinstance(stream, FileStream):
-        return stream.length()
-    if getattr(stream, "lisp_name", "") != "SB-SYS::FD-STREAM":
+    real = stream
+    while isinstance(real, SynonymStream):
+        real = real.stream
+    if isinstance(real, FileStream):
+        return real.length()
+    if real is stream and getattr(stream, "lisp_name", "") != "SB-SYS::FD-STREAM":
         return type_error(stream, _ON_FILES)
-    return error(SimpleTypeError("~S is not a stream associated with a file.", stream, datum=stream, expected_type="FILE-STREAM"))
+    return error(SimpleTypeError("~S is not a stream associated with a file.", real, datum=real, expected_type=ON_NAMED_FILE))
 
 
 def file_string_length(stream, text):

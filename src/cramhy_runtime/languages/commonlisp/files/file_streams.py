@@ -20,7 +20,8 @@ from cramhy_runtime.ground.conditions import FileError, SimpleFileError, StreamE
 from cramhy_runtime.ground.data import UNSUPPLIED, Cons, Symbol, lisp_list
 from .files import FileDoesNotExist, FileExists, absolute, is_regular, physical, reason
 from ..pathnames.namestrings import native_namestring
-from ..pathnames.pathnames import pathname
+from ..pathnames.pathname_objects import LogicalPathname
+from ..pathnames.pathnames import merge_pathnames, pathname
 from cramhy_runtime.ground.packages import is_symbol, sym
 from ..types.type_relations import subtypep
 from ..types.types import expand_type
@@ -307,8 +308,9 @@ def open_whole(filespec, if_exists=UNSUPPLIED):
 
 
 def _open(filespec, direction, reads, writes, if_exists, missing, kind, size, signed, format_, beside=False):
-    path = absolute(physical(filespec))
-    name = native_namestring(path)
+    name = native_namestring(absolute(physical(filespec)))
+    logical = merge_pathnames(filespec)
+    path = logical if isinstance(logical, LogicalPathname) else absolute(logical)
     exists = os.path.lexists(name)
     if not exists:
         if missing is None:

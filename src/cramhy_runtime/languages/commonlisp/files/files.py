@@ -142,8 +142,8 @@ def delete_directory(designator, *, recursive=None):
 def rename_file(file, new_name):
     """``rename-file``: what ``new_name`` leaves out stays. Three values: the new pathname, the old and the new truename."""
     before = truename(file)
-    after = merge_pathnames(translate_logical_pathname(new_name), merge_pathnames(translate_logical_pathname(file)))
-    target = native_namestring(absolute(after))
+    after = merge_pathnames(new_name, merge_pathnames(file))
+    target = path_of(after)
     try:
         os.rename(native_namestring(before), target)
     except OSError as problem:

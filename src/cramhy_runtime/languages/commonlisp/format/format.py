@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.data import Cons, FreshString, LispString, MultipleValues, list_from, one, python_list
-from ..printer.print_names import character_name
+from ..collections.characters import character_name
 from ..streams.streams import OutputStream, StringOutputStream, output_stream, standard_output
 from .format_parser import Directive, FormatError, parse
 from .format_templates import filled, template
@@ -46,6 +46,8 @@ class State:
         if self.position >= len(self.args):
             if self.block is not None and not self.block.exhausted:
                 self.block.pop()  # a dotted tail: it is printed, and the block is left
+            elif self._tail is not None:
+                return type_error(self._tail, "LIST")
             return directive.complain("No more arguments", offset)
         if self.block is not None:
             self.block.pop()
@@ -54,13 +56,20 @@ class State:
 
     @property
     def exhausted(self):
-        if self.block is not None and self.position >= len(self.args):
-            return self.block.exhausted
-        return self.position >= len(self.args)
+        if self.position < len(self.args):
+            return False
+        return self._tail is None if self.block is None else self.block.exhausted
 
     @property
     def remaining(self):
+        if self._tail is not None:
+            return type_error(self._tail, "LIST")
         return len(self.args) - self.position
+
+    @property
+    def _tail(self):
+        """What a list of arguments ends with that is not a proper one; else ``None``."""
+        return self.args.tail if self.args.__class__ is _DottedArguments else None
 
 
 def run(nodes, state):
@@ -181,6 +190,14 @@ def list_arguments(directive, arg):
     return type_error(arg, "LIST")
 
 
+class _DottedArguments(list):
+    """Arguments from a list that ends with ``tail`` instead of nil. Asking for one more is a type-error."""
+
+    def __init__(self, items, tail):
+        super().__init__(items)
+        self.tail = tail
+
+
 def _elements(directive, cell):
     items, slow = [], cell
     while isinstance(cell, Cons):
@@ -190,7 +207,7 @@ def _elements(directive, cell):
             slow = slow.cdr
             if slow is cell and cell is not None:
                 directive.complain("The list of arguments is circular")
-    return items
+    return items if cell is None else _DottedArguments(items, cell)
 
 
 __all__ = [

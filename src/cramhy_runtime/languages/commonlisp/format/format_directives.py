@@ -7,13 +7,13 @@ leaves open.
 from __future__ import annotations
 
 from cramhy_runtime.ground.conditions import Error, handler_bind, type_error
-from cramhy_runtime.ground.data import Character, Cons, list_from, truth
+from cramhy_runtime.ground.data import Character, list_from, truth
 from cramhy_runtime.ground.packages import named_package
 from cramhy_runtime.kernel.active import checkpoint
 from ..printer import print_controls as controls
 from ..printer.pretty import call_logical_block, pprint_indent, pprint_newline, pprint_tab
 from ..printer.print_controls import PRINT_BASE, PRINT_RADIX, bound
-from ..printer.print_names import character_name
+from ..collections.characters import character_name
 from ..printer.printer import output_object, prin1, prin1_to_string, princ_to_string, write
 from ..streams.streams import OutputStream, StringOutputStream
 from ..collections.characters import graphic_char_p
@@ -368,13 +368,6 @@ def _choose(directive, state):
             run(clauses[-1], state)
 
 
-def last_cdr(cell):
-    """What a list that is not circular ends with: ``None``, unless it is dotted."""
-    while isinstance(cell, Cons):
-        cell = cell.cdr
-    return cell
-
-
 def _iterate(directive, state):
     (limit,) = parameters(directive, state, None)
     control = None
@@ -390,10 +383,7 @@ def _iterate(directive, state):
     if directive.at:
         _loop(directive, state, once, limit)
     else:
-        value = state.next(directive)
-        args = list_arguments(directive, value)
-        if limit is None and isinstance(value, Cons) and (end := last_cdr(value)) is not None:
-            type_error(end, "LIST")
+        args = list_arguments(directive, state.next(directive))
         _loop(directive, State(state.stream, args, 0, None, state.rest, state.colon_up), once, limit)
 
 

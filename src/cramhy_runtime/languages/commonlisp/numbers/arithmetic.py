@@ -19,6 +19,7 @@ from cramhy_runtime.ground.conditions import DivisionByZero, FloatingPointInvali
 from cramhy_runtime.ground.data import MultipleValues, lisp_list, one
 from cramhy_runtime.ground.floats import LARGEST_SINGLE, SPLITTER, SingleFloat, new_single, rational_to_float32, to_float32
 from cramhy_runtime.ground.packages import sym
+from .float_traps import DIVIDE_BY_ZERO, INVALID, OVERFLOW, infinity, is_masked, quotient_by_zero
 from .complex_numbers import ExactComplex, SingleComplex, of_parts, parts
 
 LISP_NAMES = """max min abs gcd lcm signum mod rem numberp realp rationalp integerp floatp complexp zerop plusp minusp evenp oddp
@@ -113,14 +114,21 @@ def normal(value):
 
 
 def division_by_zero(operation, *operands):
-    """Signal that ``operation`` (the name of a CL function) divided by zero; if zero by a zero and one is a float, it has no meaning."""
+    """Signal that ``operation`` (the name of a CL function) divided by zero; floats give infinity where that trap is masked.
+
+    Zero by zero, one of them a float, is an invalid operation, which has a trap of its own.
+    """
     undefined = all(operand == 0 for operand in operands) and not all(isinstance(operand, int) for operand in operands)
-    kind = FloatingPointInvalidOperation if undefined else DivisionByZero
+    kind, trap = (FloatingPointInvalidOperation, INVALID) if undefined else (DivisionByZero, DIVIDE_BY_ZERO)
+    if is_masked(trap) and any(isinstance(operand, float) for operand in operands):
+        return quotient_by_zero(*operands) if operation == "/" else infinity(operation, operands)
     return error(kind(sym(operation), lisp_list(*operands)))
 
 
 def overflow(operation, *operands):
-    """Signal that the result of ``operation`` is too large for a float."""
+    """Signal that the result of ``operation`` is too large for a float; it is infinite where that trap is masked."""
+    if is_masked(OVERFLOW):
+        return infinity(operation, operands)
     return error(FloatingPointOverflow(sym(operation), lisp_list(*operands)))
 
 
@@ -153,7 +161,9 @@ def single_of(number):
 
 
 def too_large_for(number, kind):
-    """Signal that ``number`` does not fit into the kind of float that ``kind`` names."""
+    """Signal that ``number`` does not fit into the kind of float that ``kind`` names; an infinite one where that trap is masked."""
+    if is_masked(OVERFLOW):
+        return (SingleFloat if kind == "SINGLE-FLOAT" else float)(math.copysign(math.inf, number))
     return error(FloatingPointOverflow(sym("FLOAT"), lisp_list(number, sym(kind))))
 
 

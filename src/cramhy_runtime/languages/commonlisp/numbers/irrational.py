@@ -16,6 +16,7 @@ from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.floats import result_class
 from cramhy_runtime.ground.numbers import FIXNUM_LIMIT
 from cramhy_runtime.ground.packages import sym
+from .float_traps import OVERFLOW, is_masked
 from .arithmetic import (
     abs_,
     division_by_zero,
@@ -70,7 +71,7 @@ def _of_kind(kind, result, *operands):
     if kind is float:
         return result
     found = SingleFloat(result)
-    if found - found != 0.0 and result - result == 0.0:
+    if found - found != 0.0 and result - result == 0.0 and not is_masked(OVERFLOW):
         return error(FloatingPointOverflow())
     return found
 
@@ -85,6 +86,8 @@ def _apply(name, real, complex_, number, domain=None):
     try:
         return _of_kind(result_class(number), real(argument))
     except OverflowError:
+        if is_masked(OVERFLOW):
+            return result_class(number)(-math.inf if name == "sinh" and argument < 0 else math.inf)
         return error(FloatingPointOverflow())
     except ValueError:
         return error(DivisionByZero()) if math.isfinite(argument) else error(FloatingPointOverflow())

@@ -42,8 +42,33 @@ class RandomState:
         other._source.setstate(self._source.getstate())
         return other
 
+    def words(self):
+        """The state as SBCL keeps it: 0, the constant of the twister, which word is next, and the 624 words."""
+        *state, place = self._source.getstate()[1]
+        return [0, _TWIST, place, *state]
+
     def __repr__(self):
         return "#<RANDOM-STATE>"
+
+
+_TWIST = 2567483615
+
+
+def restored_state(slot=None, words=None):
+    """The `RandomState` that prints as ``#S(RANDOM-STATE :STATE words)``: what ``#S`` makes of it.
+
+    slot: the keyword :STATE; words: a vector, as `RandomState.words` gives them. Errors: a type-error, where they are not a state.
+    """
+    numbers = list(words) if hasattr(words, "__iter__") and not isinstance(words, str) else []
+    if slot is not sym(":STATE") or len(numbers) != 627 or numbers[1] != _TWIST:
+        return type_error(words, "(SIMPLE-ARRAY (UNSIGNED-BYTE 32) (627))")
+    state = RandomState.__new__(RandomState)
+    state._source = python_random.Random()
+    try:
+        state._source.setstate((3, (*numbers[3:], numbers[2]), None))
+    except (ValueError, TypeError, OverflowError):
+        return type_error(words, "(SIMPLE-ARRAY (UNSIGNED-BYTE 32) (627))")
+    return state
 
 
 def _initial_words(seed):

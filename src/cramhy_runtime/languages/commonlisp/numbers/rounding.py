@@ -56,8 +56,8 @@ def ceiling(number, divisor=1):
 def round_(number, divisor=1):
     """``cl:round``: quotient rounded to the nearest integer, from the middle to the even one, and rest."""
     quotient, rest, divisor = _truncated(need_real(number), need_real(divisor))
-    half = div2(abs(divisor), 2)
-    if abs(rest) > half or abs(rest) == half and quotient % 2:
+    rest_beyond = sub2(abs(divisor), abs(rest))  # half of the divisor may be too small for a float; this is exact near the middle
+    if abs(rest) > rest_beyond or abs(rest) == rest_beyond and quotient % 2:
         step = 1 if (rest < 0) == (divisor < 0) else -1
         quotient, rest = quotient + step, rest - step * divisor
     return MultipleValues((quotient, rest))

@@ -18,7 +18,7 @@ from ..packages.package_errors import check_function_name
 from . import instances, slots
 from .builtin_classes import CLASSES
 from .class_definition import define_class
-from .class_objects import direct_slots, effective_slots
+from .class_objects import Slot, direct_slots, effective_slots
 from .classes import class_name, find_class_or_error
 from cramhy_runtime.ground.dispatch.generic_functions import (
     GenericFunction,
@@ -236,18 +236,9 @@ def add_method(generic_function, method):
     if not isinstance(generic_function, GenericFunction) or not isinstance(method, Method):
         return no_method_for("ADD-METHOD", generic_function, method)
     owner = method.generic_function
-    if owner is not generic_function and method in owner.methods:
+    if owner is not generic_function and owner is not None:
         return error(SimpleError("The method ~S is already part of the generic function ~S.", method, owner))
-    generics.add_method(
-        generic_function,
-        method.qualifiers,
-        method.specializers,
-        method.function,
-        uses_next=method.uses_next,
-        per_class=method.per_class,
-        documentation=method.documentation,
-        shape=method.shape,
-    )
+    generics.enter_method(generic_function, method)
     return generic_function
 
 
@@ -292,7 +283,14 @@ def class_direct_subclasses(class_):
 
 
 def class_slots(class_):
+    structure = getattr(class_, "lisp_structure", None)
+    if structure is not None:
+        return list_from([_slot_of_structure(slot, class_) for slot in structure.slots])
     return list_from(list(effective_slots(class_).values()))
+
+
+def _slot_of_structure(slot, class_):
+    return Slot(slot.name, slot.attribute, (slot.keyword,), slot.initform, None, slot.type, class_)
 
 
 def class_direct_slots(class_):

@@ -12,13 +12,16 @@ from __future__ import annotations
 
 import sys
 
+from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.keyword_calls import lispify
 from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.ground.packages import ensure_package, find_package_or_error, intern
 
 
-def define_face(name, nicknames=(), use=(), shadow=(), functions=None, variables=None, export="", internal="", imports=None, reexport=()):
+def define_face(
+    name, nicknames=(), use=(), shadow=(), functions=None, variables=None, export="", internal="", imports=None, reexport=(), generic=""
+):
     """Declare the built-in package ``name`` and return it.
 
     functions: a mapping of a module (or its name) to a string of Lisp names defined there, or of a Lisp name to a function.
@@ -26,6 +29,7 @@ def define_face(name, nicknames=(), use=(), shadow=(), functions=None, variables
     export: further names to export (operators that are macros, markers). internal: names that are present but not external.
     imports: a mapping of package names to strings of names whose symbols are imported and exported here.
     reexport: packages whose external symbols this one exports too. shadow: names that are not taken from ``use``.
+    generic: names from ``functions`` whose functions are generic in the original, for arguments of any class: users may define methods.
     """
     package = ensure_package(name, *nicknames)
     package.built_in = True
@@ -43,6 +47,9 @@ def define_face(name, nicknames=(), use=(), shadow=(), functions=None, variables
             symbol = package.intern(symbol_name)
             symbol.function = lispify(function)
             package.export(symbol)
+    for symbol_name in generic.upper().split():
+        symbol = package.intern(symbol_name)
+        open_to_methods(getattr(symbol.function, "python", symbol.function), f"{package.name}::{symbol_name}")
     for variable, value in (variables or {}).items():
         package.export(special(package.intern(variable.upper()), value))
     for symbol_name in export.upper().split():

@@ -32,7 +32,8 @@ def logical_pathname(designator):
     """``logical-pathname``: the logical pathname that a string names. One without a known host is a type-error."""
     if not isinstance(designator, (str, LispString)):
         path = pathname(designator)
-        return path if isinstance(path, LogicalPathname) else type_error(path, "(OR STRING LOGICAL-PATHNAME SYNONYM-STREAM FILE-STREAM)")
+        expected = "(OR STRING LOGICAL-PATHNAME SYNONYM-STREAM FILE-STREAM)" if path is designator else "LOGICAL-PATHNAME"
+        return path if isinstance(path, LogicalPathname) else type_error(path, expected)
     text = str(designator)
     name, colon, _ = text.partition(":")
     if colon and name.upper() not in logical_hosts:

@@ -70,14 +70,18 @@ def pathname(designator):
     return type_error(designator, DESIGNATOR)
 
 
+ON_NAMED_FILE = "(SATISFIES SB-IMPL::STREAM-FILE-STREAM)"
+"""The type of streams that have a pathname."""
+
+
 def _pathname_of_stream(stream):
     found = getattr(stream, "pathname", None)
     if found is not None:
         return found
     if getattr(stream, "lisp_name", "") not in ("SB-SYS::FD-STREAM", "SYNONYM-STREAM"):
         return type_error(stream, DESIGNATOR)
-    text, expected = "The stream~%  ~S~%is not associated with a named file.", "(SATISFIES SB-IMPL::STREAM-FILE-STREAM)"
-    return error(SimpleTypeError(text, stream, datum=stream, expected_type=expected))
+    text = "The stream~%  ~S~%is not associated with a named file."
+    return error(SimpleTypeError(text, stream, datum=stream, expected_type=ON_NAMED_FILE))
 
 
 def parsed(text):
@@ -139,7 +143,8 @@ def parse_namestring(thing, host=None, defaults=None, *, start=0, end=None, junk
 
 
 def _host(designator):
-    return designator if designator is UNIX else logical_host(designator)
+    """The host that a host, a logical host or a string names; the empty string is the host of the files."""
+    return UNIX if designator is UNIX or isinstance(designator, (str, LispString)) and not str(designator) else logical_host(designator)
 
 
 def pathnamep(obj):

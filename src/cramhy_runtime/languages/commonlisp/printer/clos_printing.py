@@ -56,7 +56,9 @@ def specializer_names(method):
 def print_method(method, stream):
     def contents():
         output_object(sym("STANDARD-METHOD"), stream)
-        stream.write(f" {name_text(method.generic_function.__lisp_name__)} ")
+        if method.generic_function is not None:
+            stream.write(f" {name_text(method.generic_function.__lisp_name__)}")
+        stream.write(" ")
         for qualifier in method.qualifiers:
             output_object(qualifier, stream)
             stream.write(" ")

@@ -14,6 +14,7 @@ from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.packages import COMMON_LISP, KEYWORD
 from cramhy_runtime.kernel.active import checkpoint
+from ..collections.characters import character_name
 from ..reader.readtables import READTABLE
 from ..reader.tokens import CASES, downcase, invert, looks_numeric, upcase
 from .print_controls import CAPITALIZE, DOWNCASE, PACKAGE, PRINT_BASE, PRINT_CASE, PRINT_GENSYM, PRINT_RADIX, PRINT_READABLY, UPCASE
@@ -298,33 +299,6 @@ def symbol_with_prefix(symbol):
 def string_text(text):
     """``text`` between double quotes."""
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
-
-
-_CONTROL_NAMES = (
-    "Nul Soh Stx Etx Eot Enq Ack Bel Backspace Tab Newline Vt Page Return So Si Dle Dc1 Dc2 Dc3 Dc4 Nak Syn Etb Can "
-    "Em Sub Esc Fs Gs Rs Us Space"
-).split()
-_C1_NAMES = (
-    "Rubout C80 C81 Break-Permitted No-Break-Permitted C84 Next-Line Start-Selected-Area End-Selected-Area "
-    "Character-Tabulation-Set Character-Tabulation-With-Justification Line-Tabulation-Set Partial-Line-Forward "
-    "Partial-Line-Backward Reverse-Linefeed Single-Shift-Two Single-Shift-Three Device-Control-String "
-    "Private-Use-One Private-Use-Two Set-Transmit-State Cancel-Character Message-Waiting Start-Guarded-Area "
-    "End-Guarded-Area Start-String C99 Single-Character-Introducer Control-Sequence-Introducer String-Terminator "
-    "Operating-System-Command Privacy-Message Application-Program-Command"
-).split()
-
-
-def character_name(char):
-    """The name of the character ``char``, a Python string of length one: ``Space``, ``LATIN_SMALL_LETTER_A``."""
-    code = ord(char)
-    if code <= 32:
-        return _CONTROL_NAMES[code]
-    if 127 <= code < 160:
-        return _C1_NAMES[code - 127]
-    try:
-        return unicodedata.name(char).replace(" ", "_")
-    except ValueError:
-        return f"U{code:X}"
 
 
 def character_text(char):

@@ -13,9 +13,10 @@ import weakref
 from cramhy_runtime.ground.arrays import LispArray
 from cramhy_runtime.ground.condition_types import shown_with
 from cramhy_runtime.ground.conditions import CaseFailure, Condition, Restart, SimpleCondition, TypeError_
-from cramhy_runtime.ground.data import Cons, LispString, Symbol
+from cramhy_runtime.ground.data import Cons, LispString, Symbol, lisp_list, list_from
 from cramhy_runtime.ground.hash_tables import HashTable, hash_table_test
 from ..numbers.complex_numbers import parts
+from ..numbers.random_state import RandomState
 from cramhy_runtime.ground.packages import Package, all_packages, is_symbol, keyword, sym, symbol_name
 from ..syntax.backquote import COMMA, COMMA_KINDS, Comma
 from ..streams.streams import SynonymStream
@@ -274,6 +275,22 @@ def _print_comma(comma, stream):
     output_object(comma.form, stream)
 
 
+_QUOTE = sym("QUOTE")
+
+
+def _print_random_state(state, stream):
+    """``#S(RANDOM-STATE :STATE #.(MAKE-ARRAY ...))``, which is read as a state that gives the same numbers."""
+    bytes_ = lisp_list(_QUOTE, lisp_list(sym("UNSIGNED-BYTE"), 32))
+    words = lisp_list(_QUOTE, list_from(state.words()))
+    stream.write("#S(")
+    output_object(sym("RANDOM-STATE"), stream)
+    stream.write(" ")
+    output_object(keyword("STATE"), stream)
+    stream.write(" #.")
+    output_object(lisp_list(sym("MAKE-ARRAY"), 627, keyword("ELEMENT-TYPE"), bytes_, keyword("INITIAL-CONTENTS"), words), stream)
+    stream.write(")")
+
+
 def print_package(package, stream):
     if package.name is None:
         return print_unreadable(package, stream, "(deleted)", type_=True, identity=True)
@@ -293,6 +310,7 @@ def _register():
         (Comma, _print_comma),
         (SynonymStream, _print_synonym),
         (Package, print_package),
+        (RandomState, _print_random_state),
         (bytes, lambda obj, stream: print_array(list(obj), stream)),
     ):
         define_printer(cls, function)

@@ -23,6 +23,7 @@ from cramhy_runtime.ground.data import NO_VALUES, Character, Cons, LispString, S
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.ports import PORTS
 from ..numbers.arithmetic import is_real
+from ..numbers.random_state import restored_state
 from ..objects.structures import structure_named
 from cramhy_runtime.storage.dependency_tracing import watched
 from cramhy_runtime.ground.packages import KEYWORD, is_symbol, keyword, near_names, sym, symbol_name
@@ -488,11 +489,11 @@ def sharp_s(stream, sub, argument):
     if items and items[0] is COMMA and len(items) == 5 and items[4] in (0, 1, 2):
         return Comma(COMMA_KINDS[items[4]], items[2])
     name = items[0] if items else None
-    structure = structure_named(name)
-    if structure is None:
+    construct = restored_state if name is sym("RANDOM-STATE") else getattr(structure_named(name), "construct", None)
+    if construct is None:
         return fail(reader, start, "~S is not a defined structure type.", name)
     arguments = [_slot_keyword(item) if index % 2 == 0 else item for index, item in enumerate(items[1:])]
-    return _guarded(reader, start, structure.construct, *arguments)
+    return _guarded(reader, start, construct, *arguments)
 
 
 def _slot_keyword(designator):

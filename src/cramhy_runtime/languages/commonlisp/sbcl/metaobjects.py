@@ -11,16 +11,17 @@ import sys
 from cramhy_runtime.ground.data import list_from, lisp_list, one
 from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction, all_generic_functions, generic
 from cramhy_runtime.ground.dispatch.methods import EqlSpecializer
-from cramhy_runtime.ground.packages import ensure_package
+from cramhy_runtime.ground.packages import ensure_package, sym
 from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.utilities.wait_queue import need
 
-from ..objects import slots
+from ..objects import protocol, slots
 from ..objects.class_definition import default_initargs
 from ..objects.class_objects import DirectSlot, Slot, SlotDefinition
-from ..objects.classes import alias_class
+from ..objects.classes import ConditionClass, alias_class, class_of
 from ..objects.protocol import allocate_instance
 from ..packages.face_definition import define_face
+from ..types.types import define_own_type
 
 
 def class_default_initargs(class_: Any) -> object:
@@ -41,6 +42,11 @@ def class_prototype(class_: Any) -> object:
     if class_ not in _prototypes:
         _prototypes[class_] = one(allocate_instance(class_))
     return _prototypes[class_]
+
+
+def compute_slots(class_: Any) -> object:
+    """``sb-mop:compute-slots``: the slots of instances of the class, as they are. Methods on it change what programs get that ask."""
+    return protocol.class_slots(class_)
 
 
 def slot_definition_location(slot: Any) -> object:
@@ -113,7 +119,8 @@ def specializer_direct_generic_functions(specializer: Any) -> object:
     )
 
 
-NAMES = """class-default-initargs class-direct-default-initargs class-prototype slot-definition-location slot-value-using-class
+NAMES = """compute-slots
+class-default-initargs class-direct-default-initargs class-prototype slot-definition-location slot-value-using-class
 slot-boundp-using-class slot-makunbound-using-class method-lambda-list generic-function-method-combination
 generic-function-argument-precedence-order generic-function-declarations intern-eql-specializer specializer-direct-methods
 specializer-direct-generic-functions"""
@@ -134,7 +141,9 @@ _SLOT_CLASSES = {
 def define() -> None:
     """Complete SB-MOP, and make SB-PCL of it."""
     this = sys.modules[__name__]
-    package = define_face("SB-MOP", functions={this: NAMES}, imports={"COMMON-LISP": OF_COMMON_LISP}, export=CLASSES)
+    package = define_face(
+        "SB-MOP", functions={this: NAMES}, generic="compute-slots", imports={"COMMON-LISP": OF_COMMON_LISP}, export=CLASSES
+    )
     package.intern("SLOT-VALUE-USING-CLASS").setf_function = set_slot_value_using_class
     validate = generic("SB-MOP::VALIDATE-SUPERCLASS", "(class superclass)")
     if not validate.methods:
@@ -144,6 +153,7 @@ def define() -> None:
         for name in names.split():
             alias_class(package.intern(name), cls)
     pcl = ensure_package("SB-PCL")
+    define_own_type(sym("SB-PCL::CONDITION-CLASS"), lambda thing: isinstance(thing, type) and class_of(thing) is ConditionClass)
     for symbol in list(package.external.values()):
         name = getattr(symbol, "name", None)
         if name is not None and not pcl.present(name):

@@ -49,7 +49,21 @@ TABLES = (
         ("(with-current-source-form (source...) form...)", "(progn form...)", "The body."),
     ),
     Table(
-        "SB-INT", ("(with-float-traps-masked (trap...) form...)", "(progn form...)", "The body: a division by zero in it stays an error.")
+        "SB-INT",
+        (
+            "(with-float-traps-masked (trap...) form...)",
+            "(call-with-float-traps-masked '(trap...) (lambda () form...))",
+            "The body, in which floats may become infinite: :OVERFLOW, :DIVIDE-BY-ZERO, :INVALID, :INEXACT.",
+        ),
+        ("(named-lambda name parameters form...)", "(lambda parameters form...)", "The function; its name is not kept."),
+    ),
+    Table(
+        "SB-KERNEL",
+        (
+            "(with-array-data ((data array option...) (start from) (end to) option...) form...)",
+            "(let* ((data array) (start from) (end (or to (length data)))) form...)",
+            "The body with a vector, and where the part of it begins and ends.",
+        ),
     ),
     Table(
         "SB-SYS",

@@ -8,16 +8,34 @@ import sys
 
 from cramhy_runtime.cpl.task_variables import define_task_state
 
+from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.data import lisp_list
+from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.keyword_calls import lispify
 from cramhy_runtime.ground.packages import find_package_or_error, sym
 from cramhy_runtime.utilities import threads as utility_threads
 
 from ..packages.face_definition import define_face
+from ..reader import readtables
 from ..streams import streams
 from ..syntax.operator_macros import define, export
 from ..types.types import define_type
-from . import atomics, backtraces, deadlines, extensions, mutexes, operators, posix, threads, timers, weak_pointers
+from ..evaluation.function_facts import lambda_list_of
+from ..numbers import float_traps
+from . import (
+    atomics,
+    backtraces,
+    deadlines,
+    extensions,
+    internals,
+    mutexes,
+    operators,
+    posix,
+    reader_internals,
+    threads,
+    timers,
+    weak_pointers,
+)
 
 
 def _setters(package: str, setters: dict[str, object]) -> None:
@@ -100,6 +118,9 @@ def define_extensions() -> None:
                 typexpand typexpand-1 get-time-of-day get-bytes-consed dynamic-space-size save-lisp-and-die print-symbol-with-prefix""",
             "typexpand-all": extensions.typexpand,
             "assert-version->=": extensions.assert_version,
+            "defconstant-uneql-name": lambda condition: condition.name,
+            "defconstant-uneql-old-value": lambda condition: condition.old,
+            "defconstant-uneql-new-value": lambda condition: condition.new,
             **dict.fromkeys(
                 "purify disable-debugger enable-debugger restrict-compiler-policy describe-compiler-policy spin-loop-hint".split(),
                 extensions.no_effect,
@@ -116,7 +137,7 @@ def define_extensions() -> None:
             "*runtime-pathname*": None,
             "*core-pathname*": None,
         },
-        export="timeout timer weak-pointer word compiler-note code-deletion-note",
+        export="timeout timer weak-pointer word compiler-note code-deletion-note defconstant-uneql",
         internal="timeout-seconds",
     )
     _macros("SB-EXT")
@@ -161,21 +182,77 @@ def define_debug() -> None:
 
 def define_internals() -> None:
     """What programs use of SB-INT."""
-    define_face("SB-INT", functions={extensions: "constant-form-value fixnump"}, export="compiled-program-error")
+    define_face(
+        "SB-INT",
+        functions={
+            extensions: "constant-form-value fixnump",
+            internals: "missing-arg bug",
+            "style-warn": conditions.style_warn,
+            "get-floating-point-modes": float_traps.modes,
+            "set-floating-point-modes": float_traps.set_modes,
+            "call-with-float-traps-masked": float_traps.masked,
+        },
+        variables={"base-char-code-limit": 128},
+        export="compiled-program-error bug index package-at-variance truly-dynamic-extent",
+        internal="call-with-float-traps-masked",
+    )
+    sym("SB-INT::BASE-CHAR-CODE-LIMIT").constant = True
+    define_type(
+        sym("SB-INT::INDEX"), lambda form, environment: lisp_list(sym("MOD"), sym("ARRAY-DIMENSION-LIMIT").value), "A place in a vector."
+    )
     _macros("SB-INT")
+
+
+def define_kernel() -> None:
+    """What programs use of SB-KERNEL: the bits of floats, parts of vectors, descriptions of structures."""
+    define_face(
+        "SB-KERNEL",
+        functions={
+            internals: """single-float-bits double-float-bits double-float-high-bits double-float-low-bits make-single-float
+                make-double-float shrink-vector ub8-bash-copy find-defstruct-description dd-slots dsd-name dsd-type
+                structure-raw-slot-data""",
+            "%shrink-vector": internals.shrink_vector,
+        },
+        imports={"SB-INT": "package-at-variance"},
+        export="redefinition-warning",
+        internal="structure-raw-slot-data",
+    )
+    _macros("SB-KERNEL")
+
+
+def define_implementation() -> None:
+    """What programs take from SB-IMPL: the parts of a readtable."""
+    names = """character-macro-array character-macro-hash-table dispatch-tables assert-not-standard-readtable"""
+    functions = {reader_internals: names, "%fun-name": reader_internals.fun_name}
+    variables = {"*standard-readtable*": readtables.STANDARD, "*default-external-format*": sym(":UTF-8")}
+    define_face("SB-IMPL", functions=functions, variables=variables)
+    _setters("SB-IMPL", {"dispatch-tables": reader_internals.set_dispatch_tables})
+
+
+def define_unix() -> None:
+    """What programs ask of SB-UNIX: the current folder."""
+    define_face("SB-UNIX", functions={"posix-getcwd/": internals.posix_getcwd})
+
+
+def define_introspection() -> None:
+    """What programs ask of SB-INTROSPECT about functions."""
+    names = dict.fromkeys(("function-lambda-list", "function-arglist"), lambda function: lambda_list_of(function_of(function)))
+    define_face("SB-INTROSPECT", functions=names)
 
 
 def define_machine() -> None:
     """What programs ask of SB-VM: sizes in bits."""
     sizes = {"n-word-bits": 64, "n-byte-bits": 8, "n-word-bytes": 8}
-    define_face("SB-VM", variables=sizes)
+    define_face("SB-VM", variables=sizes, export="word")
+    define_type(sym("SB-VM::WORD"), lambda form, environment: lisp_list(sym("UNSIGNED-BYTE"), 64), "What a register holds.")
     for name in sizes:
         sym(f"SB-VM::{name.upper()}").constant = True
 
 
 def define_compiler() -> None:
-    """What programs ask of SB-C: the order of bytes."""
-    define_face("SB-C", variables={"*backend-byte-order*": sym(f":{sys.byteorder.upper()}-ENDIAN")})
+    """What programs ask of SB-C: the order of bytes, and the conditions of a compiler."""
+    variables = {"*backend-byte-order*": sym(f":{sys.byteorder.upper()}-ENDIAN")}
+    define_face("SB-C", variables=variables, export="compiler-error fatal-compiler-error")
 
 
 def define_gray() -> None:
@@ -202,6 +279,10 @@ MAKERS = {
     "SB-GRAY": define_gray,
     "SB-MOP": define_metaobjects,
     "SB-PCL": define_metaobjects,
+    "SB-KERNEL": define_kernel,
+    "SB-IMPL": define_implementation,
+    "SB-UNIX": define_unix,
+    "SB-INTROSPECT": define_introspection,
     "SB-VM": define_machine,
     "SB-C": define_compiler,
 }

@@ -7,8 +7,10 @@ have theirs written down in ``ansi_lambda_lists.py``. Where nothing is known, ca
 from __future__ import annotations
 
 import types
+from copy import copy
 
-from cramhy_runtime.ground.data import Keyword, list_from
+from cramhy_runtime.ground.data import Keyword, list_from, python_list
+from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
 from cramhy_runtime.ground.dispatch.methods import Shape
 from cramhy_runtime.ground.packages import keyword
 
@@ -19,7 +21,7 @@ def shape_of(function):
     """The `Shape` of a function object, or ``None`` when it cannot be known."""
     shape = getattr(function, "shape", None)
     if isinstance(shape, Shape):
-        return shape
+        return _with_any_key(shape) if shape.has_keys and isinstance(function, GenericFunction) else shape
     known = getattr(function, "__lisp_lambda_list__", function)
     if known is not function:
         return Shape(known)
@@ -40,6 +42,13 @@ def shape_of(function):
             shape.keys = [keyword(name.rstrip("_").replace("_", "-").upper()) for name in names]
             shape.allow_other_keys = bool(code.co_flags & 0x08)
     return shape
+
+
+def _with_any_key(shape):
+    """``shape`` of a generic function: its methods may take other keywords than it names."""
+    other = copy(shape)
+    other.allow_other_keys = True
+    return other
 
 
 def wrong_call(name, shape, arguments):
@@ -66,3 +75,22 @@ def wrong_call(name, shape, arguments):
         yield "~S is not a known argument keyword.", unknown[0]
     elif unknown:
         yield "~{~S~^, ~} and ~S are not a known argument keywords.", list_from(unknown[:-1]), unknown[-1]
+
+
+_OF_LAMBDA = {
+    "The function ~S is called with ~R argument~:P, but wants exactly ~R.": "function called with ~R argument~:P, but wants exactly ~R",
+    "The function ~S is called with ~R argument~:P, but wants at least ~R.": "function called with ~R argument~:P, but wants at least ~R",
+    "The function ~S called with ~R argument~:P, but wants at most ~R.": "function called with ~R argument~:P, but wants at most ~R",
+    "The function ~S is called with odd number of keyword arguments.": "function called with odd number of arguments in keyword portion",
+}
+
+
+def wrong_call_of_lambda(shape, arguments):
+    """What is wrong with a call of a lambda expression, as `wrong_call`."""
+    for control, *rest in wrong_call(None, shape, arguments):
+        if control in _OF_LAMBDA:
+            yield _OF_LAMBDA[control], *rest[1:]
+        elif len(rest) == 1:
+            yield "function called with unknown argument keyword ~S", rest[0]
+        else:
+            yield "function called with unknown argument keywords ~{~S~^, ~}", list_from([*python_list(rest[0]), rest[1]])

@@ -41,6 +41,7 @@ from ...compiler_stamp import stamp
 from .code_dependencies import Expectations, Notes, Wanted, reading_state
 
 LOAD_PATHNAME, LOAD_TRUENAME = special("*LOAD-PATHNAME*"), special("*LOAD-TRUENAME*")
+COMPILE_FILE_PATHNAME, COMPILE_FILE_TRUENAME = special("*COMPILE-FILE-PATHNAME*"), special("*COMPILE-FILE-TRUENAME*")
 
 
 _not_used = {}
@@ -87,8 +88,11 @@ def load_file(path, chain="", finished=None, show=None, encoding=None, as_source
         return chain
     fingerprint = _fingerprint(path, text, f"source {chain}" if as_source else chain)
     _loads.number += 1
-    with binding(
-        PACKAGE, PACKAGE.value, READTABLE, READTABLE.value, LOAD_PATHNAME, lisp_path(path), LOAD_TRUENAME, lisp_path(os.path.realpath(path))
+    name, true = lisp_path(path), lisp_path(os.path.realpath(path))
+    compiled = (COMPILE_FILE_PATHNAME.value, COMPILE_FILE_TRUENAME.value) if as_source else (name, true)
+    with (
+        binding(PACKAGE, PACKAGE.value, READTABLE, READTABLE.value, LOAD_PATHNAME, name, LOAD_TRUENAME, true),
+        binding(COMPILE_FILE_PATHNAME, compiled[0], COMPILE_FILE_TRUENAME, compiled[1]),
     ):
         _load_or_compile(path, fingerprint, _Text(text, str(path)), show, as_source)
         if finished is not None:

@@ -28,7 +28,19 @@ from ..reader.readtables import READTABLE
 from ..streams.external_formats import external_format as format_named
 from ..files.file_streams import FileStream
 from ..streams.streams import ERROR_OUTPUT, Stream, output_stream
-from .loader import LOAD_PATHNAME, LOAD_TRUENAME, decoded, folder_of_load, load_file, load_text, locate, stamp, why_not_kept
+from .loader import (
+    COMPILE_FILE_PATHNAME,
+    COMPILE_FILE_TRUENAME,
+    LOAD_PATHNAME,
+    LOAD_TRUENAME,
+    decoded,
+    folder_of_load,
+    load_file,
+    load_text,
+    locate,
+    stamp,
+    why_not_kept,
+)
 from ..files.files import lisp_path, path_of, say, truename
 from ..pathnames.namestrings import native_namestring, parse_native
 from ..pathnames.pathname_objects import NEWEST, Pathname
@@ -38,7 +50,6 @@ LISP_NAMES = "load compile-file compile-file-pathname"
 
 LOAD_PRINT, LOAD_VERBOSE = special("*LOAD-PRINT*"), special("*LOAD-VERBOSE*")
 COMPILE_PRINT, COMPILE_VERBOSE = special("*COMPILE-PRINT*"), special("*COMPILE-VERBOSE*", True)
-COMPILE_FILE_PATHNAME, COMPILE_FILE_TRUENAME = special("*COMPILE-FILE-PATHNAME*"), special("*COMPILE-FILE-TRUENAME*")
 
 FIRST_WORDS = b"# cramhy compiled file"
 FIRST_LINE = FIRST_WORDS + b" 2\n"
@@ -67,6 +78,8 @@ def load(designator, *, verbose=UNSUPPLIED, print=UNSUPPLIED, if_does_not_exist=
     """
     show = _show_values if _flag(print, LOAD_PRINT) is not None else None
     if isinstance(designator, Stream):
+        if _flag(verbose, LOAD_VERBOSE) is not None:
+            say(f";; loading stuff from {prin1_to_string(designator)}")
         return _load_stream(designator, show)
     if not isinstance(designator, (str, LispString, os.PathLike)):
         return type_error(designator, "(OR STRING PATHNAME STREAM)")

@@ -13,7 +13,7 @@ import os
 from pathlib import Path
 
 from cramhy_runtime.kernel.images import per_image
-from cramhy_runtime.ground.conditions import SimpleError, error, handler_bind, warn
+from cramhy_runtime.ground.conditions import Error, SimpleError, error, handler_bind, handler_case, warn
 from cramhy_runtime.ground.dispatch.generic_functions import FunctionInTheWay
 from cramhy_runtime.ground.restarts import find_restart, invoke_restart
 from cramhy_runtime.ground.data import Cons, Symbol, list_from
@@ -256,6 +256,9 @@ LIBRARY_PACKAGES = {
     "OCCUPANCY-GRID-COSTMAP": "cram-occupancy-grid-costmap",
 }
 """Their packages: the library is loaded when its package is first named."""
+WITH_CFFI = {"BABEL": "babel", "BABEL-ENCODINGS": "babel"}
+"""Packages of systems that the original's CFFI depends on, so that its users need not name them. They are loaded from ROS_PACKAGE_PATH, if
+they are there, when the package is first named: compiling Babel takes longer than most programs that load CFFI."""
 
 
 @functools.cache
@@ -319,6 +322,12 @@ def known_systems():
     }
 
 
+def load_library(name):
+    """Load the system ``name`` because somebody named one of its packages; of `WITH_CFFI` only those that are there."""
+    if name not in WITH_CFFI.values() or find_asd(name) is not None:
+        load_system(name)
+
+
 # --------------------------------------------------------------------------------------------------------------- reading
 
 
@@ -358,13 +367,13 @@ def _read_definitions(path):
     for system in made:
         system.file = None
     FEATURES.value = features  # without those that the first reading has added
-    with read_for_sbcl(False):
-        _evaluate_definitions(path, text)
+    with read_for_sbcl(False):  # one that is only for Lisps that it knows may say so by an error
+        was_read = handler_case([(Error, lambda condition: False)], lambda: _evaluate_definitions(path, text) or True)
     for system in made:
         if system.file is None and system is not main:
             forget_system(system.name)
-        system.without_sbcl = system.file is not None
-    if main.file is None:  # it is there for Lisps that it knows
+        system.without_sbcl = was_read and system.file is not None
+    if main.file is None or not was_read:  # it is there for Lisps that it knows
         with read_for_sbcl(True):
             _evaluate_definitions(path, text)
     return None

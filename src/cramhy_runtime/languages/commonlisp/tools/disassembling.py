@@ -18,6 +18,7 @@ from ..evaluation.function_facts import lambda_expression, plain, position_of, s
 from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
 from cramhy_runtime.ground.packages import sym
 from ..printer.printer import prin1_to_string
+from ..printer.standard_printers import function_name
 from ..streams.streams import output_stream
 
 LISP_NAMES = "disassemble function-lambda-expression"
@@ -28,7 +29,8 @@ def function_lambda_expression(function):
     """Three values: the lambda expression if its text is still there, t (it may close over variables), the name."""
     if not callable(function) or isinstance(function, (Symbol, type)):
         return type_error(function, "FUNCTION")
-    return MultipleValues((lambda_expression(function), True, getattr(plain(function), "__lisp_name__", None)))
+    name = getattr(plain(function), "__lisp_name__", None)
+    return MultipleValues((lambda_expression(function), True, function_name(function) if name is None else name))
 
 
 def _function_named(designator):

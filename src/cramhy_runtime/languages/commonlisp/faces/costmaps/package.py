@@ -6,6 +6,7 @@ The package itself, with what it uses and exports, is defined in the library.
 from __future__ import annotations
 
 from cramhy_runtime.ground.classes import register_class
+from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
 from cramhy_runtime.ground.keyword_calls import lispify
 from cramhy_runtime.ground.packages import find_package_or_error
 from cramhy_runtime.ground.python_names import python_name
@@ -27,6 +28,10 @@ NAMES = {
     "2d-cov": functions.two_d_cov,
     "2d-pose-covariance": functions.two_d_pose_covariance,
 }
+GENERIC = """width height origin-x origin-y resolution generator-function grid-width grid-height generator-name cost-functions get-cost-map
+    get-map-value gen-costmap-sample-point costmap-samples register-cost-function register-height-generator
+    register-orientation-generator 2d-value-map-lookup"""
+"""Those that are generic in the original: users may define methods on them."""
 INTERNAL = """occupied occupied-places pad-grid grid-of-values cached generate-by-function map-maximum heights-at has-height-generators
     orientations-at check-metadata visible-cells why-empty remark"""
 """For the Lisp half of the library: `orientations_at` is ``%orientations-at``."""
@@ -49,6 +54,8 @@ def define():
     named |= {"%" + name: getattr(functions, python_name(name)) for name in INTERNAL.split()}
     for name, function in named.items():
         package.intern(name.upper()).function = lispify(function)
+    for name in GENERIC.split():
+        open_to_methods(named[name], f"{grids.PACKAGE}::{name.upper()}")
     for cls in CLASSES:
         register_class(package.intern(cls.lisp_name.rpartition("::")[2]), cls)
     register_class(package.intern("COST-FUNCTION"), costs.Cost)

@@ -154,6 +154,7 @@ def define_faces():
             **{name: statuses.status_list(members) for name, members in constants.items()},
             **{name: logging.tag_list(tags) for name, tags in log_lists.items()},
         },
+        generic="child-tasks parent-task task-constraints execute name parameters composite-failures envelop-error",
         export=f"{MACROS_AND_MARKERS} {REACHED_FOR} *current-task* *current-path* *task-tree* *tasks* *cleanup-time-limit*",
         internal="abstract-task",
     )

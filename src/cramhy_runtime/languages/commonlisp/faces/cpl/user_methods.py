@@ -1,4 +1,4 @@
-"""Methods that users define on ``value``, ``(setf value)``, ``pulse``, ``wait-for`` and the functions of callbacks.
+"""Methods that users define on ``value``, ``(setf value)``, ``pulse``, ``wait-for``, ``fail`` and the functions of callbacks.
 
 In the original these are generic functions, and a class of fluents of one's own is made by methods on them:
 
@@ -22,6 +22,7 @@ from cramhy_runtime.ground.data import one
 from cramhy_runtime.ground.dispatch.generic_functions import when_methods_change
 from cramhy_runtime.ground.dispatch.methods import EqlSpecializer
 from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
+from cramhy_runtime.cpl.failures import handling
 from cramhy_runtime.cpl.fluents import fluents, nets
 from cramhy_runtime.cpl.tasks import waiting
 from cramhy_runtime.cpl.fluents.fluents import Fluent, ValueFluent
@@ -79,7 +80,8 @@ WAIT_FOR = open_to_methods(
     method=waiting.plain_wait_for,
     when_opened=waiting.wait_through,
 )
-OPENINGS = (VALUE, SET_VALUE, PULSE, REGISTER, GET, REMOVE, WAIT_FOR)
+FAIL = open_to_methods(handling.fail, "CPL-IMPL::FAIL", method=handling.plain_fail, when_opened=handling.fail_through)
+OPENINGS = (VALUE, SET_VALUE, PULSE, REGISTER, GET, REMOVE, WAIT_FOR, FAIL)
 
 
 # What takes the place of the Python methods.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
 from ...packages.face_definition import define_face
 from ...syntax.operator_macros import export
 from ....operators import PROCESS_MODULES
@@ -31,6 +32,7 @@ def define_faces():
         use=["CRAM-LANGUAGE", "CRAM-DESIGNATORS"],
         imports={"CRAM-PROLOG": "def-fact-group <- fail", "CPL-IMPL": "name result status"},
         functions=FUNCTIONS,
+        generic="input cancel caller",
         export=EXPORTED,
         internal="def-fact-group <- fail",
     )
@@ -40,6 +42,12 @@ def define_faces():
         use=["CRAM-LANGUAGE", "CRAM-DESIGNATORS"],
         functions={executive: "perform generic-perform try-reference-designator call-plan-with-designator-properties"},
         export="designator-reference-failure designator-goal-parsing-failure",
+    )
+    open_to_methods(
+        executive.try_reference_designator,
+        "EXE::TRY-REFERENCE-DESIGNATOR",
+        method=executive.plain_reference,
+        when_opened=executive.reference_through,
     )
     export(PROCESS_MODULES)
     macro_support.define()

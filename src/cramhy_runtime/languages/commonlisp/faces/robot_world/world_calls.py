@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, FreshString, MultipleValues, boolean, lisp_list, list_from
+from cramhy_runtime.ground.data import Cons, FreshString, MultipleValues, boolean, lisp_list, list_from, truth
 from cramhy_runtime.ground.packages import is_symbol, keyword, symbol_name
 from cramhy_runtime.robot_world import description_files, models, remarks, xacro_files
 from cramhy_runtime.robot_world.descriptions import Description, DescriptionError
@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 
 LISP_NAMES = """
 make-world physical-p copy-world thing-color stuck-things ignored-contacts ignore-contact add-description remove-thing find-thing things
-thing-name thing-world thing-pose set-thing-pose thing-types thing-mass thing-bounds part-bounds machine-joints machine-joint
+thing-name thing-world thing-pose set-thing-pose thing-types thing-mass thing-stays set-thing-stays
+thing-bounds part-bounds machine-joints machine-joint
 set-machine-joint machine-links machine-link machine-description attach detach attachments grips contacts settle stable visibility
 read-description description-text looked-on-p remark-seen remark-grasp
 """
@@ -111,6 +112,18 @@ def thing_types(item: Item) -> Cons | None:
 def thing_mass(item: Item) -> float:
     """The mass of an item in kilograms."""
     return float(item.mass)
+
+
+def thing_stays(item: Item) -> bool | None:
+    """Whether an item does not fall: nobody let it fall, or it has no mass."""
+    return boolean(item.stays or not item.mass)
+
+
+def set_thing_stays(item: Item, stays: Any) -> Any:
+    """Keep an item from falling, or let it fall again; returns ``stays``."""
+    if item.world is not None:
+        item.world.let_stay(item.name, truth(stays))
+    return stays
 
 
 def _box(lowest: Any, highest: Any) -> Cons:

@@ -7,6 +7,7 @@ here their names are exported, and at the end stand the functions that they call
 from __future__ import annotations
 
 from cramhy_runtime.ground.data import list_from, python_list, truth
+from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
 from ...packages.face_definition import define_face
 from ...syntax.operator_macros import export
 from ....operators import UTILITIES
@@ -73,13 +74,14 @@ def define():
                 delete-pool-value""",
             features: "function-bound-feature",
         },
+        generic="new-pool-value pool-value delete-pool-value",
         export="?_ !?_ cont finish next hooks timestamp *timestamp-function* deprecation-warning pool-value-unbound semaphore queue "
         "mailbox barrier cyclic-barrier ordered-hooks first-in-order-and-around",
         internal="lazy-cons-elem on-prepare-prolog-prove on-finish-prolog-prove",
     )
     export(UTILITIES)
     define_type(CUT.intern("TIMESTAMP"), lambda form, environment: sym("DOUBLE-FLOAT"), "Seconds: what CURRENT-TIMESTAMP gives.")
-    CUT.intern("POOL-VALUE").setf_function = small_functions.set_pool_value
+    open_to_methods(small_functions.set_pool_value, "(setf CUT::POOL-VALUE)")
     CUT.intern("CACHED-FILE-VALUE").setf_function = file_cache.set_cached_file_value
     define_face(
         "CRAMHY",

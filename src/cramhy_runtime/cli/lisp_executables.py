@@ -1,0 +1,99 @@
+"""``rosrun PACKAGE EXECUTABLE`` of a Lisp program: what ``add_lisp_executable`` in the ``CMakeLists.txt`` of a package of the user's names.
+
+catkin makes a script of such a line, which loads the system and calls the function. Nothing is built here: the line itself says what to do.
+The program is a process of its own, as in ROS. It joins the session that runs on this machine, so that its topics and services are those
+of all others; if there is none, the process is a session itself, which others can join. Source: roslisp.md section 12.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from contextlib import ExitStack
+from typing import NamedTuple
+
+_CALL = re.compile(r"\b(?:rosbuild_)?add_(?:compiled_)?lisp_executable\s*\(([^()]*)\)", re.IGNORECASE)
+_COMMENT = re.compile(r"#\[\[.*?\]\]|#[^\n]*", re.DOTALL)
+
+
+class LispExecutable(NamedTuple):
+    """A function without arguments, written ``package:function``, and the ASDF system that defines it."""
+
+    system: str
+    function: str
+
+
+def lisp_executables(folder):
+    """The Lisp executables of the package in ``folder``, by name: those that its ``CMakeLists.txt`` names."""
+    if folder is None:
+        return {}
+    try:
+        with open(os.path.join(folder, "CMakeLists.txt"), encoding="utf-8", errors="replace") as file:
+            text = file.read()
+    except OSError:
+        return {}
+    calls = [found.replace('"', " ").split() for found in _CALL.findall(_COMMENT.sub("", text))]
+    return {words[0]: LispExecutable(words[1], words[2]) for words in calls if len(words) >= 3}
+
+
+def run(package, executable, arguments):
+    """Run a `LispExecutable` of ``package`` with the words of its command line until it returns, or Ctrl-C; the exit status."""
+    from cramhy_runtime import cli
+    from cramhy_runtime.languages.commonlisp.reader.dispatch_macros import add_features
+    from cramhy_runtime.repl.session import Interruption
+    from cramhy_runtime.ros.roslisp import node
+
+    options = _options(f"{package} {executable.system}")
+    if options is None:
+        return 2
+    with ExitStack() as closings:
+        closings.callback(_end_line)
+
+        def work():
+            made = cli.session(options, closings)
+            add_features(["ROSLISP-STANDALONE-EXECUTABLE"])
+            node.command_line.value = tuple(arguments)
+            made.evaluate_text(f'(ros-load:load-system "{package}" "{executable.system}")', "<rosrun>")
+            try:
+                made.evaluate_text(f"({executable.function})", "<rosrun>")
+            except Interruption:  # Ctrl-C is how such programs are ended
+                return 0
+            return 0
+
+        return cli.status_of(work)
+
+
+def _end_line():
+    from cramhy_runtime.languages.commonlisp.tools.error_reports import end_line
+
+    end_line()
+
+
+def _options(what):
+    """The options of ``cramhy run`` for such a program: in wall time, without a turtle of its own; ``None`` if it cannot be had, which is
+    told."""
+    from cramhy_runtime.rosbridge import sessions
+
+    from . import servers
+    from .options import parser
+
+    words = ["run", "--time", "wall", "--no-turtlesim", what]
+    options = parser(words).parse_args(words)
+    try:
+        if not os.environ.get("CRAMHY_ROS"):
+            found = sessions.current()
+            if found is None:
+                options.serve = True
+            else:
+                servers.require("ros", "To join the session that runs")
+                options.ros = found.address
+                return options
+        servers.check(options)
+    except (servers.NotPossible, sessions.Unsafe) as problem:
+        print(f"cramhy: {problem}", file=sys.stderr)
+        return None
+    return options
+
+
+__all__ = ["LispExecutable", "lisp_executables", "run"]

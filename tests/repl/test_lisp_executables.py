@@ -1,0 +1,82 @@
+"""``rosrun`` of Lisp programs that a package of the user's names with ``add_lisp_executable``: talker and listener in two terminals."""
+
+from __future__ import annotations
+
+import pytest
+
+from cramhy_runtime.cli.lisp_executables import LispExecutable, lisp_executables
+
+from .terminal import Terminal
+
+PACKAGE = "<package><name>tin_talk</name></package>"
+LINES = """cmake_minimum_required(VERSION 2.8.3)
+project(tin_talk)
+# add_lisp_executable(old tin-talk tin-talk:old)
+add_lisp_executable(talker
+  tin-talk tin-talk:talker)  # says foo
+add_lisp_executable(listener tin-talk "tin-talk::listener")
+add_compiled_lisp_executable(wrong tin-talk tin-talk:wrong a_target)
+rosbuild_add_lisp_executable(gone no-such-system no-such:thing)
+"""
+SYSTEM = '(defsystem tin-talk :depends-on (roslisp std_msgs-msg) :components ((:module "src" :components ((:file "talk")))))'
+TALK = """
+(defpackage tin-talk (:use :cl :roslisp) (:export #:talker #:wrong))
+(in-package :tin-talk)
+(defun talker ()
+  "Say foo until somebody ends it."
+  (with-ros-node ("talker")
+    (let ((i 0) (pub (advertise "chatter" "std_msgs/String")))
+      (loop-at-most-every .05 (publish-msg pub :data (format nil "foo ~a" (incf i)))))))
+(defun listener ()
+  "Print what is said, three times."
+  (with-ros-node ("listener")
+    (let ((heard 0))
+      (subscribe "chatter" "std_msgs/String" (lambda (message) (incf heard) (format t "I heard ~a~%" (std_msgs-msg:data message))))
+      (loop until (>= heard 3) do (sleep 0.02))
+      (format t "~a ~a ~a~%" (get-param "~volume" :none) (if (member :roslisp-standalone-executable *features*) :alone :not-alone) heard))))
+(defun wrong () (error "No tin here."))
+"""
+
+
+@pytest.fixture
+def workspace(tmp_path, monkeypatch):
+    folder = tmp_path / "tin_talk"
+    (folder / "src").mkdir(parents=True)
+    for name, text in (("package.xml", PACKAGE), ("CMakeLists.txt", LINES), ("tin-talk.asd", SYSTEM), ("src/talk.lisp", TALK)):
+        (folder / name).write_text(text)
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
+    return folder
+
+
+def test_the_lines_of_a_cmake_file(workspace):
+    assert lisp_executables(workspace) == {
+        "talker": LispExecutable("tin-talk", "tin-talk:talker"),
+        "listener": LispExecutable("tin-talk", "tin-talk::listener"),
+        "wrong": LispExecutable("tin-talk", "tin-talk:wrong"),
+        "gone": LispExecutable("no-such-system", "no-such:thing"),
+    }
+    assert lisp_executables(workspace / "src") == lisp_executables(None) == {}
+
+
+def test_a_talker_and_a_listener_in_two_terminals(private, workspace):
+    """The first is a session, which the second joins. Ctrl-C ends the one, the other returns."""
+    pytest.importorskip("uvicorn")
+    pytest.importorskip("websockets")
+    with Terminal("ros", "rosrun", "tin_talk", "talker") as talker:
+        talker.expect("Node startup complete")
+        with Terminal("ros", "rosrun", "tin_talk", "listener", "__name:=hearer", "_volume:=11") as listener:
+            listener.expect("Node name is /hearer\n")
+            listener.expect(r"I heard foo \d+\n")
+            listener.expect(r"11 ALONE [3-9]\n")
+            assert listener.status() == 0
+        talker.control_c()
+        assert talker.status() == 0
+
+
+@pytest.mark.parametrize(
+    ("executable", "status", "said"),
+    [("wrong", 1, "No tin here."), ("walker", 3, "[rosrun] tin_talk has the executables gone, listener, talker, wrong.")],
+)
+def test_what_cannot_run_says_why(private, workspace, tool, executable, status, said):
+    output, errors, ended = tool("rosrun", "tin_talk", executable)
+    assert said in errors and ended == status
