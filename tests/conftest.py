@@ -60,9 +60,9 @@ LONG = (
 os.environ["CRAMHY_HISTORY"] = ""  # what tests type is not the user's
 os.environ["CRAMHY_AS_ROOT"] = "yes"  # CI is root in a container, and grades what stands in the tests
 if settings is not None:
-    settings.register_profile("steady", derandomize=True, max_examples=50)
-    if not SOAK:
-        settings.load_profile("steady")
+    settings.register_profile("steady", derandomize=True, max_examples=50, deadline=None)  # a deadline would be of the wall clock
+    settings.register_profile("soak", deadline=None)
+    settings.load_profile("soak" if SOAK else "steady")
 
 if "CRAMHY_LATE" in os.environ:
     late_threads.install(os.environ["CRAMHY_LATE"])

@@ -336,6 +336,20 @@ def test_no_module_makes_up_names_when_they_are_asked_for():
     assert offences(made_up) == {}
 
 
+def test_rooms_beside_the_languages_know_one_kind_of_floats():
+    """Only Lisp has single-floats. Messages, poses and worlds have floats, and `ground/floats.py` says for all what a single is."""
+
+    def names_singles(path):
+        if room_of(path) == "languages":
+            return []
+        names = (
+            getattr(node, "id", None) or getattr(node, "attr", None) or getattr(node, "name", None) for node in ast.walk(tree_of(path))
+        )
+        return sorted({name for name in names if isinstance(name, str) and "single" in name.lower() and "float" in name.lower()})
+
+    assert offences(names_singles) == {"src/cramhy_runtime/ground/floats.py": ["SingleFloat"]}
+
+
 def test_nobody_sets_the_names_of_another_module():
     assert offences(patches) == {}
 

@@ -17,7 +17,7 @@ what it emits. `(in-hy)` leads back. Without `in-package` the operators of the p
   (import cramhy_runtime.repl.session [Session])
   (if (or (kernel.active) (booted))
     (boot)
-    (Session :time (decide)))  ; `hy FILE` begins a session, as `cramhy run FILE` does
+    (Session :time (decide) :lisp False))  ; `hy FILE` begins a session, as `cramhy run FILE` does
   (import cramhy-runtime.languages.hy.files [lisp-form compile-form take-over]))
 
 (import sys

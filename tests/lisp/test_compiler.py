@@ -10,7 +10,7 @@ import warnings
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.languages.commonlisp.compiler import support
+from cramhy_runtime.languages.commonlisp.compiler import facts, generate, nodes, support
 from cramhy_runtime.ground.conditions import CompileError, Condition
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.packages.package_errors import SymbolPackageLockedError
@@ -301,3 +301,34 @@ def test_gensym_names_with_the_counter_and_then_counts(evaluate):
 )
 def test_an_operation_is_divided_by_an_integer_that_no_machine_word_holds(session, form, value):
     assert session.evaluate_text(f"(prin1-to-string (funcall (compile nil '(lambda () {form}))))") == [value]
+
+
+def _nodes_anywhere(thing, found):
+    """Those nodes that are reached first from any attribute of a node, a list, a tuple or parameters."""
+    for part in thing if isinstance(thing, (list, tuple)) else vars(thing).values():
+        if isinstance(part, nodes.Node):
+            found.append(part)
+        elif isinstance(part, (list, tuple, nodes.Parameters)):
+            _nodes_anywhere(part, found)
+    return found
+
+
+def test_a_walk_meets_all_nodes_below_a_node(evaluate, monkeypatch):
+    seen = []
+    monkeypatch.setattr(generate, "study", lambda root: (seen.extend(facts.walk([root])), facts.study(root)))
+    evaluate(
+        """(defun walked (a &optional (b (list 1 a)) &rest r &key (c (car b)) d)
+             (declare (type integer a))
+             (flet ((f (x) (if x (1+ a) (return-from walked x))))
+               (let ((n 0) (*print-base* 8))
+                 (unwind-protect (dolist (i r) (setf (car b) (f i) n (+ n i)) (when d (go-on)))
+                   (catch 'out (handler-case (funcall #'f n) (error (e) e)))))
+               (multiple-value-bind (q s) (floor a 2) (block nil (tagbody again (when (plusp q) (decf q) (go again))) (list q s c)))
+               (handler-bind ((warning (lambda (w) (muffle-warning w)))) (multiple-value-prog1 (values 1 2) (print (load-time-value (+ 1 2)))))
+               (apply #'list a r)))
+           (defun go-on ())"""
+    )
+    kinds = {node.__class__ for node in seen}
+    assert {nodes.Lambda, nodes.Let, nodes.If, nodes.Call, nodes.TagbodyNode, nodes.UnwindProtect, nodes.Checked} <= kinds
+    for node in seen:
+        assert {id(each) for each in facts.children(node)} == {id(each) for each in _nodes_anywhere(node, [])}, node

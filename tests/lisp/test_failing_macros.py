@@ -48,9 +48,38 @@ def test_the_function_is_defined_with_a_warning_and_only_the_call_fails(lisp, de
     assert lisp(f"(handler-case {call.format('t')} (program-error () :error))") == ":ERROR"
 
 
-@pytest.mark.parametrize("form", ["(failing 3)", "(progn (failing 3))"])
+@pytest.mark.parametrize("form", ["(failing 3)", "(progn (failing 3))", "(list 1 (failing 3))", "(list (+ 1 (outer 3)))"])
 def test_at_the_prompt_it_is_the_error_itself(lisp, form):
     assert lisp.error(form) == "There is no 3."
+
+
+@pytest.mark.parametrize(
+    ("form", "answer"),
+    [
+        ("(handler-case (failing 1) (error () :caught))", ":CAUGHT"),
+        ("(multiple-value-bind (a b) (ignore-errors (failing 1) 2) (list a (typep b 'program-error)))", "(NIL T)"),
+        ("(let ((x 1)) (handler-case (failing x) (error () (list :caught x))))", "(:CAUGHT 1)"),
+        ("(block nil (handler-bind ((error (lambda (e) (return :bound)))) (failing 1)))", ":BOUND"),
+        ("(let ((l nil)) (ignore-errors (push 1 l) (failing 2)) l)", "(1)"),
+        ("(if nil (failing 1) :not-reached)", ":NOT-REACHED"),
+        ("(let ((l nil)) (unwind-protect (ignore-errors (failing 2)) (push 3 l)) l)", "(3)"),
+        ("(handler-case (outer 1) (error () :caught))", ":CAUGHT"),
+        ("(handler-case (odd-use :b 1) (error () :caught))", ":CAUGHT"),
+        ('(handler-case (macrolet ((m () (error "x"))) (m)) (error () :caught))', ":CAUGHT"),
+        ("(handler-case here (error () :caught))", ":CAUGHT"),
+        ("(dotimes (i 3 :done) (when (> i 5) (failing i)))", ":DONE"),
+        ("(loop for i below 3 collect (handler-case (failing i) (error () i)))", "(0 1 2)"),
+        ("(list (cond ((= 1 1) :yes) (t (failing 2))))", "(:YES)"),
+        ("(list 1 (ignore-errors (failing 1)))", "(1 NIL)"),
+    ],
+)
+def test_at_top_level_too_only_the_call_fails(lisp, form, answer):
+    assert lisp(form) == answer
+
+
+def test_the_prompt_warns_of_a_call_that_is_not_reached(lisp):
+    said = lisp.warnings("(if nil (failing 1) :not-reached)")
+    assert "The macro call (FAILING 1) fails" in said and "There is no 1." in said
 
 
 def test_a_form_of_lisp_that_is_written_wrongly_is_an_error_at_once_as_before(lisp):

@@ -86,7 +86,46 @@ INSIDE = r"""
 => (CAR (SETF GETHASH) REDUCE)
 (mapcar #'sb-mop:slot-definition-name (sb-mop:class-slots (progn (defstruct shelf boards (width 1 :type integer)) (find-class 'shelf))))
 => (BOARDS WIDTH)
+(defconstant +legs+ 1)
+=> +LEGS+
+(handler-case (eval '(defconstant +legs+ 2)) (sb-ext:defconstant-uneql (c) (list (sb-ext:defconstant-uneql-name c) (sb-ext:defconstant-uneql-old-value c) (sb-ext:defconstant-uneql-new-value c))))
+=> (+LEGS+ 1 2)
+(list (handler-bind ((sb-ext:defconstant-uneql #'abort)) (eval '(defconstant +legs+ 2))) (symbol-value '+legs+))
+=> (+LEGS+ 1)
+(list (handler-bind ((sb-ext:defconstant-uneql #'continue)) (eval '(defconstant +legs+ 2))) (symbol-value '+legs+))
+=> (+LEGS+ 2)
+(eq 'sb-kernel:package-at-variance 'sb-int:package-at-variance)
+=> T
 """
+
+
+FUNCTION_TYPES = r"""
+(deftype translator () '(function (fixnum t) t))
+=> TRANSLATOR
+(defun declared (x) (declare (type (or null (function (fixnum) t)) x)) x)
+=> DECLARED
+(list (declared nil) (functionp (declared #'car)) (handler-case (declared 3) (type-error () :no)))
+=> (NIL T :NO)
+(progn (defun by-name (x &key y z) (declare (type translator x) (type (or null translator) y) (type (not (function (t) t)) z)) (list (functionp x) y z)) (by-name #'car))
+=> (T NIL NIL)
+(handler-case (by-name 3) (type-error () :no))
+=> :NO
+(handler-case (by-name #'car :y 3) (type-error () :no))
+=> :NO
+(handler-case (by-name #'car :z #'car) (type-error () :no))
+=> :NO
+(progn (defstruct wheel (turn nil :type (or null (function (t) t)))) (list (wheel-turn (make-wheel)) (functionp (wheel-turn (make-wheel :turn #'car)))))
+=> (NIL T)
+(handler-case (typep 3 '(function (t) t)) (error () :refused))
+=> :REFUSED
+(handler-case (eval '(typep 3 '(or null (function (t) t)))) (error () :refused))
+=> :REFUSED
+"""
+
+
+def test_declared_types_of_functions_are_tested_as_functions():
+    """TYPEP refuses them; a declaration of one says that it is a function (ANSI 4.2.3)."""
+    check(FUNCTION_TYPES)
 
 
 def test_what_libraries_take_from_the_inside_of_sbcl_answers_as_there():

@@ -312,8 +312,25 @@ OWN_ANSWERS: dict[type, bool] = {}
 """What `_answers_for_itself` found out of other classes."""
 
 
-DoubleFloat = float
-"""The old name of the class of double-floats, which will go away: write ``float``."""
+class _FormerClass(type):
+    """The class of a name that means ``float`` and goes away: each use warns at its place."""
+
+    def __call__(cls, *arguments: Any) -> float:
+        cls._warn()
+        return float(*arguments)
+
+    def __instancecheck__(cls, thing: object) -> bool:
+        cls._warn()
+        return isinstance(thing, float)
+
+    def _warn(cls) -> None:
+        text = f"{cls.__name__} goes away in cramhy 0.2. A double-float is a float of Python: write float instead of {cls.__name__}."
+        warnings.warn(text, DeprecationWarning, stacklevel=3)
+
+
+class DoubleFloat(metaclass=_FormerClass):
+    """The former class of double-floats, which are floats of Python now. The name goes away in version 0.2."""
+
 
 TRUE_CLASSES = frozenset({bool, int, *FLOATS, complex, str, bytes, list, tuple, dict, set, Cons, Symbol, Keyword, Character})
 """Classes whose objects are true in Lisp, whatever they are, but for ``False``. See `truth`."""

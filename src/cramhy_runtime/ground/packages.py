@@ -323,7 +323,7 @@ def near_names(name, candidates, most=3):
     """Names like ``name``, for "did you mean": the closest first."""
     import difflib
 
-    return difflib.get_close_matches(name, [each for each in candidates if each != name], n=most, cutoff=0.75)
+    return difflib.get_close_matches(name, list(candidates), n=most, cutoff=0.75)
 
 
 def package_names():

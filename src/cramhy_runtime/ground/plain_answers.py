@@ -346,6 +346,9 @@ class PlainTypes:
     def test(self, specifier: Any) -> Any:
         return self.predicate(specifier) if self.known(specifier) else None
 
+    def declared(self, specifier: Any) -> Any:
+        return self.predicate(specifier)
+
     def predicate(self, specifier: Any) -> Any:
         if isinstance(specifier, Cons):
             return self._compound(symbol_name(specifier.car), python_list(specifier.cdr))

@@ -114,6 +114,10 @@ class Types(Protocol):
         """The function that tells whether its argument is of the type; an unknown type is an error."""
         ...
 
+    def declared(self, specifier: Any) -> Callable[[Any], bool]:
+        """As `predicate`, for a declared type, which may be one of functions."""
+        ...
+
     def expand(self, specifier: Any) -> Any:
         """What a type of ``deftype`` stands for; other specifiers as they are."""
         ...

@@ -16,6 +16,7 @@ from math import inf
 from cramhy_runtime.kernel.typing_names import Any
 
 from cramhy_runtime import kernel
+from cramhy_runtime.kernel.images import Cell
 
 from .catching import HandlerExit
 from .classes import class_name
@@ -47,7 +48,10 @@ __all__ = [
     "printer_for",
     "report_of",
     "shown",
+    "speak",
+    "text_for_python",
     "unprintable",
+    "with_numbers_as_spoken",
     "write",
 ]
 
@@ -57,32 +61,64 @@ LEVELS_COUNT = special(Symbol("*LEVELS-COUNT*"), None)
 """Whether levels are counted without ``*print-level*``, since a function that prints is told of them."""
 
 
-def prin1_to_string(thing: Any) -> str:
-    """``thing`` as ``prin1`` prints it: strings in quotes, so that it can be read back."""
-    return PORTS.printer.prin1(thing)
+LISP_IS_SPOKEN = Cell(False, fresh=True)
+"""Whether the user of this image speaks Common Lisp; `speak` changes it.
 
-
+A session is for users of Lisp, and a prompt or notebook with both languages tells each change. Programs in Python and Hy leave it alone.
+"""
 NUMBERS_OF_PYTHON = sym("CRAMHY::NUMBERS-OF-PYTHON")
 """The value of ``*read-default-float-format*`` while Python prints: floats look as Python writes them, without a mark of their kind."""
+_FLOAT_FORMAT = sym("*READ-DEFAULT-FLOAT-FORMAT*")
+
+
+def speak(lisp: bool) -> None:
+    """Let the texts of the runtime in this image be for users of Common Lisp, or of Python and Hy: see `with_numbers_as_spoken`."""
+    LISP_IS_SPOKEN.value = lisp
+
+
+def with_numbers_as_spoken(text_of: Callable[..., Any], *arguments: Any) -> Any:
+    """``text_of(*arguments)``, which makes a text of the runtime; numbers look as in the user's language: ``1.5``, in Lisp ``1.5d0``.
+
+    What functions of Lisp print themselves does not depend on the user's language, so that they read back what they have printed.
+    """
+    if LISP_IS_SPOKEN.value:
+        return text_of(*arguments)
+    return _with_numbers_of_python(text_of, *arguments)
+
+
+def _with_numbers_of_python(text_of: Callable[..., Any], *arguments: Any) -> Any:
+    if _FLOAT_FORMAT.value is NUMBERS_OF_PYTHON:
+        return text_of(*arguments)
+    if kernel.active() is None:  # nobody can come in between
+        before, _FLOAT_FORMAT.value = _FLOAT_FORMAT.value, NUMBERS_OF_PYTHON
+        try:
+            return text_of(*arguments)
+        finally:
+            _FLOAT_FORMAT.value = before
+    if not kernel.on_own_stack():  # a thread of Python has no bindings of its own
+        return text_of(*arguments)
+    with binding(_FLOAT_FORMAT, NUMBERS_OF_PYTHON):
+        return text_of(*arguments)
+
+
+def prin1_to_string(thing: Any) -> str:
+    """``thing`` as ``prin1`` prints it: strings in quotes, so that it can be read back."""
+    return with_numbers_as_spoken(PORTS.printer.prin1, thing)
 
 
 def text_for_python(thing: Any) -> str:
     """`prin1_to_string`, with numbers as Python writes them: what ``repr`` of an object of Lisp shows."""
-    with binding(_FLOAT_FORMAT, NUMBERS_OF_PYTHON):
-        return prin1_to_string(thing)
-
-
-_FLOAT_FORMAT = sym("*READ-DEFAULT-FLOAT-FORMAT*")
+    return _with_numbers_of_python(PORTS.printer.prin1, thing)
 
 
 def princ_to_string(thing: Any) -> str:
     """``thing`` as ``princ`` prints it, for people to read."""
-    return PORTS.printer.princ(thing)
+    return with_numbers_as_spoken(PORTS.printer.princ, thing)
 
 
 def format_to_string(control: Any, *arguments: Any) -> str:
     """The text of a format control (a string or a function) with ``arguments``."""
-    return PORTS.printer.formatted(control, *arguments)
+    return with_numbers_as_spoken(PORTS.printer.formatted, control, *arguments)
 
 
 def define_printer(cls: type, function: Callable[[Any, Any], Any]) -> None:
@@ -119,7 +155,7 @@ def print_slots(name: Any, slots: list, stream: Any) -> None:
 
 def report_text(condition: Any) -> str:
     """The text of ``condition`` for the user, with long objects in their short form."""
-    return PORTS.printer.report(condition)
+    return with_numbers_as_spoken(PORTS.printer.report, condition)
 
 
 def address(thing: Any) -> str:
@@ -252,6 +288,10 @@ def shown(thing: Any, text_of: Callable[[], str]) -> str:
     making = MAKING.value
     if making is not None:
         return _text(making, thing, text_of)
+    return with_numbers_as_spoken(_shown, thing, text_of)
+
+
+def _shown(thing: Any, text_of: Callable[[], str]) -> str:
     alone = kernel.active() is None  # then nothing that is waited for takes time
     with kernel.at_hand():
         if not kernel.on_own_stack():  # a thread of Python has no bindings of its own

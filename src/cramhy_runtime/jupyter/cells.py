@@ -15,6 +15,7 @@ from cramhy_runtime import kernel, storage
 from cramhy_runtime.ground.data import Cons, Symbol
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import COMMON_LISP_USER
+from cramhy_runtime.ground.printing import speak
 from cramhy_runtime.session.session import value_text
 from cramhy_runtime.ground.source_places import keep_text
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
@@ -98,6 +99,7 @@ class Notebook:
 
     def _forms(self, text):
         self.answered_in = LISP
+        speak(lisp=True)
         values, reader = [], self.session.reader(text)
         for form in self.session.forms(reader):
             if isinstance(form, Cons) and isinstance(form.car, Symbol) and form.car.name == "IN-HY" and form.cdr is None:
@@ -127,6 +129,7 @@ class Notebook:
         from hy import models
 
         self.answered_in, module = HY, self.hy_module()
+        speak(lisp=False)
         self.session.texts += 1
         name = f"<notebook {self.session.texts}>"
         keep_text(name, text)

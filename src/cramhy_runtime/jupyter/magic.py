@@ -14,6 +14,7 @@ from cramhy_runtime import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.kernel.images import Cell
+from cramhy_runtime.ground.printing import speak
 from cramhy_runtime.session import time_setting
 from cramhy_runtime.session.session import Interruption, Session
 
@@ -69,6 +70,7 @@ def cramhy(line, cell):
             told = debugger.told or told_of(problem)
         finally:
             conditions.install_debugger(None)
+            speak(lisp=False)  # the other cells are Python
     for _, picture in opened.watcher.pictures():
         display(picture, raw=True)
     if told is not None:

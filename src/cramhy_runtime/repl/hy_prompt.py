@@ -30,7 +30,7 @@ from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import Cons, all_values
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.ground.printing import prin1_to_string, speak
 from cramhy_runtime.kernel import signals, standard_input
 from cramhy_runtime.languages.commonlisp.reader.reader import incomplete
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
@@ -128,6 +128,7 @@ class HyPrompt(Listener):
         self._hy = None  # what the REPL was before it became Lisp's: its reader, its prompt, how it shows values
         self._form = None
         self._rest = None  # the text that follows (in-hy)
+        speak(lisp=False)
 
     # ------------------------------------------------------------------------------------------------ to Lisp, and back to Hy
 
@@ -155,6 +156,7 @@ class HyPrompt(Listener):
             type(self.repl).write(self.repl, text)
 
     def _listen_no_more(self):
+        speak(lisp=False)
         conditions.install_debugger(None)
         streams.ERROR_OUTPUT.value = self._warnings
 

@@ -27,7 +27,7 @@ from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import Cons
 from cramhy_runtime.ground.packages import sym, symbol_name
-from cramhy_runtime.ground.printing import report_of
+from cramhy_runtime.ground.printing import report_of, speak
 from cramhy_runtime.ground.source_places import circumstance
 
 from . import commands, prompt_words
@@ -91,6 +91,7 @@ class Listener:
             conditions.install_debugger(None)
 
     def listen(self):
+        speak(lisp=True)
         conditions.install_debugger(self.debug)
         streams.ERROR_OUTPUT.value = streams.CONSOLE_OUTPUT
 

@@ -23,7 +23,8 @@ from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of
 from cramhy_runtime.languages.commonlisp.compiler.compilation_unit import signalling_position
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import all_values, list_from
-from cramhy_runtime.ground.printing import class_text, prin1_to_string
+from cramhy_runtime.ground.printing import class_text, prin1_to_string, speak
+from cramhy_runtime.languages.which_language import goes_on_in_lisp
 from cramhy_runtime.languages.commonlisp.packages.face_definition import define_face
 from cramhy_runtime.languages.commonlisp.pathnames.namestrings import parse_native
 from cramhy_runtime.ground.packages import COMMON_LISP_USER, find_package_or_error, near_names, on_demand, registered, sym
@@ -94,7 +95,7 @@ class Session:
     time: "virtual" or "wall". seed: of the scheduler's order, ``None`` for first come, first served. backend: "auto",
     "threads" or "greenlet" (see `kernel.start`). time_limit: seconds of plan time after which a form is ended. turtlesim: whether the
     simulator starts with the first node. cleanup_limit: seconds that plans get for their cleanup when the session ends, or ``None``.
-    whole: see `fresh_start`. options: more of `kernel.start`.
+    whole: see `fresh_start`. lisp: whether its user speaks Common Lisp (`printing.speak`). options: more of `kernel.start`.
     """
 
     def __init__(
@@ -106,17 +107,22 @@ class Session:
         turtlesim: bool = True,
         cleanup_limit: float | None = kernel.CLEANUP_LIMIT,
         whole: bool = True,
+        lisp: bool = True,
         **options: Any,
     ):
         fresh_start(time, backend, seed, time_limit, turtlesim, whole, cleanup_limit=cleanup_limit, **options)
+        speak(lisp)
         self._begin()
 
     @classmethod
     def at_hand(cls, time):
-        """A session in the kernel that is active, with all that goes on there. If nothing has happened yet, a new one in ``time``."""
+        """A session in the kernel that is active, with all that goes on there. If nothing has happened yet, a new one in ``time``.
+
+        It is for prompts in programs of Python and Hy, which tell by `printing.speak` when they go on in Lisp.
+        """
         active = kernel.active()
         if active is None or active.untouched:
-            return cls(time)
+            return cls(time, lisp=False)
         joined = cls.__new__(cls)
         start_with_first_node()
         start_when_asked_for()
@@ -174,6 +180,8 @@ class Session:
         if self._is_missing_file(system):
             self._no_file(system)
         elif system.endswith((".lisp", ".hy")):
+            if system.endswith(".hy"):
+                speak(lisp=goes_on_in_lisp(Path(system)))
             loader.load_file(system, as_source=True)
         elif system.endswith(".asd"):
             systems.load_asd(system)

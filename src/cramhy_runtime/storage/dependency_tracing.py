@@ -136,10 +136,10 @@ class Trace:
         facts, self.facts, self._fresh, self._codes = self.facts, {}, [], {}
         return facts
 
-    def see(self, code: CodeType, names: dict[str, Any]) -> None:
-        """The user's function with that code and these globals runs."""
-        if id(code) not in self._codes:
-            self._codes[id(code)] = code
+    def see(self, code: CodeType, names: dict[str, Any], key: int) -> None:
+        """The user's function with that code and these globals runs. key: the code's id."""
+        if key not in self._codes:
+            self._codes[key] = code
             if not is_library(code.co_filename):
                 self.ran = self.ran or code.co_filename.endswith((".py", ".hy"))
                 for observe in OBSERVERS:
@@ -149,9 +149,10 @@ class Trace:
         """What the profiler tells. frame: the one that runs, from which only a question reads its arguments."""
         if event == "call":
             code = frame.f_code
-            question = QUESTIONS.get(id(code))
+            key = id(code)
+            question = QUESTIONS.get(key)
             if question is None:
-                self.see(code, frame.f_globals)
+                self.see(code, frame.f_globals, key)
             else:
                 question(self, frame.f_locals)
         elif event == "c_call" and argument.__name__ in _C_NAMES:

@@ -72,6 +72,7 @@ class _Types:
     known = staticmethod(types.is_known_type)
     test = staticmethod(types.type_test)
     predicate = staticmethod(types.type_predicate)
+    declared = staticmethod(types.declared_predicate)
     expand = staticmethod(types.expand_type)
     of = staticmethod(types.type_of)
     simplified = staticmethod(simplified_type)

@@ -329,8 +329,12 @@ def functions():
         for short, symbol in _functions(name):
             mangled = mangle(short)
             if mangled not in found and not hasattr(builtins, mangled) and not iskeyword(mangled):
-                found[mangled] = calls.function(symbol.package.name, symbol.name)
+                found[mangled] = _OF_PYTHON.get(mangled) or calls.function(symbol.package.name, symbol.name)
     return found
+
+
+_OF_PYTHON = {"get_param": calls.get_param, "set_param": calls.set_param, "has_param": calls.has_param}
+"""Functions that are called with values of Python and answer with them, as the macros of their names do."""
 
 
 def _functions(package_name):

@@ -302,7 +302,7 @@ def names(package: str) -> Names:
     with reasoning():
         found = named_package(package.upper())
     if found is None:
-        near = near_names(package.upper(), package_names(), 1)
+        near = near_names(package.upper(), [name for name in package_names() if name != package.upper()], 1)
         hint = f"Did you mean {near[0]!r}?" if near else "Load the system that defines it first: import my_package."
         raise LookupError(f"There is no Lisp package {package.upper()!r}. {hint}")
     return Names(found)

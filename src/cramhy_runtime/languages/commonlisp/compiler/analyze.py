@@ -10,7 +10,7 @@ from __future__ import annotations
 from cramhy_runtime.ground.conditions import CompileError, SimpleProgramError, error
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction, lisp_list, one
 from .compilation_unit import expanding
-from .failing_macros import expanded_or_failing, is_of_user
+from .failing_macros import expanded_or_failing, is_of_user, reached_at_once
 from ..syntax.lambda_lists import parse, variables_of
 from ..syntax.macros import ensure_loaded, macroexpand_1
 from cramhy_runtime.ground.python_names import python_name
@@ -63,6 +63,7 @@ class Analyzer(Scrutiny):
         self.filename = filename
         self.positions = positions if positions is not None else FormPlaces()
         self.at_once = at_once
+        self.reached = []  # forms that are evaluated as soon as the top-level form is
         self.circle_check = None  # what looks for circles in expansions, where one was in a call of a user's macro
         self._at = None
         self.begin_scrutiny()
@@ -81,11 +82,12 @@ class Analyzer(Scrutiny):
     def form(self, form, env):
         """The node of ``form``."""
         if isinstance(form, Cons):
-            position = self.positions.get(id(form))
+            key = id(form)
+            position = self.positions.get(key)
             if position is None:
                 return self._compound(form, env)
             outer, self._at = self._at, position
-            around, self.source = self.source, self.positions.source(form)
+            around, self.source = self.source, self.positions.source(key, form)
             try:
                 node = self._compound(form, env)
                 if node.position is None:
@@ -155,10 +157,13 @@ class Analyzer(Scrutiny):
     def expand(self, form, env):
         """(expansion, whether expanded); the expansion inherits the place of ``form``."""
         with expanding(self.unit, form, self.place()):
-            if self.unit is not None and env.scope.parent is not None and is_of_user(form.car, env):
-                expansion, expanded = expanded_or_failing(self.unit, lambda: macroexpand_1(form, env), form)
-            else:
+            if self.unit is None or not is_of_user(form.car, env):
                 expansion, expanded = macroexpand_1(form, env)
+            elif env.scope.parent is None and reached_at_once(self.reached, form, SPECIAL_FORMS):
+                expansion, expanded = macroexpand_1(form, env)
+                self.reached.append(expansion)
+            else:
+                expansion, expanded = expanded_or_failing(self.unit, lambda: macroexpand_1(form, env), form)
         if expanded:
             if self.circle_check is not None:
                 self.circle_check(expansion)
@@ -383,6 +388,7 @@ class Analyzer(Scrutiny):
     def toplevel(self, form, names=None):
         """The node of a top-level form as the body of a function without parameters."""
         ensure_loaded()
+        self.reached = [form]
         scope = FunctionScope(names=names)
         env = Env(None, scope)
         return Lambda(None, Parameters(), self.form(form, env), scope)

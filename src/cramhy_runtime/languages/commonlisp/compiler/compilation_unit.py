@@ -34,12 +34,21 @@ MUFFLED = special("CRAMHY::*MUFFLED-CONDITIONS*", ())
 
 class Mention:
     """A place where a function is called or named. ``arguments``: the forms of a call; ``None`` for ``#'f``. ``call``: where the text of
-    the call is, (file, line, column, end line, end column), or ``None``."""
+    the call is, (file, line, column, end line, end column), or ``None``.
 
-    __slots__ = ("name", "arguments", "position", "muffled", "call")
+    position: (file, line, column), ``None``, or a function that returns it, which is called when a warning shows it.
+    """
+
+    __slots__ = ("name", "arguments", "_position", "muffled", "call")
 
     def __init__(self, name, arguments, position, muffled, call=None):
-        self.name, self.arguments, self.position, self.muffled, self.call = name, arguments, position, muffled, call
+        self.name, self.arguments, self._position, self.muffled, self.call = name, arguments, position, muffled, call
+
+    @property
+    def position(self):
+        if callable(self._position):
+            self._position = self._position()
+        return self._position
 
 
 class CompilationUnit:

@@ -54,7 +54,7 @@ class Constants:
     def name(self, kind, obj):
         """The global name for ``obj``; kind is "object", or for the symbol ``obj`` the way to what is meant: "function", "setf_function",
         "function.python"."""
-        key = (kind, id(obj))
+        key = (kind, obj if obj.__class__ is Symbol else id(obj))  # Python tells a hook of each `id`, and most are symbols
         found = self.names.get(key)
         if found is None:
             self.count += 1
@@ -107,7 +107,7 @@ class Constants:
         if obj is None or obj is True:
             return word("None" if obj is None else "True")
         if not top:
-            known = self.names.get(("object", id(obj)))
+            known = self.names.get(("object", obj if obj.__class__ is Symbol else id(obj)))
             if known in self.made:
                 return word(known)
         kind = type(obj)

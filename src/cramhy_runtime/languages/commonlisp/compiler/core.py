@@ -16,9 +16,9 @@ eval-and-compile cond let match annotate await yield assert global lfor gfor sfo
 
 
 class Symbol(str):
-    """A Python name, or an operator of Hy."""
+    """A Python name, or an operator of Hy. ``text``: the name as a plain string, which Python's syntax trees want."""
 
-    __slots__ = ()
+    __slots__ = ("text",)
 
 
 class Keyword(str):
@@ -30,11 +30,7 @@ class Keyword(str):
 class Expression(list):
     """A call or an operator with its operands. ``position``: where in the user's text, (line, column, end line, end column)."""
 
-    __slots__ = ("position",)
-
-    def __init__(self, items):
-        list.__init__(self, items)
-        self.position = None
+    position = None  # no slot: most have none, and to set it would be a call of a Python function for each
 
 
 class List(list):
@@ -57,6 +53,7 @@ def word(name):
     found = _symbols.get(name)
     if found is None:
         found = _symbols[name] = Symbol(name)
+        found.text = str(name)
     return found
 
 

@@ -71,7 +71,7 @@ def checked(value, specifier, place=None):
         if not _all_known(specifier):  # it may be defined later
             return value
         # the specifier is kept: its id must not become another object's
-        known = _predicates[id(specifier)] = (PORTS.types.predicate(specifier), specifier)
+        known = _predicates[id(specifier)] = (PORTS.types.declared(specifier), specifier)
     first = one(value) if value.__class__ is MultipleValues else value
     if known[0](first):
         return value

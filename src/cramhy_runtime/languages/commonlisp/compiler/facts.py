@@ -7,7 +7,7 @@ solution: all begin as ``NONE_YET`` and are widened until nothing changes. Param
 
 from __future__ import annotations
 
-from cramhy_runtime.utilities.records import fields
+from cramhy_runtime.kernel.typing_names import annotations_of
 
 from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.packages import sym
@@ -19,33 +19,34 @@ OPERANDS_OF = {PLUS, MINUS, TIMES, DIVIDE, MAX, MIN, ABS, SQRT, *STEPS, *SMOOTH,
 
 _NODES = {kind for kind in vars(nodes).values() if isinstance(kind, type) and issubclass(kind, nodes.Node)}
 _node_fields: dict = {}
+_WITH_NODES = ("Node", "list", "Parameters")
+"""Annotations of the fields that may hold nodes."""
 _ENDS = {nodes.Constant, nodes.LocalVariable, nodes.GlobalVariable, nodes.FunctionReference, nodes.Go}
 """Nodes that have none below them."""
 
 
 def children(node):
-    """The nodes directly below ``node``."""
+    """A list of the nodes directly below ``node``."""
     names = _node_fields.get(node.__class__)
     if names is None:
-        names = () if node.__class__ is nodes.Constant else tuple(field.name for field in fields(node.__class__))
-        _node_fields[node.__class__] = names
+        names = _node_fields[node.__class__] = tuple(name for name, kind in annotations_of(node.__class__).items() if kind in _WITH_NODES)
+    found = []
     for name in names:
         part = getattr(node, name)
         kind = part.__class__
         if kind in _NODES:
-            yield part
+            found.append(part)
         elif kind is list:
             for item in part:
                 if item.__class__ in _NODES:
-                    yield item
+                    found.append(item)
                 elif item.__class__ is list:
-                    yield from item  # the segments of a tagbody
+                    found += item  # the segments of a tagbody
                 elif item.__class__ is tuple and item[1].__class__ in _NODES:
-                    yield item[1]  # a binding
+                    found.append(item[1])  # a binding
         elif kind is nodes.Parameters:
-            for entry in (*part.optional, *part.keys):
-                if entry[1] is not None:
-                    yield entry[1]
+            found += (entry[1] for entry in (*part.optional, *part.keys) if entry[1] is not None)
+    return found
 
 
 def walk(roots):
@@ -55,7 +56,7 @@ def walk(roots):
         node = pending.pop()
         yield node
         if node.__class__ not in _ENDS:
-            pending.extend(children(node))
+            pending += children(node)
 
 
 def study(root):

@@ -1,7 +1,8 @@
-"""Macros of the user that fail while a function is compiled: a warning, and an error when the call is reached (ANSI 3.2.5).
+"""Macros of the user that fail while a form is compiled: a warning, and an error when the call is reached (ANSI 3.2.5).
 
-So one wrong call does not keep a function, or the rest of its file, from being defined, as on SBCL. At top level, where the call would be
-reached at once, the error itself is signalled, and so is one of a form of Common Lisp that is written wrongly.
+So one wrong call does not keep a function, or the rest of its file, from being defined, and a handler around it hears it, as on SBCL. At
+top level, where nothing stands around the call but calls of functions, the error itself is signalled. So is one of a form of Common Lisp
+that is written wrongly.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from textwrap import indent
 
 from cramhy_runtime.ground.condition_types import Error, ProgramError, SimpleWarning
 from cramhy_runtime.ground.conditions import error, handler_case
-from cramhy_runtime.ground.data import Keyword, Symbol, lisp_list
+from cramhy_runtime.ground.data import Cons, Keyword, Symbol, lisp_list
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
@@ -42,6 +43,28 @@ def is_of_user(name: Any, env: Any) -> bool:
     if not isinstance(name, Symbol) or isinstance(name, Keyword):
         return False
     return env.function(name) is not None or name.macro is not None and not (name.package is not None and name.package.built_in)
+
+
+_TRANSPARENT = {sym(name) for name in ("SETQ", "PROGN", "LOCALLY", "MACROLET", "SYMBOL-MACROLET")}
+
+
+def reached_at_once(reached: list, form: Any, special: Any) -> bool:
+    """Whether evaluating one of the forms ``reached`` evaluates ``form`` with nothing around it that could skip it or handle its errors.
+
+    special: a container of the names of special forms.
+    """
+    rest = list(reached)
+    while rest:
+        around = rest.pop()
+        if around is form:
+            return True
+        if around.__class__ is Cons and isinstance(around.car, Symbol) and around.car.macro is None:
+            if around.car in _TRANSPARENT or around.car not in special:
+                cell = around.cdr
+                while cell.__class__ is Cons:
+                    rest.append(cell.car)
+                    cell = cell.cdr
+    return False
 
 
 def expanded_or_failing(unit: Any, expand: Callable[[], tuple[Any, bool]], form: Any) -> tuple[Any, bool]:

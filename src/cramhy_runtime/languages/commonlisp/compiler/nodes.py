@@ -132,7 +132,7 @@ class Lambda(Node):
     """A function. ``body`` is a node; parameters as in `Parameters`; ``everywhere``: it is the global function of its name."""
 
     name: object
-    parameters: object
+    parameters: Parameters
     body: Node
     scope: object
     documentation: object = None

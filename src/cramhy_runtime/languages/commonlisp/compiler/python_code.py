@@ -106,12 +106,12 @@ def _setv(form, own, place, out):
 def _target(form, place):
     kind = form.__class__
     if kind is Symbol:
-        return _at(ast.Name(str(form), _STORE), place)
+        return _at(ast.Name(form.text, _STORE), place)
     if kind is List:
         return _at(ast.Tuple([_target(item, place) for item in form], _STORE), place)
     if form[0] == "get":
         return _at(ast.Subscript(value(form[1], place), value(form[2], place), _STORE), place)
-    return _at(ast.Attribute(value(form[1], place), str(form[2]), _STORE), place)
+    return _at(ast.Attribute(value(form[1], place), form[2].text, _STORE), place)
 
 
 def _if(form, own, place, out):
@@ -158,7 +158,7 @@ def _try(form, own, place, out):
         head = item[0] if item.__class__ is Expression else None
         if head == "except":
             name, kind = item[1] if len(item[1]) == 2 else (None, item[1][0])
-            handlers.append(_at(ast.ExceptHandler(value(kind, place), None if name is None else str(name), block(item[2:], place)), own))
+            handlers.append(_at(ast.ExceptHandler(value(kind, place), None if name is None else name.text, block(item[2:], place)), own))
         elif head == "finally":
             final = block(item[1:], place)
         else:
@@ -181,7 +181,7 @@ def _raise(form, own, place, out):
 
 
 def _defn(form, own, place, out):
-    node = ast.FunctionDef(str(form[1]), _parameters(form[2], place), block(form[3:], place), [], None, None)
+    node = ast.FunctionDef(form[1].text, _parameters(form[2], place), block(form[3:], place), [], None, None)
     if "type_params" in node._fields:
         node.type_params = []
     out.append(_at(node, own))
@@ -215,7 +215,7 @@ def _parameters(forms, place):
 
 
 def _argument(name, place):
-    return _at(ast.arg(str(name), None), place)
+    return _at(ast.arg(name.text, None), place)
 
 
 _STATEMENTS = {
@@ -232,7 +232,7 @@ _STATEMENTS = {
     "defn": _defn,
     "break": lambda form, own, place, out: out.append(_at(ast.Break(), own)),
     "continue": lambda form, own, place, out: out.append(_at(ast.Continue(), own)),
-    "nonlocal": lambda form, own, place, out: out.append(_at(ast.Nonlocal([str(name) for name in form[1:]]), own)),
+    "nonlocal": lambda form, own, place, out: out.append(_at(ast.Nonlocal([name.text for name in form[1:]]), own)),
 }
 
 
@@ -245,7 +245,7 @@ def value(form, place):
     if kind is Symbol:
         if form in _CONSTANTS:
             return _at(ast.Constant(_CONSTANTS[form]), place)
-        node = ast.Name(str(form), _LOAD)  # most expressions are names, so here stands what `_at` does
+        node = ast.Name(form.text, _LOAD)  # most expressions are names, so here stands what `_at` does
         node.lineno, node.col_offset, node.end_lineno, node.end_col_offset = place
         return node
     if kind is Expression:
@@ -279,7 +279,7 @@ def _call(form, own, place):
 
 
 def _attribute(form, own, place):
-    return _at(ast.Attribute(value(form[1], place), str(form[2]), _LOAD), own)
+    return _at(ast.Attribute(value(form[1], place), form[2].text, _LOAD), own)
 
 
 def _choice(form, own, place):
@@ -317,7 +317,7 @@ _OPPOSITES = {_COMPARISONS["is"]: _COMPARISONS["is-not"], _COMPARISONS["is-not"]
 
 
 def _setx(form, own, place):
-    return _at(ast.NamedExpr(_at(ast.Name(str(form[1]), _STORE), place), value(form[2], place)), own)
+    return _at(ast.NamedExpr(_at(ast.Name(form[1].text, _STORE), place), value(form[2], place)), own)
 
 
 def _get(form, own, place):

@@ -8,6 +8,8 @@ Texts are SBCL's.
 
 from __future__ import annotations
 
+from functools import partial
+
 from cramhy_runtime.ground.condition_types import shown_with
 from cramhy_runtime.ground.conditions import SimpleStyleWarning, SimpleWarning, error
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol
@@ -46,16 +48,19 @@ class Scrutiny:
 
     def symbol_position(self, symbol, form=None):
         """(line, column, end line, end column) of ``symbol`` in the user's text around here, or ``None``."""
-        find = getattr(self.positions, "of_symbol", None)
         form = self.source if form is None else form
-        if find is None or form is None:
-            return None
-        place = find(symbol, form)
+        place = None if form is None else self.positions.of_symbol(symbol, form)
         return place and (*place, place[0], place[1] + len(symbol.name) - 1)
 
     def _at_symbol(self, symbol, form=None):
-        place = self.symbol_position(symbol, form)
-        return (self.filename, *place[:2]) if place else self.place()
+        """(file, line, column) of ``symbol`` in the user's text around here, or else that of the form that is analysed."""
+        form = self.source if form is None else form
+        return self.place() if form is None else _place_in(self.positions, self.filename, symbol, form, self.place())
+
+    def _at_symbol_when_asked(self, symbol, form=None):
+        """A function that returns what `_at_symbol` returns now: the text is searched for the symbol when a warning shows the place."""
+        form = self.source if form is None else form
+        return self.place() if form is None else partial(_place_in, self.positions, self.filename, symbol, form, self.place())
 
     def warn(self, kind, control, *arguments, position=None, **notes):
         self.unit.tell(kind, control, *arguments, position=position or self.place(), muffled=self.muffled, **notes)
@@ -195,7 +200,7 @@ class Scrutiny:
             return
         head = specifier.car if isinstance(specifier, Cons) else specifier
         if isinstance(head, Symbol) and not isinstance(head, Keyword) and not PORTS.types.known(head):
-            self.unit.types.append(Mention(head, None, self._at_symbol(head, form), self.muffled))
+            self.unit.types.append(Mention(head, None, self._at_symbol_when_asked(head, form), self.muffled))
 
     # --------------------------------------------------------------------------------------------------------------- calls
 
@@ -211,7 +216,7 @@ class Scrutiny:
         if self.at_once and env.scope.parent is None:
             return  # the form itself makes the call, and the error tells
         if arguments is None or form is None or id(form) not in self.positions:
-            position, call = self._at_symbol(name[1] if isinstance(name, tuple) else name), None
+            position, call = self._at_symbol_when_asked(name[1] if isinstance(name, tuple) else name), None
         else:
             position, call = self.place(), (self.filename, *self._at)
         unit.mentions.append(Mention(name, arguments, position, self.muffled, call))
@@ -244,6 +249,12 @@ class Scrutiny:
         if self.unit is not None and isinstance(expression.cdr, Cons) and not (self.at_once and env.scope.parent is None):
             for control, *rest in wrong_call_of_lambda(Shape(expression.cdr.car), arguments):
                 self.warn(SimpleWarning, control, *rest)
+
+
+def _place_in(positions, filename, symbol, form, otherwise):
+    """(file, line, column) of ``symbol`` in ``form``, which was read from the file; ``otherwise`` if it does not stand there."""
+    place = positions.of_symbol(symbol, form)
+    return (filename, *place) if place else otherwise
 
 
 def _elements(lst):

@@ -18,6 +18,7 @@ from ..syntax.declaration_names import check_type_name
 from .class_objects import (
     ClassSlot,
     InstanceSlot,
+    hide_class_slots,
     DirectSlot,
     StandardClass,
     StandardObject,
@@ -221,6 +222,8 @@ def _change(name, cls, bases, slots):
         if sub in lacking or not _in_instances(sub) <= held[sub]:
             may_be_unbound(sub)
     _install_class_slots(cls, slots)
+    for sub in changed:
+        hide_class_slots(sub)
     return cls
 
 

@@ -221,8 +221,13 @@ def effective_slots(cls):
     if found is None:
         found = _slots[cls] = _compute_slots(cls)
         if issubclass(cls, StandardObject):
-            may_be_unbound(cls, [slot for slot in found.values() if isinstance(_member(cls, slot), ClassSlot)])
+            hide_class_slots(cls)
     return found
+
+
+def hide_class_slots(cls):
+    """Let instances of ``cls`` have their own value of a slot that is shared in a superclass and is not shared in ``cls``."""
+    may_be_unbound(cls, [slot for slot in effective_slots(cls).values() if isinstance(_member(cls, slot), ClassSlot)])
 
 
 def _member(cls, slot):

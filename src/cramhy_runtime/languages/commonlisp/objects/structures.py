@@ -79,7 +79,7 @@ def _predicate(specifier):
         parts = [_predicate(part) for part in python_list(specifier.cdr)]
         if not all(map(PORTS.types.known, python_list(specifier.cdr))):
             return lambda value: any(part(value) for part in parts)
-    return PORTS.types.predicate(specifier) if PORTS.types.known(specifier) else lambda value: PORTS.types.predicate(specifier)(value)
+    return PORTS.types.declared(specifier) if PORTS.types.known(specifier) else lambda value: PORTS.types.declared(specifier)(value)
 
 
 def structure_slot(name, *, initform=None, type=True, read_only=None, writable=None):

@@ -82,7 +82,7 @@ def _items(designator):
 
 def intern(name, package=None):
     """``intern``: two values, the symbol and how it was there (nil: it is new)."""
-    home = package_of(package)
+    home = _home(package)
     name = _name(name)
     found, status = home.lookup(name)
     if not status:
@@ -93,8 +93,14 @@ def intern(name, package=None):
 
 def find_symbol(name, package=None):
     """``find-symbol``: two values, the symbol and how it is there; nil and nil when it is not."""
-    found, status = package_of(package).lookup(_name(name))
+    found, status = _home(package).lookup(_name(name))
     return MultipleValues((found, _status(status)))
+
+
+def _home(designator):
+    """As `package_of`, but the error of a name without a package has the name as a string, as that of the reader."""
+    named = designator is not None and is_string_designator(designator)
+    return package_of(string_designator(designator) if named else designator)
 
 
 def unintern(symbol, package=None):

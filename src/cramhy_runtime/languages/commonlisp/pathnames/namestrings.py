@@ -281,7 +281,7 @@ def directory_text(pathname, native=False):
         elif part is UP:
             pieces.append("..")
         elif part is BACK and not native:
-            return _lose(pathname, "of the :DIRECTORY component :BACK", native)
+            return error(":BACK cannot be represented in namestrings.")
         elif part is BACK:
             pieces.append("..")
         elif part == "":

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import PurePath
 
 from cramhy_runtime.ground.data import Cons, list_from
-from cramhy_runtime.ground.conditions import handler_case
-from ..pathnames.namestrings import NoNamestringError, directory_list, namestring
+from cramhy_runtime.ground.conditions import Error, handler_case
+from ..pathnames.namestrings import directory_list, namestring
 from ..pathnames.pathname_objects import LogicalHost, Pathname, Pattern, UnixHost
 from ..files.file_streams import FileStream
 from ..streams.streams import ConcatenatedStream, ConsoleInput, FileOutput, Stream, TwoWayStream
@@ -16,7 +16,7 @@ from .printer import define_printer, escaping, output_object, print_unreadable
 
 
 def _print_pathname(path, stream):
-    text = handler_case([(NoNamestringError, lambda condition: None)], lambda: namestring(path))  # no handler of the program hears of it
+    text = handler_case([(Error, lambda condition: None)], lambda: namestring(path))  # no handler of the program hears of it
     if text is None:
         _print_parts(path, stream)
     else:

@@ -1,7 +1,7 @@
 """Where the lines, forms and symbols of a text stand.
 
 A list that was read is a fresh object, so its identity is the key of its place. A symbol is the same object wherever it is
-written; its places are those of the cells whose elements it is. Only offsets are noted while reading; line and column are
+written; its places are those of its indices in lists. Only offsets are noted while reading; line and column are
 counted when an error or a warning needs them.
 """
 
@@ -50,7 +50,7 @@ class LineIndex:
 class FormPlaces(dict):
     """``id(form)`` → (line, column, end line, end column) of every list of a text. ``place`` makes line and column of an offset.
 
-    ``symbols``: the offset of the symbol that is the first element of a cell, by ``id`` of the cell; for ``,x``, of the comma.
+    ``symbols``: the index and the offset of each symbol in a list, by ``id`` of the list; for ``,x``, of the comma.
     """
 
     def __init__(self, place=None):
@@ -72,30 +72,34 @@ class FormPlaces(dict):
 
     def inherit(self, expansion, form):
         """Let ``expansion``, if it has no place, have that of ``form``, from which it was made."""
-        if isinstance(expansion, Cons) and id(expansion) not in self and id(form) in self:
-            self._kept.append(expansion)
-            self[id(expansion)] = self[id(form)]
-            self._sources[id(expansion)] = self.source(form)
+        if isinstance(expansion, Cons):
+            key, outer = id(expansion), id(form)
+            place = self.get(outer)
+            if place is not None and key not in self:
+                self._kept.append(expansion)
+                self[key] = place
+                self._sources[key] = self._sources.get(outer, form)
 
-    def source(self, form):
-        """The form that was read from which ``form`` has its place."""
-        return self._sources.get(id(form), form)
+    def source(self, key, form):
+        """The form that was read from which ``form``, whose ``id`` is ``key``, has its place."""
+        return self._sources.get(key, form)
 
     def of_symbol(self, symbol, form):
         """(line, column) of ``symbol`` in the list ``form``: where it stands least deep, the first of these; ``None`` if nowhere."""
         symbols, waiting, left = self.symbols, deque([form]), _FAR
         while waiting and left:
             cell = waiting.popleft()
+            offsets, index = dict(symbols.get(id(cell), ())), 0
             while cell.__class__ is Cons and left:
                 left -= 1
                 item = cell.car
-                if item is symbol and id(cell) in symbols:
-                    return self.place(symbols[id(cell)])
+                if item is symbol and index in offsets:
+                    return self.place(offsets[index])
                 if item.__class__ is Cons:
                     waiting.append(item)
                 elif item.__class__ is Comma:
                     if item.form is symbol and id(item) in symbols:
-                        return self.place(symbols[id(item)])
+                        return self.place(symbols[id(item)][0][1])
                     waiting.append(item.form)
-                cell = cell.cdr
+                cell, index = cell.cdr, index + 1
         return None

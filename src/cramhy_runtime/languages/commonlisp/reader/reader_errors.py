@@ -150,7 +150,7 @@ def misplaced_forms(reader, start, end, close):
 
 def no_package(reader, offset, package_name, name):
     """Signal that there is no package ``package_name``; the restarts decide which symbol is read."""
-    near = near_names(package_name, package_names())
+    near = near_names(package_name, [name for name in package_names() if name != package_name])
     hint = f"There is no package {package_name}."
     hint += (
         f" Did you mean {_either(near)}?" if near else f" {why_no_lisp_package(package_name) or 'Is the system that defines it loaded?'}"

@@ -11,7 +11,7 @@ Source: ANSI 2.2 and 2.3.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import NO_VALUES, Character, Cons, MultipleValues, Symbol, one
+from cramhy_runtime.ground.data import NO_VALUES, Character, Cons, MultipleValues, Symbol, list_from, one
 from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.packages import COMMON_LISP_USER, KEYWORD, named_package, sym
 from ..streams.streams import EchoStream, FdStream, InputStream, input_stream
@@ -106,10 +106,12 @@ class Reader(InputStream, FdStream):
         """(line, column) of the next character."""
         return self.place(self.offset)
 
-    def remember(self, form, start):
-        """Note that ``form`` was read from ``start`` up to here."""
-        place = self.lines.place
-        self.positions[id(form)] = place(start) + place(self.offset - 1)
+    def remember(self, form, start, symbols=()):
+        """Note that ``form`` was read from ``start`` up to here. symbols: the index and the offset of each symbol in it."""
+        place, key = self.lines.place, id(form)
+        self.positions[key] = place(start) + place(self.offset - 1)
+        if symbols:
+            self.positions.symbols[key] = symbols
         self._kept.append(form)
 
     def __repr__(self):
@@ -280,17 +282,12 @@ class Reader(InputStream, FdStream):
             for item in reversed(items):
                 tail = Cons(item, tail)
             return fail(self, start, "~S contains a splicing comma after a dot", tail, hint="After a dot write , instead of ,@.")
-        index, offsets = len(items), self.positions.symbols
-        for item in reversed(items):
-            tail = Cons(item, tail)
-            index -= 1
-            if symbols and symbols[-1][0] == index:
-                offsets[id(tail)] = symbols.pop()[1]
         if SUPPRESS.value is not None:
             return None
-        if tail is not None:
-            self.remember(tail, start)
-        return tail
+        made = list_from(items, tail)
+        if made is not None:
+            self.remember(made, start, symbols)
+        return made
 
     def misplaced_close(self, offset):
         opener = self._frames[-1][3] if self._frames else None
@@ -328,7 +325,7 @@ class Reader(InputStream, FdStream):
             self.backquotes += 1
             comma = Comma(opener, found)
             if found.__class__ is Symbol:
-                self.positions.symbols[id(comma)] = at
+                self.positions.symbols[id(comma)] = [(0, at)]
             return comma
         if symbol is QUASIQUOTE:
             self.backquotes -= 1

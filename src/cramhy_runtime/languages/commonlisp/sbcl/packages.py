@@ -118,6 +118,9 @@ def define_extensions() -> None:
                 typexpand typexpand-1 get-time-of-day get-bytes-consed dynamic-space-size save-lisp-and-die print-symbol-with-prefix""",
             "typexpand-all": extensions.typexpand,
             "assert-version->=": extensions.assert_version,
+            "defconstant-uneql-name": lambda condition: condition.name,
+            "defconstant-uneql-old-value": lambda condition: condition.old,
+            "defconstant-uneql-new-value": lambda condition: condition.new,
             **dict.fromkeys(
                 "purify disable-debugger enable-debugger restrict-compiler-policy describe-compiler-policy spin-loop-hint".split(),
                 extensions.no_effect,
@@ -134,7 +137,7 @@ def define_extensions() -> None:
             "*runtime-pathname*": None,
             "*core-pathname*": None,
         },
-        export="timeout timer weak-pointer word compiler-note code-deletion-note",
+        export="timeout timer weak-pointer word compiler-note code-deletion-note defconstant-uneql",
         internal="timeout-seconds",
     )
     _macros("SB-EXT")
@@ -210,6 +213,7 @@ def define_kernel() -> None:
                 structure-raw-slot-data""",
             "%shrink-vector": internals.shrink_vector,
         },
+        imports={"SB-INT": "package-at-variance"},
         export="redefinition-warning",
         internal="structure-raw-slot-data",
     )

@@ -189,9 +189,10 @@ def _has_outer_comma(template, depth):
     while pending:
         item, level = pending.pop()
         if isinstance(item, (Cons, list)):
-            if id(item) in seen:  # #1=(a . #1#)
+            key = id(item)
+            if key in seen:  # #1=(a . #1#)
                 continue
-            seen.add(id(item))
+            seen.add(key)
         if isinstance(item, Comma):
             if level == 0:
                 return True

@@ -37,6 +37,8 @@ _AROUND = set(map(sym, ("PROGN", "EVAL-WHEN", "LOCALLY")))
 _NOT_COMPILED = {sym("DECLAIM"), sym("DEFINE-SYMBOL-MACRO")}
 """What stands in these forms is kept as it is."""
 _WITH_PARTS = frozenset((Cons, Comma, list))
+_CELLS = 500
+"""Of so many cells of a list one is noted as seen. A circle comes to a noted one sooner or later; its symbols may count more than once."""
 _CALLS = frozenset(("function", "setf_function"))
 _ABOUT_USERS = ("documentation", "advice")
 """Parts of the names of a compiler's notes that tell people something, and the compiler nothing."""
@@ -54,8 +56,14 @@ def symbols_in(form: object) -> list[Symbol]:
     stack = [form]
     while stack:
         item = stack.pop()
-        while item.__class__ is Cons and id(item) not in seen:
-            seen.add(id(item))
+        cells = 0
+        while item.__class__ is Cons:
+            if cells % _CELLS == 0:  # Python tells a hook of each `id`, and of a circle one cell is enough
+                number = id(item)
+                if number in seen:
+                    break
+                seen.add(number)
+            cells += 1
             first, item = item.car, item.cdr
             kind = first.__class__
             if kind is Symbol:  # most items are, so it is counted here and does not go through the stack
@@ -299,10 +307,11 @@ def _digest(facts: list[Any], symbol: Symbol | None = None) -> tuple[str, list[t
         if isinstance(item, (str, bytes, int, float, complex)) or item is None or item is Ellipsis:
             words.append(f"{item.__class__.__name__} {item!r}")
             continue
-        if id(item) in numbers:
-            words.append(f"#{numbers[id(item)]}")
+        key = id(item)
+        if key in numbers:
+            words.append(f"#{numbers[key]}")
             continue
-        numbers[id(item)] = len(numbers)
+        numbers[key] = len(numbers)
         alive.append(item)
         if isinstance(item, Symbol):
             words.append(f"{item.package.name}::{item.name}" if item.package else "#:")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.condition_types import StyleWarning
 from cramhy_runtime.ground.data import one
+from cramhy_runtime.ground.printing import with_numbers_as_spoken
 from ..evaluation.evaluator import evaluate
 from ..format.format import format_
 from ..reader.reader import read_from_stream
@@ -16,7 +17,7 @@ def warning_line(condition):
     Below that stand its ``where`` and its ``hint``, if somebody noted what more there is to say.
     """
     badness = "STYLE-WARNING" if isinstance(condition, StyleWarning) else "WARNING"
-    format_(ERROR_OUTPUT.value, "~&~@<~A: ~3i~:_~A~:>~%", badness, condition)
+    with_numbers_as_spoken(format_, ERROR_OUTPUT.value, "~&~@<~A: ~3i~:_~A~:>~%", badness, condition)
     stream = output_stream(ERROR_OUTPUT.value)
     for line in filter(None, (getattr(condition, "where", None), getattr(condition, "hint", None))):
         stream.write("".join(f"  {part}\n" for part in line.splitlines()))

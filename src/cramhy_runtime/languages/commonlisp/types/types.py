@@ -8,6 +8,7 @@ defined later is found then, because unknown names are not remembered. ``subtype
 
 from __future__ import annotations
 
+import operator
 from types import BuiltinFunctionType, FunctionType
 
 from fractions import Fraction
@@ -26,7 +27,19 @@ from cramhy_runtime.ground.arrays import (
     is_simple,
 )
 from cramhy_runtime.ground.conditions import SimpleError, error
-from cramhy_runtime.ground.data import Character, Cons, Keyword, LispString, Symbol, UndefinedFunction, lisp_list, one, truth
+from cramhy_runtime.ground.data import (
+    Character,
+    Cons,
+    Keyword,
+    LispString,
+    Symbol,
+    UndefinedFunction,
+    lisp_list,
+    list_from,
+    one,
+    python_list,
+    truth,
+)
 from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.equality import eql, equal
 from ..pathnames.pathname_objects import Pathname
@@ -184,6 +197,26 @@ def type_predicate(specifier):
     if isinstance(specifier, type):
         return _class_predicate(specifier)
     return bad_specifier(specifier)
+
+
+def declared_predicate(specifier):
+    """As `type_predicate`, for a declaration: of a function type, which ``typep`` refuses, it tests that it is a function (ANSI 4.2.3)."""
+    return type_predicate(_without_function_types(specifier))
+
+
+def _without_function_types(specifier):
+    head = specifier.car if isinstance(specifier, Cons) else specifier
+    if isinstance(head, Symbol) and head in _expanders:
+        expansion = expand_type(specifier)
+        found = _without_function_types(expansion)
+        return specifier if found is expansion else found
+    if not isinstance(specifier, Cons) or head.__class__ is not Symbol or head.package is not _CL:
+        return specifier
+    if head.name == "FUNCTION":
+        return head
+    parts = python_list(specifier.cdr) if head.name in ("AND", "OR", "NOT", "CONS") else []
+    found = list(map(_without_function_types, parts))
+    return specifier if all(map(operator.is_, parts, found)) else Cons(head, list_from(found))
 
 
 def _class_predicate(cls):
