@@ -4,6 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from cramhy_runtime.ground.data import lisp_list
+from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
+from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.languages.commonlisp.compiler import support
+from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+
 
 def logging(text):
     return f"(push {text} cl-user::*log*)"
@@ -336,3 +342,28 @@ def test_the_file_of_a_system_is_compiled_where_it_lies(write, run):
     assert run("(asdf:load-system :beside) (reverse *log*)") == '("b-a" "b-a.lisp" T)'
     assert run("(list *compile-file-truename* *compile-file-pathname*)") == "(NIL NIL)"
     assert run(f'(setf *log* nil) (handler-case (load "{path}") (error () :not-compiled))') == ":NOT-COMPILED"
+
+
+def test_a_kept_call_of_a_standard_function_that_is_generic_by_now(session):
+    """CLOSE with a keyword is called as Python's function when nobody has methods on it. Code that was kept so meets a generic function."""
+    close = sym("CLOSE")
+    assert support.python_function(close) is close.function.python
+    made = GenericFunction(close, "(stream &key abort)")
+    made.method(None)(lambda stream, *, abort=None: lisp_list(stream, abort))
+    known, close.function = close.function, made
+    try:
+        assert prin1_to_string(support.python_function(close)(sym(":BOX"), abort=True)) == "(:BOX T)"
+    finally:
+        close.function = known
+
+
+def test_methods_on_functions_of_streams_before_anybody_names_sb_gray(session):
+    """The first of them brings SB-GRAY, which says how these functions are opened."""
+    text = """(defclass cl-user::lamp () ())
+      (defmethod close ((s cl-user::lamp) &key abort) (list :off abort))
+      (defmethod stream-element-type ((s cl-user::lamp)) 'cl-user::photon)
+      (defmethod open-stream-p ((s cl-user::lamp)) :lit)
+      (let ((l (make-instance 'cl-user::lamp)) (s (make-string-input-stream "")))
+        (list (close l :abort t) (stream-element-type l) (open-stream-p l) (open-stream-p s) (close s :abort t) (typep #'close 'generic-function)))"""
+    session.package = "CL-USER"
+    assert prin1_to_string(session.evaluate_text(text, "<test>")[0]) == "((:OFF T) PHOTON :LIT T T T)"

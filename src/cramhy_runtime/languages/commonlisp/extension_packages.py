@@ -16,7 +16,7 @@ from .files import files
 from .pathnames import pathnames
 from .numbers import random_state
 from .objects import protocol
-from cramhy_runtime.ground.packages import COMMON_LISP, Package, ensure_package, our_own, sym
+from cramhy_runtime.ground.packages import COMMON_LISP, Package, ensure_package, find_package, our_own, sym
 from .packages import package_functions
 
 INFINITIES = {
@@ -74,6 +74,24 @@ class LatePackage(Package):
                     packages.complete(self.name)
 
 
+OF_STREAMS = ("CLOSE", "STREAM-ELEMENT-TYPE", "INPUT-STREAM-P", "OUTPUT-STREAM-P", "OPEN-STREAM-P", "INTERACTIVE-STREAM-P")
+"""Functions that SB-GRAY opens to methods of users when it is completed."""
+
+
+class _OpenedWithGrayStreams:
+    """Stands for the `Opening` of a function of streams until SB-GRAY brings it: the first method on the function brings SB-GRAY."""
+
+    generic = None
+
+    def __init__(self, symbol):
+        self.symbol = symbol
+
+    def open(self):
+        """Make the generic function."""
+        find_package("SB-GRAY").complete()
+        return self.symbol.function.opening.open()
+
+
 def define_faces():
     """Declare the packages; called once, by `package.fill`."""
     define_face(
@@ -96,6 +114,8 @@ def define_faces():
     define_face("SB-MOP", functions={protocol: protocol.MOP_NAMES})
     for name in LATE:
         come_late(name)
+    for name in OF_STREAMS:
+        sym(name).function.opening = _OpenedWithGrayStreams(sym(name))
     internals = ensure_package("SB-IMPL")  # programs write sb-impl::file-stream
     internals.built_in = True
     internals.use_package(COMMON_LISP)

@@ -15,11 +15,11 @@ import math
 import sys
 from fractions import Fraction
 
-from cramhy_runtime.ground.conditions import DivisionByZero, FloatingPointOverflow, error, type_error
+from cramhy_runtime.ground.conditions import DivisionByZero, FloatingPointInvalidOperation, FloatingPointOverflow, error, type_error
 from cramhy_runtime.ground.data import MultipleValues, lisp_list, one
 from cramhy_runtime.ground.floats import LARGEST_SINGLE, SPLITTER, SingleFloat, new_single, rational_to_float32, to_float32
 from cramhy_runtime.ground.packages import sym
-from .float_traps import DIVIDE_BY_ZERO, OVERFLOW, infinity, is_masked, quotient_by_zero
+from .float_traps import DIVIDE_BY_ZERO, INVALID, OVERFLOW, infinity, is_masked, quotient_by_zero
 from .complex_numbers import ExactComplex, SingleComplex, of_parts, parts
 
 LISP_NAMES = """max min abs gcd lcm signum mod rem numberp realp rationalp integerp floatp complexp zerop plusp minusp evenp oddp
@@ -114,10 +114,15 @@ def normal(value):
 
 
 def division_by_zero(operation, *operands):
-    """Signal that ``operation`` (the name of a CL function) divided by zero; floats give infinity where that trap is masked."""
-    if is_masked(DIVIDE_BY_ZERO) and any(isinstance(operand, float) for operand in operands):
+    """Signal that ``operation`` (the name of a CL function) divided by zero; floats give infinity where that trap is masked.
+
+    Zero by zero, one of them a float, is an invalid operation, which has a trap of its own.
+    """
+    undefined = all(operand == 0 for operand in operands) and not all(isinstance(operand, int) for operand in operands)
+    kind, trap = (FloatingPointInvalidOperation, INVALID) if undefined else (DivisionByZero, DIVIDE_BY_ZERO)
+    if is_masked(trap) and any(isinstance(operand, float) for operand in operands):
         return quotient_by_zero(*operands) if operation == "/" else infinity(operation, operands)
-    return error(DivisionByZero(sym(operation), lisp_list(*operands)))
+    return error(kind(sym(operation), lisp_list(*operands)))
 
 
 def overflow(operation, *operands):

@@ -18,7 +18,7 @@ from cramhy_runtime.ground.packages import keyword
 T = TypeVar("T")
 TRAPS = special("CRAMHY::*FLOAT-TRAPS*", lisp_list(*map(keyword, ("OVERFLOW", "INVALID", "DIVIDE-BY-ZERO"))))
 """The traps that are not masked: their keywords."""
-OVERFLOW, DIVIDE_BY_ZERO = keyword("OVERFLOW"), keyword("DIVIDE-BY-ZERO")
+OVERFLOW, INVALID, DIVIDE_BY_ZERO = keyword("OVERFLOW"), keyword("INVALID"), keyword("DIVIDE-BY-ZERO")
 _OPERATIONS = {"+": float.__add__, "-": float.__sub__, "*": float.__mul__, "/": float.__truediv__}
 
 
@@ -75,4 +75,4 @@ def set_modes(*, traps: Any = UNBOUND, **others: Any) -> None:
         TRAPS.value = traps
 
 
-__all__ = ["DIVIDE_BY_ZERO", "OVERFLOW", "infinity", "is_masked", "masked", "modes", "quotient_by_zero", "set_modes"]
+__all__ = ["DIVIDE_BY_ZERO", "INVALID", "OVERFLOW", "infinity", "is_masked", "masked", "modes", "quotient_by_zero", "set_modes"]

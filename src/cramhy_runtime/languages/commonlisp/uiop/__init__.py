@@ -5,6 +5,7 @@ Where the parts are:
 
 * `texts`      the few names that ``.asd`` files use all the time; they are made when the session starts
 * `utilities`, `pathnames`, `files`, `streams`, `processes`, `packages`, `macros`  the others, by UIOP's own chapters
+* `configuration`  folders of settings, command lines of Windows, hooks
 * `names`      which names the package has
 
 All but `texts` is imported when a program first names something of it (`extension_packages.LatePackage`). What UIOP does to an image or a

@@ -15,7 +15,7 @@ from ..pathnames.pathname_objects import RELATIVE, WILD, WILD_INFERIORS, Pathnam
 from ..pathnames.pathnames import make_pathname
 from ..sbcl.atomics import define as define_macro
 from ..streams import streams as standard_streams
-from . import files, macros, packages, pathnames, processes, streams, utilities
+from . import configuration, files, macros, packages, pathnames, processes, streams, utilities
 
 
 def call_with_muffled_conditions(thunk: Any, conditions: Any) -> Any:
@@ -69,6 +69,7 @@ _NAMED = {
     "make-symbol*": packages.make_symbol_,
     "delete-package*": packages.delete_package_,
     "quit": processes.quit_,
+    "compile-file-pathname*": configuration.compile_file_pathname_or_given,
     "version-deprecation": lambda version, *levels: None,
     "call-with-muffled-conditions": call_with_muffled_conditions,
     "compile-file-type": lambda: "fasl",
@@ -110,6 +111,7 @@ def complete() -> None:
             **_functions(streams, streams.FUNCTIONS),
             **_functions(processes, processes.FUNCTIONS),
             **_functions(packages, packages.FUNCTIONS),
+            **_functions(configuration, configuration.FUNCTIONS),
             **_NAMED,
         },
         variables={

@@ -263,7 +263,7 @@ class NumberGenerator(QuotientGenerator):
             if slow is None:
                 more = self.value(arguments[1])
                 slow = self.positioned(expression(word(self.constants.name("function", symbol)), self.generic(operand), more), node)
-                self.settle([operand])
+            self.settle([operand])
             return slow, False
         if kind == DOUBLE:
             return (operand.first if operand.kind in (SINGLE, DOUBLE) else self.call("float", operand.first)), False
