@@ -7,7 +7,7 @@ import pytest
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.designators import Action, Motion, action_grounding, desig_prop_value, forget
 from cramhy_runtime.ground.data import python_list
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.ground.printing import prin1_to_string, speak
 from cramhy_runtime.process_modules import executive, perform
 from cramhy_runtime.prolog import P, V, fact_group, facts_asserted, findall, function, kw, query, remove_fact_group
 from cramhy_runtime.ros import message_building, messages, received, wire
@@ -33,6 +33,13 @@ class Valued(Action):
 class Declared(Motion):
     flag: bool = True
     things: list = [1]
+
+
+@pytest.fixture(autouse=True)
+def _lisp_is_spoken():
+    speak(lisp=True)
+    yield
+    speak(lisp=False)
 
 
 def as_parameter(value):
