@@ -7,7 +7,7 @@ import pytest
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.designators import Action, Motion, action_grounding, desig_prop_value, forget
 from cramhy_runtime.ground.data import python_list
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.ground.printing import prin1_to_string, speak
 from cramhy_runtime.process_modules import executive, perform
 from cramhy_runtime.prolog import P, V, fact_group, facts_asserted, findall, function, kw, query, remove_fact_group
 from cramhy_runtime.ros import message_building, messages, received, wire
@@ -170,7 +170,7 @@ ROWS = [
     ("a property", "False", "NIL", "False"),
     ("a property", "True", "T", "True"),
     ("a property", "3", "3", "3"),
-    ("a property", "1.5", "1.5", "1.5"),
+    ("a property", "1.5", "1.5d0", "1.5"),
     ("a property", "'a'", '"a"', "'a'"),
     ("a property", "kw.left", ":LEFT", "kw.left"),
     ("a property", "P.cup", "PYTHON-USER:CUP", "P.cup"),
@@ -187,7 +187,7 @@ ROWS = [
     ("a fact", "None", "NIL", "None"),
     ("a fact", "True", "T", "True"),
     ("a fact", "3", "3", "3"),
-    ("a fact", "1.5", "1.5", "1.5"),
+    ("a fact", "1.5", "1.5d0", "1.5"),
     ("a fact", "'a'", '"a"', "'a'"),
     ("a fact", "kw.left", ":LEFT", "kw.left"),
     ("a fact", "P.cup", "PYTHON-USER:CUP", "P.cup"),
@@ -200,7 +200,7 @@ ROWS = [
     ("the result of a `@function`", "None", "NIL", "None"),
     ("the result of a `@function`", "True", "T", "True"),
     ("the result of a `@function`", "3", "3", "3"),
-    ("the result of a `@function`", "1.5", "1.5", "1.5"),
+    ("the result of a `@function`", "1.5", "1.5d0", "1.5"),
     ("the result of a `@function`", "'a'", '"a"', "'a'"),
     ("the result of a `@function`", "kw.left", ":LEFT", "kw.left"),
     ("the result of a `@function`", "P.cup", "PYTHON-USER:CUP", "P.cup"),
@@ -255,6 +255,7 @@ def table():
 def test_each_row_is_so(node, border, given, lisp, back):
     in_lisp, in_python = BORDERS[border](eval(given, MEANS))
     if lisp is not None:
+        speak(lisp=True)
         assert prin1_to_string(in_lisp) == lisp
     wanted = eval(back, MEANS)
     if border.startswith("a field") and isinstance(wanted, list):

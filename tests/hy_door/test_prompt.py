@@ -202,7 +202,7 @@ SHOWN = {
     "(make-fluent :name 'door)": "#<FLUENT DOOR [NIL]>",
     "(lisp drive)": "DRIVE",
     '(lisp (1 (drive) "a"))': '(1 (DRIVE) "a")',
-    "(make-3d-vector 1 2 3)": "#<3D-VECTOR (1.0d0 2.0d0 3.0d0)>",
+    "(make-3d-vector 1 2 3)": "#<3D-VECTOR (1.0 2.0 3.0)>",
     '(make-msg "std_msgs/String" :data "a")': '[STD_MSGS-MSG:STRING\n   DATA:\n     "a"]',
     '[1 2.5 "a" True None]': '[1 2.5 "a" True None]',
     "'(drive [x])": "'(drive [x])",

@@ -313,7 +313,7 @@ def test_a_wrong_field_has_those_of_the_type_for_a_hint(make, hint):
 @pytest.mark.parametrize("name, specs, hint", [
     ("geometry_msgs/Twist", [(("X", "LINEAR"), "fast")], 'geometry_msgs/Twist: linear.x holds "fast", which is no float64.'),
     ("geometry_msgs/Twist", [(("LINEAR",), 3)], "geometry_msgs/Twist: linear holds 3, which is no geometry_msgs/Vector3."),
-    ("turtlesim/Color", [(("G",), 1.5)], "turtlesim/Color: g holds 1.5d0, which is no uint8."),
+    ("turtlesim/Color", [(("G",), 1.5)], "turtlesim/Color: g holds 1.5, which is no uint8."),
     ("std_msgs/UInt8MultiArray", [(("DATA",), 3)], "std_msgs/UInt8MultiArray: data holds 3, which is no uint8[]."),
     ("std_msgs/UInt8MultiArray", [(("DATA",), [1, "a"])], 'std_msgs/UInt8MultiArray: data[1] holds "a", which is no uint8.'),
     ("geometry_msgs/PoseWithCovariance", [(("COVARIANCE",), [None])],

@@ -13,6 +13,7 @@ from cramhy_runtime.ground.packages import find_package, keyword, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.transforms import matrices, poses, quaternions, vectors
 from cramhy_runtime.ground.packages import ensure_package
+from cramhy_runtime.ground.printing import speak
 from cramhy_runtime.transforms.poses import Pose, Transform
 from cramhy_runtime.transforms.quaternions import Quaternion
 from cramhy_runtime.transforms.vectors import Vector3
@@ -21,6 +22,13 @@ X, Y, Z = Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1)
 A = Transform(Vector3(1, 2, 3), quaternions.yaw(math.pi / 2))
 
 CL_TRANSFORMS = ensure_package("CL-TRANSFORMS")
+
+
+@pytest.fixture(autouse=True)
+def _lisp_is_spoken():
+    speak(lisp=True)
+    yield
+    speak(lisp=False)
 
 
 def show(obj):

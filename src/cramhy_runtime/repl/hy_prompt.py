@@ -134,6 +134,7 @@ class HyPrompt(Listener):
 
     def change_over(self):
         """Let the REPL read Lisp from its next text on."""
+        speak(lisp=True)
         if not self.in_lisp:
             self.in_lisp = True
             compiler = self.repl.compile.compiler
