@@ -18,7 +18,7 @@ from systems import BACKENDS, SOAK, takes_long
 from cramhy_runtime.session import Image
 
 try:
-    from hypothesis import settings
+    from hypothesis import HealthCheck, settings
 except ImportError:  # a part of it is compiled, and not for WebAssembly
     settings = None
 
@@ -60,8 +60,9 @@ LONG = (
 os.environ["CRAMHY_HISTORY"] = ""  # what tests type is not the user's
 os.environ["CRAMHY_AS_ROOT"] = "yes"  # CI is root in a container, and grades what stands in the tests
 if settings is not None:
-    settings.register_profile("steady", derandomize=True, max_examples=50, deadline=None)  # a deadline would be of the wall clock
-    settings.register_profile("soak", deadline=None)
+    unhurried = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])  # both would look at the wall clock
+    settings.register_profile("steady", unhurried, derandomize=True, max_examples=50)
+    settings.register_profile("soak", unhurried)
     settings.load_profile("soak" if SOAK else "steady")
 
 if "CRAMHY_LATE" in os.environ:
