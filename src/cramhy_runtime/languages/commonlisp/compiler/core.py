@@ -45,16 +45,17 @@ class Tuple(list):
     __slots__ = ()
 
 
-_symbols: dict = {}
+class _Words(dict):
+    """Name → its `Symbol`, which is made when it is first asked for."""
 
-
-def word(name):
-    """The `Symbol` of that name, one object for each name."""
-    found = _symbols.get(name)
-    if found is None:
-        found = _symbols[name] = Symbol(name)
+    def __missing__(self, name):
+        found = self[name] = Symbol(name)
         found.text = str(name)
-    return found
+        return found
+
+
+word = _Words().__getitem__
+"""``word(name)``: the `Symbol` of that name, one object for each. A method of a dictionary, since the compiler calls it most of all."""
 
 
 def expression(*items):

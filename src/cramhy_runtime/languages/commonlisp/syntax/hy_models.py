@@ -37,12 +37,24 @@ def from_hy(model, package, form=None):
 
     def convert(model):
         nonlocal kept
-        if type(model) is list:
-            if kept is None:
-                kept = _vectors_in(form)
-            if id(model) in kept:
-                return model
-        return _converted(model, package, convert)
+        kind = model.__class__
+        if kind in _LISTS:
+            if kind is list:
+                if kept is None:
+                    kept = _vectors_in(form)
+                if id(model) in kept:
+                    return model
+            items = [item if item.__class__ in _AS_THEY_ARE else convert(item) for item in model]
+            if len(items) > 2 and items[-2] is _DOT:
+                return list_from(items[:-2], items[-1])
+            return list_from(items)
+        if kind in _AS_THEY_ARE:
+            return model
+        if isinstance(model, models.Symbol):
+            return symbol_in(str(model), package)
+        if kind is bool:
+            return model or None
+        return atom(model)
 
     return convert(model)
 
@@ -62,21 +74,5 @@ def _vectors_in(form):
 
 
 _AS_THEY_ARE = frozenset((Cons, Symbol, Keyword, str, int, float, Fraction, Character, type(None)))
-_LISTS = models.Expression, models.List, models.Tuple, list, tuple
+_LISTS = frozenset((models.Expression, models.List, models.Tuple, list, tuple))
 _DOT = sym("CRAMHY::|.|")
-
-
-def _converted(model, package, convert):
-    kind = type(model)
-    if kind in _AS_THEY_ARE:
-        return model
-    if kind is bool:
-        return model or None
-    if isinstance(model, models.Symbol):
-        return symbol_in(str(model), package)
-    if kind in _LISTS:
-        items = [convert(item) for item in model]
-        if len(items) > 2 and items[-2] is _DOT:
-            return list_from(items[:-2], items[-1])
-        return list_from(items)
-    return atom(model)
