@@ -30,6 +30,7 @@ DIFFERENCES = [
         r"cramhy: (.*)\n(?s:(.*))\n> \Z",
         r"<an error> \1\n\2\n> ",
     ),
+    ("Hy writes a double as Python does.", r"\b\d+\.\d+d-?\d+\b", None, lambda number: repr(float(number[0].replace("d", "e")))),
     ("Python's random numbers are others.", *2 * [r"\((R|G|B|WIDTH) \d+\)"], r"(\1 <a number>)"),
 ]
 """(why, in the answer of ``roslisp_repl``, in that of ``hy``, what stands for both): all that differs, but for steps that end otherwise."""
