@@ -144,7 +144,7 @@ def check_ros(name, words):
         for home in running._HOMES[name]:
             __import__(f"cramhy_runtime.ros_tools.{home}")
         found([name, *words])
-    if name == "rosrun":
+    if name == "rosrun" and not words[0].startswith("my_"):  # the reader's own package
         assert executables.complaint(words[0], words[1]) is None
 
 
