@@ -10,11 +10,9 @@ Their default clauses only check, with ``*break-on-lisp-errors*``, the class of 
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
 from cramhy_runtime.ground.conditions import error
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.prolog.engine.fact_groups import built_in_group
 from cramhy_runtime.prolog.builtins.function_calls import call_lisp
 from cramhy_runtime.prolog.engine.machine import fail, retry_iterator
@@ -24,6 +22,9 @@ from .classes import ActionDesignator, Designator, LocationDesignator, MotionDes
 from .clause_index import index_by_properties
 from .equating import chain, desig_equal, designator_solutions, get_equal_designators, newest_effective_designator, youngest
 from .symbols import sym
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 def _designator(m, term):

@@ -7,13 +7,15 @@ Operations ask only when they would signal, so masks cost the others nothing.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any, TypeVar
 
 from cramhy_runtime.ground.data import UNBOUND, Symbol, lisp_list, list_from, python_list
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.floats import result_class
 from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 T = TypeVar("T")
 TRAPS = special("CRAMHY::*FLOAT-TRAPS*", lisp_list(*map(keyword, ("OVERFLOW", "INVALID", "DIVIDE-BY-ZERO"))))
