@@ -252,7 +252,7 @@ class ValueFluent(Fluent[T]):
         if self.test is None:
             old = self.stored
             kind = type(new)
-            if kind not in TRUE_CLASSES and OWN_ANSWERS.get(kind, True):
+            if new is not True and new is not None and kind not in TRUE_CLASSES and OWN_ANSWERS.get(kind, True):
                 new = plain_truth(new)
                 kind = type(new)
             if kind is type(old):
