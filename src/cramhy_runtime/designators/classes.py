@@ -12,6 +12,7 @@ from __future__ import annotations
 import functools
 import itertools
 from copy import deepcopy
+from operator import call, is_not
 from weakref import ref
 
 from cramhy_runtime.kernel.images import Cell, per_image
@@ -137,10 +138,11 @@ class _Living(list["ref[Designator]"]):
 
     def shorten(self) -> None:
         """Remove the references to designators that are gone."""
-        self[:] = [reference for reference in self if reference() is not None]
+        self[:] = itertools.compress(self, map(_lives, map(call, self)))
         self.limit = 2 * len(self) + 64
 
 
+_lives = functools.partial(is_not, None)
 _live = Cell(_Living(), fresh=True)
 _new = object.__new__
 

@@ -77,11 +77,13 @@ TIMESTAMP_FUNCTION = special(sym("CUT::*TIMESTAMP-FUNCTION*"))
 
 def current_timestamp(what_time=None):
     """Seconds as a double, from ``*timestamp-function*``; with ``:real`` the kernel's clock, with ``:run`` the time that was computed."""
-    if what_time is RUN:
+    function = None
+    if what_time is None:
+        function = TIMESTAMP_FUNCTION.value
+    elif what_time is RUN:
         return float(round(os.times().user, 6))
-    if what_time not in (None, REAL):
+    elif what_time is not REAL:
         return type_error(what_time, "(MEMBER :REAL :RUN)")
-    function = TIMESTAMP_FUNCTION.value if what_time is None else None
     return float(kernel.now()) if function is None else one(function_of(function)())
 
 

@@ -93,7 +93,7 @@ def _apply(function, arguments):
         return type_error(function, "SYMBOL")
     if function.package is not CUT:
         for item in arguments:
-            if item.__class__ is Cons or item is NOTHING or item is False:
+            if item.__class__ in _SEEN_OTHERWISE:
                 arguments = [_whole(item) for item in arguments]
                 break
     code = function.function
@@ -106,6 +106,10 @@ def _apply(function, arguments):
     if value.__class__ is MultipleValues:
         return value[0] if len(value) else None
     return value
+
+
+_SEEN_OTHERWISE = frozenset((Cons, bool, NOTHING.__class__))
+"""The classes of the arguments that may be another object in Lisp: lazy lists, and what Prolog tells from ``nil``."""
 
 
 def _whole(item):
@@ -125,7 +129,7 @@ def lisp_value(m, function, arguments):
     if not done:
         return NotImplemented
     kind = value.__class__
-    if kind is Cons or kind is Symbol or kind is Keyword or kind is bool:
+    if kind in _TERMS:
         return import_term(value, m.names)
     if kind not in _ATOMS and function in RESULTS:
         return RESULTS[function](value)
@@ -134,6 +138,7 @@ def lisp_value(m, function, arguments):
 
 RESULTS: dict[Symbol, Callable[[Any], Any]] = {}
 """The symbol of a function that was written in Hy → what makes Lisp data of its result. Such a result may be a collection of Python."""
+_TERMS = frozenset((Cons, Symbol, Keyword, bool))
 _ATOMS = frozenset((int, float, str, type(None)))
 
 

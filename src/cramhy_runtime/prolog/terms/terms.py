@@ -203,26 +203,25 @@ def value_of(term):
             return term
 
 
+_RESOLVED = frozenset((Cons, Var, LazyTail, TermTail))
+"""The classes of terms that `resolve` looks into. All others are data already."""
+
+
 def _resolve_list(term, names):
-    cell, count = term, 0
-    while count < CYCLE_SUSPECTED:  # as far as nothing changes
-        car = cell.car
-        kind = car.__class__
-        if kind is not int and (kind is Var or kind is LazyTail or kind is TermTail or kind is Cons):
+    cell = term
+    for _ in _CELLS:  # as far as nothing changes
+        if cell.car.__class__ in _RESOLVED:
             break
         cell = cell.cdr
         if cell.__class__ is not Cons:
             if cell is None:
                 return term
             break
-        count += 1
     cars, changed, cell = [], False, term
     while True:
-        kind = cell.__class__
-        if kind is Cons:
+        while cell.__class__ is Cons:
             car = cell.car
-            kind = car.__class__
-            if kind is Cons or kind is Var or kind is LazyTail or kind is TermTail:
+            if car.__class__ in _RESOLVED:
                 value = resolve(car, names)
                 if value is not car:
                     changed = True
@@ -232,7 +231,8 @@ def _resolve_list(term, names):
             cell = cell.cdr
             if len(cars) == CYCLE_SUSPECTED:
                 refuse_cycle(term, value_of)
-        elif kind is Var:
+        kind = cell.__class__
+        if kind is Var:
             changed = True
             value = cell.ref
             if value is UNSET:
