@@ -7,13 +7,18 @@ from cramhy_runtime.ground.packages import keyword
 
 CREATED, RUNNING, WAITING, SUSPENDED = keyword("CREATED"), keyword("RUNNING"), keyword("WAITING"), keyword("SUSPENDED")
 SUCCEEDED, FAILED, EVAPORATED = keyword("SUCCEEDED"), keyword("FAILED"), keyword("EVAPORATED")
-ALIVE = (CREATED, RUNNING, WAITING, SUSPENDED)
-DEAD = (FAILED, SUCCEEDED, EVAPORATED)
-DONE = (SUCCEEDED, EVAPORATED)
+# Keys of a dict keep their order, as a set does not, and finding one compares no keywords, as a tuple does.
+ALIVE = dict.fromkeys((CREATED, RUNNING, WAITING, SUSPENDED))
+DEAD = dict.fromkeys((FAILED, SUCCEEDED, EVAPORATED))
+DONE = dict.fromkeys((SUCCEEDED, EVAPORATED))
 ALL = (CREATED, RUNNING, SUSPENDED, SUCCEEDED, FAILED, EVAPORATED)
 """The statuses that occur, the type ``status-indicator``. No task is ever ``:waiting``."""
 
-NEXT = {CREATED: (RUNNING, EVAPORATED), RUNNING: (SUSPENDED, SUCCEEDED, FAILED, EVAPORATED), SUSPENDED: (RUNNING, EVAPORATED, FAILED)}
+NEXT = {
+    CREATED: frozenset((RUNNING, EVAPORATED)),
+    RUNNING: frozenset((SUSPENDED, SUCCEEDED, FAILED, EVAPORATED)),
+    SUSPENDED: frozenset((RUNNING, EVAPORATED, FAILED)),
+}
 
 
 def status_list(statuses):

@@ -108,5 +108,5 @@ def _be_suspended(task):
     task.change_status(RUNNING)
 
 
-AT_REST = (SUSPENDED, *DEAD)
-AWAKE = (CREATED, RUNNING, *DEAD)
+AT_REST = frozenset((SUSPENDED, *DEAD))
+AWAKE = frozenset((CREATED, RUNNING, *DEAD))

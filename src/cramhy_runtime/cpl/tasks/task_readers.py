@@ -5,6 +5,8 @@ None of this waits, and none of it changes anything; a dead task answers as well
 
 from __future__ import annotations
 
+from itertools import dropwhile
+
 from cramhy_runtime.ground.data import list_from
 from cramhy_runtime.ground.dispatch.generic_functions import generic
 from cramhy_runtime.utilities.queues import list_queue_contents, make_queue
@@ -44,7 +46,12 @@ def task_dead(task):
 
 
 def _status_net(task, statuses):
-    return fl_funcall(lambda now: status_list(statuses[statuses.index(now) :]) if now in statuses else None, status(task))
+    return fl_funcall(lambda now: _member(now, statuses), status(task))
+
+
+def _member(now, statuses):
+    """What ``member`` gives: the list of ``statuses`` from ``now`` on, or nil."""
+    return status_list(dropwhile(lambda status: status is not now, statuses))
 
 
 def task_running_p(task):

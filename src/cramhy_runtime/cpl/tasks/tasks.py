@@ -51,7 +51,7 @@ from ..task_variables import declared, inherit, inherited_bindings
 from .waiting import wait_for
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Container, Iterable
 
     from cramhy_runtime.utilities.threads import Thread
     from ..fluents.fluents import Fluent, ValueFluent
@@ -484,7 +484,7 @@ class AbstractTask(Generic[T]):
             signal_failure(self.result)
         return self.result
 
-    def park_until(self, statuses: tuple[Keyword, ...], why: Callable[[], str], given_up: Callable[[], bool] | None = None) -> None:
+    def park_until(self, statuses: Container[Keyword], why: Callable[[], str], given_up: Callable[[], bool] | None = None) -> None:
         """Wait until its status is among ``statuses``, or until ``given_up()`` is true. Call this in another task.
 
         ``why()`` is a text for reports: what the current task waits for.
