@@ -175,6 +175,38 @@ def test_a_shield_delays_delivery_to_its_end(k):
     assert task.cancelled_delivered
 
 
+def test_a_shield_may_be_taken_away_for_a_part_of_it(k):
+    """The request arrives in that part, and what unwinds there is shielded again behind it. A cleanup keeps its own shield."""
+    log = []
+
+    def body():
+        with kernel.shield():
+            kernel.sleep(2)
+            log.append("shielded")
+            try:
+                with kernel.cleanup(), kernel.unshielded():
+                    kernel.sleep(1)
+                    log.append("cleaned up")
+                with kernel.unshielded():
+                    kernel.sleep(1)
+                    log.append("never")
+            finally:
+                kernel.sleep(1)
+                log.append("shielded again")
+
+    task = kernel.spawn(body)
+    kernel.sleep(1)
+    task.cancel()
+    task.join()
+    assert log == ["shielded", "cleaned up", "shielded again"]
+    assert kernel.now() == 4
+
+
+def test_without_a_shield_there_is_none_to_be_taken_away(k):
+    with pytest.raises(kernel.KernelError, match="Task main has no shield that could be taken away."), kernel.unshielded():
+        pass
+
+
 def test_a_shield_that_nobody_knocked_at_changes_nothing(k):
     def body():
         with kernel.shield():

@@ -57,6 +57,53 @@ def test_an_evaporated_branch_gives_its_mutex_up(lisp):
     )
 
 
+@pytest.mark.parametrize(
+    ("handler", "answers"),
+    [("", "(:REACHED (T))"), ("(sb-sys:defer-deadline 5 c)", "((:WOKE T T) (T))"), ("(sb-sys:cancel-deadline c)", "((:WOKE T T) (T))")],
+)
+@pytest.mark.parametrize("timeout", ["", ":timeout 9"])
+def test_a_deadline_of_a_condition_wait_is_signalled_with_the_mutex(lisp, handler, answers, timeout):
+    """As by SBCL, where the wait is over then: code tests its condition again."""
+    form = f"""(let ((m (sb-thread:make-mutex)) (q (sb-thread:make-waitqueue)) (held '()))
+      (list (handler-case
+              (handler-bind ((sb-sys:deadline-timeout (lambda (c) (push (sb-thread:holding-mutex-p m) held) c {handler})))
+                (sb-thread:with-mutex (m)
+                  (sb-sys:with-deadline (:seconds 1) (list :woke (sb-thread:condition-wait q m {timeout}) (sb-thread:holding-mutex-p m)))))
+              (sb-sys:deadline-timeout () :reached))
+            held))"""
+    assert lisp(form) == answers
+    assert kernel.now() == 1
+
+
+def test_a_deadline_of_a_condition_wait_comes_while_another_thread_has_the_mutex(lisp):
+    """Then it is signalled without the mutex, and the wait for the mutex goes on when it is deferred. The answer is SBCL's."""
+    form = """(let* ((m (sb-thread:make-mutex)) (q (sb-thread:make-waitqueue)) (held '()) (thread nil))
+      (handler-bind ((sb-sys:deadline-timeout (lambda (c) (push (sb-thread:holding-mutex-p m) held) (sb-sys:defer-deadline 50 c))))
+        (sb-thread:with-mutex (m)
+          (setf thread (sb-thread:make-thread (lambda () (sb-thread:with-mutex (m) (sleep 5)))))
+          (sb-sys:with-deadline (:seconds 1) (push (sb-thread:condition-wait q m) held))
+          (push (sb-thread:holding-mutex-p m) held)))
+      (sb-thread:join-thread thread)
+      (reverse held))"""
+    assert lisp(form) == "(NIL T T)"
+    assert kernel.now() == 5
+
+
+@pytest.mark.parametrize("wait", ["(sb-thread:with-mutex (m) (push :late log))", "(progn (sb-thread:grab-mutex m) (push :late log))"])
+def test_who_handles_a_deadline_does_not_stand_in_line_for_the_mutex(lisp, wait):
+    """The mutex is released meanwhile, and a thread that asks later gets it first."""
+    form = f"""(let* ((m (sb-thread:make-mutex)) (log '()) (first nil) (second nil))
+      (setf first (sb-thread:make-thread (lambda () (sb-thread:with-mutex (m) (sleep 3)) (push :released log))))
+      (setf second (sb-thread:make-thread (lambda () (sleep 4) (sb-thread:with-mutex (m) (push :second log) (sleep 5)))))
+      (sleep 0.5)
+      (handler-bind ((sb-sys:deadline-timeout (lambda (c) (push :deadline log) (sleep 5) (sb-sys:defer-deadline 50 c))))
+        (sb-sys:with-deadline (:seconds 1) {wait}))
+      (mapc #'sb-thread:join-thread (list first second))
+      (reverse log))"""
+    assert lisp(form) == "(:DEADLINE :RELEASED :SECOND :LATE)"
+    assert kernel.now() == 9
+
+
 def test_a_deadline_does_not_reach_the_cleanup(lisp):
     assert (
         lisp("""(let ((log '()))

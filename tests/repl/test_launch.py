@@ -44,8 +44,8 @@ def folder(tmp_path):
 def test_everything_that_a_launch_file_may_say(folder):
     launched = launch.load([str(folder / "all.launch")], {"square": "1", "red": "20", "nobody": "x"})
     assert [(program.label, program.executable, program.arguments) for program in launched.programs] == [
-        ("left/sim", "turtlesim_node", ["__name:=sim", "__ns:=/left/", "turtle1/cmd_vel:=cmd", "a:=b"]),
-        ("left/inner/square", "draw_square", ["__name:=square", "__ns:=/left/inner/", "turtle1/cmd_vel:=cmd", "_x:=1 2", "y:=z"]),
+        ("left/sim", "turtlesim_node", ["__ns:=/left/", "__name:=sim", "turtle1/cmd_vel:=cmd", "a:=b"]),
+        ("left/inner/square", "draw_square", ["__ns:=/left/inner/", "__name:=square", "turtle1/cmd_vel:=cmd", "_x:=1 2", "y:=z"]),
     ]
     assert launched.parameters == {
         "/count": 3,

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import re
+
 import pytest
 
 from cramhy_runtime.cli.lisp_executables import LispExecutable, lisp_executables
@@ -80,3 +83,41 @@ def test_a_talker_and_a_listener_in_two_terminals(private, workspace):
 def test_what_cannot_run_says_why(private, workspace, tool, executable, status, said):
     output, errors, ended = tool("rosrun", "tin_talk", executable)
     assert said in errors and ended == status
+
+
+LAUNCHES = {
+    "talk.launch": """<launch>
+  <node pkg="tin_talk" type="talker" name="says" ns="tin"/>
+  <node pkg="tin_talk" type="wrong" name="bad"/>
+  <node pkg="tin_talk" type="walker" name="none"/>
+</launch>""",
+    "hear.launch": """<launch>
+  <node pkg="tin_talk" type="listener" name="hearer"><param name="volume" value="11"/><remap from="chatter" to="/tin/chatter"/></node>
+</launch>""",
+}
+
+
+def test_launch_files_start_lisp_programs(private, workspace):
+    """The first file's terminal is a session, which its programs join, and those of the second terminal. What cannot run says why."""
+    pytest.importorskip("uvicorn")
+    pytest.importorskip("websockets")
+    for name, text in LAUNCHES.items():
+        (workspace / name).write_text(text)
+    with Terminal("ros", "roslaunch", "tin_talk", "talk.launch") as talker:
+        talker.expect(r"process\[tin/says-1\]: started with pid \[(\d+)\]")
+        says = int(re.search(r"says-1\]: started with pid \[(\d+)\]", talker.text).group(1))
+        talker.expect(
+            r"ERROR: cannot launch node of type \[tin_talk/walker\]: tin_talk has the executables gone, listener, talker, wrong.\n"
+        )
+        died = r"No tin here[\s\S]*\[bad-2\] process has died \[pid \d+, exit code 1\]\n"
+        talker.expect(rf"(?=[\s\S]*Node name is /tin/says\n)(?=[\s\S]*{died})")  # in any order
+        with Terminal("ros", "roslaunch", "tin_talk", "hear.launch") as listener:
+            listener.expect(r"I heard foo \d+\n")
+            listener.expect(r"11 ALONE [3-9]\n")
+            listener.expect(r"\[hearer-1\] process has finished cleanly\n")
+            assert listener.status() == 0
+        talker.control_c()
+        talker.expect(r"\[tin/says-1\] killing on exit\n")
+        assert talker.status() == 0
+    with pytest.raises(ProcessLookupError):
+        os.kill(says, 0)

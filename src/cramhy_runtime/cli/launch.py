@@ -239,7 +239,8 @@ def _node(launched, tag, scope, values, used):
         given = shlex.split(_text(tag, "args", scope, ""))
     except ValueError as problem:
         raise _wrong(scope, tag, f"the words of args: {problem}") from None
-    words = [f"__name:={name}", f"__ns:={namespace}", *inner.remappings, *given]
+    # the namespace comes first: roslisp makes the name anew, of the one that the program gives, when it reads it
+    words = [f"__ns:={namespace}", f"__name:={name}", *inner.remappings, *given]
     launched.programs.append(Program(package, executable, words, f"{namespace}{name}".lstrip("/")))
 
 

@@ -1,4 +1,4 @@
-"""``rosrun PACKAGE EXECUTABLE`` of a Lisp program: what ``add_lisp_executable`` in the ``CMakeLists.txt`` of a package of the user's names.
+"""``rosrun PACKAGE EXECUTABLE`` of Lisp, and ``<node>`` in launch files: what ``add_lisp_executable`` in ``CMakeLists.txt`` names.
 
 catkin makes a script of such a line, which loads the system and calls the function. Nothing is built here: the line itself says what to do.
 The program is a process of its own, as in ROS. It joins the session that runs on this machine, so that its topics and services are those
@@ -11,9 +11,12 @@ import os
 import re
 import sys
 from contextlib import ExitStack
+from functools import partial
 from typing import NamedTuple
 
 _CALL = re.compile(r"\b(?:rosbuild_)?add_(?:compiled_)?lisp_executable\s*\(([^()]*)\)", re.IGNORECASE)
+INTERRUPTED = 15.0  # s that a program gets to end after Ctrl-C, as with roslaunch
+TERMINATED = 2.0  # s after SIGTERM
 _COMMENT = re.compile(r"#\[\[.*?\]\]|#[^\n]*", re.DOTALL)
 
 
@@ -96,4 +99,56 @@ def _options(what):
     return options
 
 
-__all__ = ["LispExecutable", "lisp_executables", "run"]
+class Processes:
+    """The Lisp programs among those that roslaunch starts: each is a process, and joins the session. A context manager, which ends them.
+
+    wait: calls a function that blocks, and returns its result: as `kernel.run_blocking` does where this process is the session, which
+    must answer its programs when they take their leave.
+    """
+
+    def __init__(self, wait):
+        self._wait = wait
+        self._running = {}
+
+    def __enter__(self):
+        return self
+
+    def start(self, program, number):
+        """Start ``program``, whose number among the programs of the launch file is given; the id of its process."""
+        import subprocess
+
+        from .shims import words_of
+
+        words = [*words_of("rosrun"), program.package, program.executable, *program.arguments]
+        process = subprocess.Popen(words, stdin=subprocess.DEVNULL, start_new_session=True)  # Ctrl-C is ours to hand on, once
+        self._running[f"{program.label}-{number}"] = process
+        return process.pid
+
+    def running(self):
+        """Whether one of them still runs. It is told, as by roslaunch, which have ended since the last call."""
+        for label, process in list(self._running.items()):
+            status = process.poll()
+            if status is not None:
+                del self._running[label]
+                ending = f"died [pid {process.pid}, exit code {status}]" if status else "finished cleanly"
+                print(f"[{label}] process has {ending}", flush=True)
+        return bool(self._running)
+
+    def __exit__(self, *_):
+        import signal
+        from subprocess import TimeoutExpired
+
+        for process in self._running.values():
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+        for process in self._running.values():
+            for patience, harder in ((INTERRUPTED, process.terminate), (TERMINATED, process.kill)):
+                try:
+                    self._wait(partial(process.wait, patience))
+                    break
+                except TimeoutExpired:
+                    harder()
+        self._running.clear()
+
+
+__all__ = ["LispExecutable", "Processes", "lisp_executables", "run"]

@@ -16,6 +16,8 @@ from typing import NamedTuple
 
 from cramhy_runtime.kernel import signals
 
+from .lisp_executables import Processes
+
 LOOK_AGAIN = 1.0  # s between two looks for a session that has started elsewhere
 KEYBOARD = ("turtlesim", "turtle_teleop_key")
 """What drives by the keys of its terminal."""
@@ -98,6 +100,11 @@ def _of_lisp(package):
     from .workspace import folder_of
 
     return {} if executables.executables(package) else lisp_executables(folder_of(package))
+
+
+def _is_of_lisp(program):
+    """Whether a program that a launch file starts is a Lisp executable. ``rosrun`` has looked itself."""
+    return bool(program.label) and program.executable in _of_lisp(program.package)
 
 
 def _known(package, executable):
@@ -222,6 +229,9 @@ def _without(program, problem):
     """Go on without a program that does not start: one of several in a launch file. Otherwise ``problem`` is raised."""
     if not program.label:
         raise problem
+    there = _of_lisp(program.package)
+    if there:
+        problem = f"{program.package} has the executables {', '.join(sorted(there))}."
     print(f"ERROR: cannot launch node of type [{program.package}/{program.executable}]: {problem}", file=sys.stderr, flush=True)
 
 
@@ -244,9 +254,12 @@ def _run_there(graph, programs, parameters, view):
     for name, value in (parameters or {}).items():
         graph.set_parameter(name, value)
     ours, shown, labels, keyboard, statuses = [], set(), [], None, [0]
-    with graph.listen("/cramhy/program_log", "cramhy_msgs/ProgramLine") as log:
+    with graph.listen("/cramhy/program_log", "cramhy_msgs/ProgramLine") as log, Processes(lambda wait: wait()) as processes:
         try:
             for number, program in enumerate(programs, 1):
+                if _is_of_lisp(program):
+                    labels = _started(program, number, processes.start(program, number)) + labels
+                    continue
                 wanted = {"package": program.package, "executable": program.executable, "arguments": list(program.arguments)}
                 try:
                     answer = graph.call("/cramhy/start_program", "", wanted)
@@ -269,11 +282,11 @@ def _run_there(graph, programs, parameters, view):
                     if view:
                         _tell(problem)
             with _keys(keyboard) as read:
-                while shown:
+                while processes.running() or shown:
                     typed = read() if keyboard in shown else None
                     if typed:
                         graph.call("/cramhy/feed_program", "", {"node": keyboard, "keys": list(typed)})
-                    heard = log.take(graph.now() if keyboard in shown else None)
+                    heard = log.take(_until(graph, processes, keyboard in shown))
                     while heard is not None:
                         message = heard[1]
                         if message["node"] in shown and not message["ended"]:
@@ -289,6 +302,13 @@ def _run_there(graph, programs, parameters, view):
                     graph.kill(node)
             return 0
     return 0 if labels else max(statuses)  # roslaunch ends well, whatever became of its programs
+
+
+def _until(graph, processes, typing):
+    """Until when to wait for a line of a log: for ever, unless keys may be typed or processes may end meanwhile."""
+    if typing:
+        return graph.now()
+    return graph.now() + LOOK_AGAIN if processes.running() else None
 
 
 def _run_here(programs, parameters, port, view, time=None, again=False):
@@ -322,8 +342,11 @@ def _run_here(programs, parameters, port, view, time=None, again=False):
                 return "moved"
             for name, value in (parameters or {}).items():
                 graph.active().parameters.set(name, value)
-            nodes, keyboard = [], None
+            nodes, keyboard, processes = [], None, closings.enter_context(Processes(kernel.run_blocking))
             for number, program in enumerate(programs, 1):
+                if _is_of_lisp(program):
+                    labels = _started(program, number, processes.start(program, number)) + labels
+                    continue
                 try:
                     name, _, lines = host.start_program(program.package, program.executable, program.arguments)
                 except Refusal as problem:
@@ -338,7 +361,7 @@ def _run_here(programs, parameters, port, view, time=None, again=False):
                 node.program.echo = _both(node.program.echo)
             if view is None and _has_window(programs):
                 _tell(f"The page: {window.page(show=page.opens_by_itself() and not again, asked=False).url}")
-            ended = _wait(nodes, keyboard)
+            ended = _wait(nodes, processes, keyboard)
             return ended if ended == "moved" else 0 if labels else max((node.program.status for node in nodes), default=0)
         except (KeyboardInterrupt, kernel.Terminated, kernel.Abandoned):
             _closing(labels)
@@ -353,8 +376,8 @@ def _both(tell):
     return echo
 
 
-def _wait(nodes, keyboard=None):
-    """Wait until all nodes have ended (``"ended"``) or a session has started elsewhere (``"moved"``).
+def _wait(nodes, processes, keyboard=None):
+    """Wait until all nodes and processes have ended (``"ended"``) or a session has started elsewhere (``"moved"``).
 
     keyboard: the node that gets the keys of this terminal meanwhile.
     """
@@ -364,7 +387,7 @@ def _wait(nodes, keyboard=None):
 
     look = kernel.now() + LOOK_AGAIN
     with _keys(keyboard) as read:
-        while any(node.alive for node in nodes):
+        while processes.running() or any(node.alive for node in nodes):
             if keyboard is not None and keyboard.alive:
                 typed = kernel.run_blocking(read)
                 if typed:

@@ -73,6 +73,7 @@ from .active import (
     time_limited,
     time_wanted,
     unpark,
+    unshielded,
     woken_by,
     work_limited,
     yield_,
@@ -94,5 +95,5 @@ __all__ = [
     "call_at", "call_every", "checkpoint", "choice_point", "cleanup", "cleanup_here", "current", "describe_frame", "holds_baton",
     "install_reporter", "interrupt", "interrupt_over", "limit_by", "now", "on_own_stack", "outside_source", "pace", "park", "post",
     "refill", "run_blocking", "set_clock", "settle", "shield", "sleep", "slice_over", "spawn", "start", "stop", "time_held",
-    "time_limited", "time_wanted", "unhandled", "unpark", "woken_by", "work_limited", "yield_",
+    "time_limited", "time_wanted", "unhandled", "unpark", "unshielded", "woken_by", "work_limited", "yield_",
 ]  # fmt: skip

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from .inbox import OutsideSource, TimeHeld
     from .signatures import BackendName, Backend, Callback, Clock, ClockName, Name, Seed, Why
-    from .tasks import Task, shield as Shield
+    from .tasks import Task, shield as Shield, unshielded as Unshielded
     from .timers import Timer
 
 T = TypeVar("T")
@@ -275,6 +275,11 @@ def settle() -> None:
 def shield() -> Shield:
     """See `Kernel.shield`."""
     return (ACTIVE.value or _none()).shield()
+
+
+def unshielded() -> Unshielded:
+    """See `Kernel.unshielded`."""
+    return (ACTIVE.value or _none()).unshielded()
 
 
 def call_at(time: float, fn: Callback) -> Timer:

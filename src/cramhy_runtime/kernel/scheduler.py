@@ -28,7 +28,7 @@ from .clocks import VirtualClock, make_clock
 from .endings import CLEANUP_LIMIT, PATIENCE, Endings
 from .errors import Cancelled, Deadlock, Interrupted, KernelError, NoStack, Terminated, TimeLimit
 from .inbox import Outside
-from .tasks import BLOCKED, DEAD, PARKED, RUNNABLE, RUNNING, SETTLING, SchedulerTask, Task, shield
+from .tasks import BLOCKED, DEAD, PARKED, RUNNABLE, RUNNING, SETTLING, SchedulerTask, Task, shield, unshielded
 from .timers import TimerHeap, Timing, seconds
 from .typing_names import TYPE_CHECKING, NoReturn, TypeVar, TypeVarTuple
 
@@ -360,6 +360,10 @@ class Kernel(Endings, Outside, Timing):
     def shield(self) -> shield:
         """``with kernel.shield():`` delays requests to end the current task until the block is left."""
         return shield(self.current)
+
+    def unshielded(self) -> unshielded:
+        """``with kernel.unshielded():`` takes one `shield` around the block away until it is left."""
+        return unshielded(self.current)
 
     def _refuse(self, what: str) -> NoReturn:
         raise KernelError(f"A thread that does not have the baton tried to {what}. Outside threads reach tasks by `kernel.post` only.")

@@ -398,3 +398,24 @@ class shield:  # noqa: N801 (reads as a statement: `with shield():`)
         if task.attention and not task.shielded:
             budget.end()
         return False
+
+
+class unshielded:  # noqa: N801 (reads as a statement)
+    """``with unshielded():`` takes one shield of the task away until the block is left. What it delayed arrives in the block."""
+
+    __slots__ = ("_task",)
+
+    def __init__(self, task: Task[object]):
+        self._task = task
+
+    def __enter__(self) -> None:
+        task = self._task
+        if not task.shielded:
+            raise KernelError(f"Task {task.name} has no shield that could be taken away.")
+        task.shielded -= 1
+        if task.attention and not task.shielded:
+            budget.end()
+
+    def __exit__(self, *_: object) -> bool | None:
+        self._task.shielded += 1
+        return False

@@ -9,6 +9,8 @@ Source: SBCL's manual, chapter 12; texts are SBCL's.
 
 from __future__ import annotations
 
+from contextlib import contextmanager
+
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.conditions import ask_value, cerror, error, restart_case, type_error
 from cramhy_runtime.ground.condition_types import SeriousCondition
@@ -18,7 +20,10 @@ from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.ground.printing import princ_to_string
 from cramhy_runtime.ground.restarts import find_restart, invoke_restart
 from cramhy_runtime.kernel import tasks
-from cramhy_runtime.kernel.typing_names import Any
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 AGAIN = 0.01
 """Seconds after which a deadline that found its thread at work looks again whether it waits."""
@@ -151,6 +156,25 @@ def call_with_deadline(body: Any, *, seconds: Any = None, override: object = Non
         task.local.deadline = outer
         if outer is not None and replaces and not outer.over:
             outer.arm()
+
+
+@contextmanager
+def put_off(until: float | None) -> Iterator[tuple[Deadline | None, float | None]]:
+    """``with put_off(until) as (deadline, first):`` signals no deadline in the block, which waits until ``first`` at most.
+
+    That is when the next deadline is reached, or ``until``, if that is earlier. In cleanup no deadline counts.
+    """
+    reached = _current()
+    while reached is not None and reached.timer is None:
+        reached = reached.outer
+    if reached is None or kernel.current().shielded or until is not None and until <= reached.at:
+        yield None, until
+        return
+    reached.disarm()
+    try:
+        yield reached, reached.at
+    finally:
+        reached.arm()
 
 
 def signal_deadline(deadline: Deadline | None = None) -> None:

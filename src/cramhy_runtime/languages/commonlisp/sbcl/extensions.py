@@ -200,12 +200,6 @@ def call_with_locked_table(table: Any, body: Any) -> object:
         return body()
 
 
-def call_uninterrupted(body: Any) -> object:
-    """The work of ``without-interrupts``: the values of ``body()``; requests to end the thread, and interruptions, wait."""
-    with kernel.shield():
-        return body()
-
-
 def print_symbol_with_prefix(stream: Any, symbol: Any, colon: Any = None, at: Any = None) -> None:
     """``sb-ext:print-symbol-with-prefix``, for a format directive with slashes: a symbol with its package."""
     stream.write(printed(symbol))

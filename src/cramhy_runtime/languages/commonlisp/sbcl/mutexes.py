@@ -16,6 +16,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.utilities.locks import Lock
 from cramhy_runtime.utilities.wait_queue import Line, need, time_limit
 
+from .deadlines import put_off, signal_deadline
 from .threads import ThreadError, thread_of
 
 if TYPE_CHECKING:
@@ -45,7 +46,10 @@ class Mutex(Lock):
     lisp_name = "SB-THREAD::MUTEX"
 
     def grab(self, wait: bool = True, until: float | None = None) -> bool:
-        """Take it; whether that was possible, without waiting if not WAIT, before the clock reaches UNTIL (s)."""
+        """Take it; whether that was possible, without waiting if not WAIT, before the clock reaches UNTIL (s).
+
+        While a deadline is signalled the thread does not stand in line, so that others get the mutex.
+        """
         me = kernel.current()
         if self.holder is me:
             error("Recursive lock attempt ~S.", self)
@@ -54,14 +58,24 @@ class Mutex(Lock):
             return True
         if not wait:
             return False
-        self._refuse_deadlock(me)
-        me.local.waits_for = self
-        try:
-            return (
-                self.line.stand(lambda: f"the mutex {self.name or ''}, which {self.holder.name} has".replace(" ,", ","), until) is not None
-            )
-        finally:
-            me.local.waits_for = None
+        while True:
+            self._refuse_deadlock(me)
+            me.local.waits_for = self
+            try:
+                with put_off(until) as (reached, first):
+                    got = self.line.stand(self._why, first) is not None
+            finally:
+                me.local.waits_for = None
+            if got or reached is None:
+                return got
+            reached.disarm()
+            signal_deadline(reached)
+            if self.holder is None:
+                self.holder, self.depth = me, 1
+                return True
+
+    def _why(self) -> str:
+        return f"the mutex {self.name or ''}, which {self.holder.name} has".replace(" ,", ",")
 
     def _refuse_deadlock(self, me: Task[object]) -> None:
         """An error if waiting for this mutex would close a circle."""
@@ -196,18 +210,26 @@ def condition_wait(queue: Any, mutex: Any, *, timeout: Any = None) -> bool | Non
     """``sb-thread:condition-wait``: give the mutex up, wait until woken, and take it again; T.
 
     After ``timeout`` seconds, the time to get the mutex included: nil, and the mutex is not held. A wait that is left otherwise takes the
-    mutex again, because the cleanup forms of the body count on it.
+    mutex again, because the cleanup forms of the body count on it. So does a wait that reaches a deadline, before it is signalled; when
+    the deadline is deferred, the wait is over as if somebody had woken the thread. Source: SBCL's answers.
     """
     waiting, until = _queue(queue), time_limit(timeout)
     if not _mutex(mutex).held_by_me():
         error("The current thread is not holding ~S.", mutex)
     mutex.pass_on()
     try:
-        woken = waiting.line.stand(lambda: f"the wait queue {waiting.name or ''}".rstrip(), until) is not None
+        with put_off(until) as (reached, first):
+            woken = waiting.line.stand(lambda: f"the wait queue {waiting.name or ''}".rstrip(), first) is not None
     except BaseException:
         with kernel.shield():
             mutex.grab()
         raise
+    if not woken and reached is not None:
+        if mutex.grab(False):
+            reached.disarm()
+            signal_deadline(reached)
+            return True
+        woken = True  # the deadline is signalled while it waits for the mutex
     return boolean(woken and mutex.grab(True, until))
 
 

@@ -28,6 +28,7 @@ from . import (
     deadlines,
     extensions,
     internals,
+    interrupts,
     mutexes,
     operators,
     posix,
@@ -58,7 +59,8 @@ def define_threads() -> None:
     internal = {
         mutexes: "call-with-mutex call-with-recursive-lock",
         deadlines: "call-with-timeout call-with-deadline wait-until",
-        extensions: "define-hash-table-test call-with-locked-table call-uninterrupted",
+        extensions: "define-hash-table-test call-with-locked-table",
+        interrupts: "call-uninterrupted call-interrupted call-allowing-interrupts call-locally-interrupted",
         "leave-thread": threads.return_from_thread,
     }
     define_face(
