@@ -416,6 +416,5 @@ class unshielded:  # noqa: N801 (reads as a statement)
         if task.attention and not task.shielded:
             budget.end()
 
-    def __exit__(self, *_: object) -> bool | None:
+    def __exit__(self, *_: object) -> None:
         self._task.shielded += 1
-        return False
