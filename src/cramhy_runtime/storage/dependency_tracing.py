@@ -22,7 +22,7 @@ import functools
 import os
 import sys
 import time
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
 
 from . import dependencies
@@ -257,14 +257,12 @@ def tracing(audited: bool = False) -> Iterator[Trace]:
         outer.include(trace.facts, trace.reason)
 
 
-@contextmanager
-def untraced() -> Iterator[None]:
+def untraced() -> AbstractContextManager[None]:
     """What happens in the block is no part of a compilation."""
-    if _current.get() is None:
-        yield
-    else:
-        with _with(None):
-            yield
+    return _NO_TRACE if _current.get() is None else _with(None)
+
+
+_NO_TRACE: AbstractContextManager[None] = nullcontext()
 
 
 @contextmanager

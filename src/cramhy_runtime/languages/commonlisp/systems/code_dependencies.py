@@ -135,15 +135,21 @@ class Meanings:
         digest, seen = self._known.get(symbol, ("", None))
         if seen is None or not all(_same(_now(each), then) for each, then in seen):
             digest, seen = _digest(facts, symbol)
+            if len(self._known) > 10_000:
+                self._known.clear()
             self._known[symbol] = digest, seen
         return digest
+
+
+meanings = Meanings()
+"""Of all files: a digest is made again where a symbol that it was made of means something else."""
 
 
 class Notes:
     """What the symbols of a file mean while it is compiled."""
 
     def __init__(self, load_count: Callable[[], int]) -> None:
-        self._meanings, self._load_count = Meanings(), load_count
+        self._load_count = load_count
         self._noted: Wanted = {}
         self._loads = load_count()
 
@@ -156,20 +162,20 @@ class Notes:
         wanted = {(symbol.package.name, symbol.name, current): self._wish(symbol, package) for symbol in symbols_in(form)}
         if self._loads != self._load_count():
             self._loads = self._load_count()
-            wanted = {**{key: _found(key, self._meanings) for key in self._noted}, **wanted}
+            wanted = {**{key: _found(key) for key in self._noted}, **wanted}
         new = {key: wish for key, wish in wanted.items() if self._noted.get(key) != wish}
         self._noted |= new
         return new
 
     def _wish(self, symbol: Symbol, package: Any) -> tuple[bool, str]:
-        return package.lookup(symbol.name)[0] is symbol, self._meanings.of(symbol)
+        return package.lookup(symbol.name)[0] is symbol, meanings.of(symbol)
 
 
 class Expectations:
     """What the code of a kept file wants, form after form."""
 
     def __init__(self, load_count: Callable[[], int]) -> None:
-        self._meanings, self._load_count = Meanings(), load_count
+        self._load_count = load_count
         self._wanted: Wanted = {}
         self._loads = load_count()
 
@@ -179,10 +185,10 @@ class Expectations:
         if self._loads != self._load_count():
             self._loads = self._load_count()
             wanted = self._wanted
-        return all(_found(key, self._meanings) == wish for key, wish in wanted.items())
+        return all(_found(key) == wish for key, wish in wanted.items())
 
 
-def _found(key: tuple[str, str, str], meanings: Meanings) -> tuple[bool, str] | None:
+def _found(key: tuple[str, str, str]) -> tuple[bool, str] | None:
     """What is true now of the symbol and the package that ``key`` names; ``None`` when one of them is not there."""
     home, current = named_package(key[0]), registered(key[2])  # a package that is made on demand was made when the form was read
     if home is None or current is None:

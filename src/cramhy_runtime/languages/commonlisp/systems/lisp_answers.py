@@ -18,7 +18,7 @@ from ..evaluation.definitions import take_as_keyword
 from ..objects.classes import symbol_class
 from ..streams.streams import Stream
 from ..types.types import type_expander
-from .code_dependencies import Meanings, code_digest
+from .code_dependencies import code_digest, meanings
 
 _MOST = 50_000
 """Parts of a value that are looked at. A larger one would make each load slow, and is not compared."""
@@ -135,9 +135,6 @@ def _properties(name: Name) -> str:
     return "" if symbol is None or symbol.plist is None else value_digest(symbol.plist)
 
 
-_meanings = Meanings()
-
-
 def expanders(symbol: Symbol) -> tuple[Any, ...]:
     """What the compiler calls for the name: its macro, compiler macro, setf expander and the expander of its type, each or ``None``."""
     notes = symbol.compiler_data or {}
@@ -153,7 +150,7 @@ def _function(name: Name) -> str:
     for function in (*(getattr(each, "source", each) for each in expanders(symbol)), symbol.function, symbol.setf_function):
         if isinstance(function, types.FunctionType):
             data += [cell.cell_contents for cell in function.__closure__ or () if _holds_data(cell)]
-    return f"{_meanings.of(symbol)} {code_digest(symbol.function)} {code_digest(symbol.setf_function)} {value_digest(data) if data else ''}"
+    return f"{meanings.of(symbol)} {code_digest(symbol.function)} {code_digest(symbol.setf_function)} {value_digest(data) if data else ''}"
 
 
 def _class(name: Name) -> str:
