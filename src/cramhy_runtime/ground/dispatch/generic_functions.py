@@ -35,11 +35,14 @@ from ..ports import PORTS
 from ..python_names import python_name
 
 all_generic_functions = weakref.WeakSet()
+_with_known_calls = weakref.WeakSet()
+"""Those whose cache may hold something. There are far fewer, and each definition of a class goes through them."""
 
 
 @when_classes_change
 def _forget_dispatch():
-    for function in all_generic_functions:
+    while _with_known_calls:
+        function = _with_known_calls.pop()
         if function.cache:  # on which arguments the methods specialize is no matter of the classes
             function.cache = {}
             function.tell_callers()
@@ -157,6 +160,7 @@ class GenericFunction(ReachedSlots, FunctionObject):
             if found is None:
                 return lambda *arguments: no_applicable_method(self, arguments)
             self.cache[key] = found
+            _with_known_calls.add(self)
             self.tell_callers(found=True)
         return found
 
