@@ -35,8 +35,7 @@ from ..ports import PORTS
 from ..python_names import python_name
 
 all_generic_functions = weakref.WeakSet()
-_with_known_calls = weakref.WeakSet()
-"""Those whose cache may hold something. There are far fewer, and each definition of a class goes through them."""
+_with_known_calls = weakref.WeakSet()  # whose cache may hold something: far fewer, and each definition of a class goes through them
 
 
 @when_classes_change
@@ -79,11 +78,9 @@ class GenericFunction(ReachedSlots, FunctionObject):
         self.forget()
         all_generic_functions.add(self)
 
-    watcher = None
+    watcher = direct = direct_methods = enclosure = None
     advice: str | None = None
     """What the error that no method is applicable tells the user to do."""
-    direct = direct_methods = None
-    enclosure = None
 
     def enclose(self, enclosure):
         """Let ``enclosure(effective function)`` make the calls in which a method of a user takes part. Returns the argument."""
