@@ -10,7 +10,7 @@ import re
 import pytest
 
 from cramhy_runtime.course import contents, reading
-from cramhy_runtime.course.guide import steps
+from cramhy_runtime.course.steps import steps
 from cramhy_runtime.course.parts import Code, File, text_in
 from cramhy_runtime.course.shown import Style, text
 
