@@ -1,4 +1,4 @@
-"""Arithmetic and comparison: from calls of ``+ - * / < > <= >= =`` to Python's operators.
+"""Arithmetic: from calls of ``+ - * /`` to Python's operators.
 
 Where the kinds of the operands are known (``kinds.py``) a Python operator stands alone. Where they are not, one test of classes
 stands before as many operations as belong together (`fused`), and the generic functions of ``numbers/arithmetic.py`` behind it:
@@ -17,7 +17,7 @@ import sys
 from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.packages import sym
 from .. import nodes
-from ..core import NONE, TRUE, Symbol, expression, word
+from ..core import TRUE, Symbol, expression, word
 from ..declared_types import GREATEST_FIXNUM, LEAST_FIXNUM
 from ..destinations import FIRST_OF_VALUES, RAW, VALUE
 from ..environment import Variable
@@ -30,7 +30,6 @@ from ..kinds import (
     FIXNUM_BITS,
     FLOATS,
     INT,
-    MACHINE,
     MINUS,
     NUMBER,
     PLUS,
@@ -62,7 +61,6 @@ ARITHMETIC = {
     )
 }
 OPERATORS = {PLUS: word("+"), MINUS: word("-"), TIMES: word("*"), DIVIDE: word("/")}
-COMPARISONS = {sym(name): word(name) for name in ("<", ">", "<=", ">=", "=")}
 
 LARGEST = sys.float_info.max
 SMALL_INTEGERS = 2**24
@@ -483,48 +481,6 @@ class ArithmeticGenerator:
         noted, again = self.noted_class(tested.first)
         test = expression(OR, expression(IS, noted, INT_CLASS), expression(IS, again, FLOAT_CLASS))
         return expression(IF, test, expression(OPERATORS[operation.symbol], *models), slow)
-
-    # -------------------------------------------------------------------------------------------------------- comparisons
-
-    def comparison(self, node, symbol, arguments):
-        """The Python test of a comparison of two operands."""
-        operands = self.operands(arguments)
-        one, other = operands
-        operator = COMPARISONS[symbol]
-        if exactly(one.kind, MACHINE) and exactly(other.kind, MACHINE):
-            return expression(operator, one.first, other.first)
-        slow = expression(IS_NOT, self.generic(Operation(symbol, node, operands)), NONE)
-        if any(operand.kind and not operand.kind & (NUMBER | THING) for operand in operands):
-            self.settle(operands)
-            return slow
-        quick = expression(operator, one.later, other.later)
-        unsure = [operand for operand in operands if not exactly(operand.kind, MACHINE)]
-        if len(unsure) == 2 and not (one.raw or other.raw):
-            return expression(IF, self.same_class(one, other), quick, slow)
-        if len(unsure) == 2 or any(operand.first is not operand.later for operand in operands if operand is not unsure[0]):
-            self.settle(operands)
-        return expression(IF, expression(AND, *map(self.real_test, unsure)) if len(unsure) > 1 else self.real_test(unsure[0]), quick, slow)
-
-    def real_test(self, operand):
-        """A test that an operand is of a class whose values Python compares as Lisp does."""
-        noted, again = self.noted_class(operand.first)
-        classes = [INT_CLASS, FLOAT_CLASS] if operand.kind & INT or not operand.raw else [FLOAT_CLASS]
-        if not operand.raw:
-            classes.append(SINGLE_CLASS)
-        tests = [expression(IS, noted if index == 0 else again, each) for index, each in enumerate(classes)]
-        return tests[0] if len(tests) == 1 else expression(OR, *tests)
-
-    def same_class(self, one, other):
-        """A test that both operands are of one class whose values Python compares as Lisp does."""
-        if one.later is other.later:
-            return self.real_test(one)
-        second = other.first
-        if second.__class__ is Symbol:
-            first, second = expression(SETX, CLASSES, self.class_of(one.first)), self.class_of(second)
-        else:
-            first, second = self.class_of(one.first), expression(SETX, CLASSES, self.class_of(second))
-        classes = (INT_CLASS, FLOAT_CLASS, SINGLE_CLASS)
-        return expression(AND, expression(IS, first, second), expression(OR, *(expression(IS, CLASSES, each) for each in classes)))
 
 
 def nameable_node(node):
