@@ -396,6 +396,8 @@ class ArithmeticGenerator:
         if assumed == FIXNUM:
             return expression(AND, expression(IS, *classes, INT_CLASS), fixnum_test(unknown[0].later))
         of_class = FLOAT_CLASS if unknown[0].raw else {INT: INT_CLASS, SINGLE: SINGLE_CLASS, DOUBLE: FLOAT_CLASS}[assumed]
+        if all(each[1].__class__ is Symbol for each in classes if each.__class__ is not Symbol):
+            return expression(IS, of_class, *classes)  # it fails at the first
         return expression(IS, *classes, of_class)
 
     def kind_in(self, part, assumed):
@@ -411,16 +413,23 @@ class ArithmeticGenerator:
         kind = one and other and bare(part.symbol, one, other, size, other_size)
         return kind, size + other_size + 2 if kind & INT else 0
 
-    def bare_model(self, part, assumed, used):
-        """The expression of Python's operators. ``used``: the operands that have been evaluated, or ``None`` if all have."""
+    def bare_model(self, part, assumed, used, floats=None):
+        """The expression of Python's operators. ``used``: the operands that have been evaluated, or ``None`` if all have.
+
+        ``floats``: the names of operands that have been made raw, which is done once in the whole expression.
+        """
         if part.__class__ is Operand:
             if used is None or part in used:
                 model = part.later
             else:
                 used.add(part)
                 model = part.first
-            return self.call("float", model) if assumed == SINGLE and not part.known and not part.raw else model
-        models = [self.bare_model(each, assumed, used) for each in part.parts]
+            return model if assumed != SINGLE or part.known or part.raw else self.float_once(part, model, floats)
+        if floats is None:
+            floats = {}
+            operands = [each for operation in operations_of(part) for each in operation.parts if each.__class__ is Operand]
+            floats.update((each, None) for each in operands if operands.count(each) > 1)
+        models = [self.bare_model(each, assumed, used, floats) for each in part.parts]
         if self.kind_in(part, assumed) != SINGLE:
             return expression(OPERATORS[part.symbol], *models)
         for index, each in enumerate(part.parts):
@@ -437,6 +446,16 @@ class ArithmeticGenerator:
         shaping = {TIMES: shape_of_product, PLUS: shape_of_sum}.get(part.symbol)
         shape = shaping and shaping(part.parts[0].node, part.parts[1].node)
         return rounded(expression(OPERATORS[part.symbol], *models), part.symbol is TIMES or part.symbol is DIVIDE, slow, shape)
+
+    def float_once(self, operand, model, floats):
+        """The raw value of ``operand``, a single; with a name, if ``floats`` says that it is used again."""
+        raw_model = self.call("float", model)
+        if operand not in floats:
+            return raw_model
+        if floats[operand] is None:
+            floats[operand] = word(self.temporary())
+            return expression(SETX, floats[operand], raw_model)
+        return floats[operand]
 
     def needs_check(self, operation, kind):
         """Whether a result of ``kind`` may be infinite because of a product."""
