@@ -460,3 +460,11 @@ def test_a_form_that_was_passed_over_is_named_when_it_is_missed(typed, language,
     place = step_with(1, language, lambda part: any(each.form.startswith(define) for each in getattr(part, language, None) or ()))
     told = " ".join(typed([place, ":next", "(ahead 1)", *leave, ":quit"], language=language).replace("\n;", " ").split())
     assert f"ahead is defined by a form that you have not typed: {define} ... {place} leads back to it." in told
+
+
+def test_a_check_tells_no_warnings_of_the_compiler(typed):
+    task = step_with(2, "lisp", "rectangle")
+    told = typed([task, ":check", "(defun rectangle-around (width height) (* 4 width))", ":quit"], "names-and-functions")
+    before, after = told.split("(defun rectangle-around (width height) (* 4", 1)
+    assert "There is no function rectangle-around yet." in before and "STYLE-WARNING" not in before
+    assert "The variable HEIGHT is defined but never used." in after

@@ -27,7 +27,7 @@ from cramhy_runtime.session import Image
 from cramhy_runtime.session.session import Interruption
 
 from . import contents, files, guide
-from .checking import hy_evaluator
+from .checking import hy_evaluator, lisp_evaluator
 from .guide import Guide
 from .progress import Progress
 from .reading import PageError
@@ -156,7 +156,7 @@ class LispPrompt(Guided, Console):
         return self.guide.over
 
     def evaluator(self):
-        return self.session.evaluate_text
+        return lisp_evaluator(self.session)
 
     def is_variable(self, word):
         return prompt_words.word(word, (word.lower(),)) is None
@@ -168,7 +168,7 @@ class HyPrompt(Guided, hy_prompt.HyPrompt):
     _error: Exception | None = None
 
     def evaluator(self):
-        return self.session.evaluate_text if self.in_lisp else hy_evaluator(self.repl.module)
+        return lisp_evaluator(self.session) if self.in_lisp else hy_evaluator(self.repl.module)
 
     def is_variable(self, word):
         return word in self.repl.locals
