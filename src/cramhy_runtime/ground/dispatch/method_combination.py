@@ -27,6 +27,10 @@ SAME = keyword("SAME")
 AROUND, BEFORE, AFTER = keyword("AROUND"), keyword("BEFORE"), keyword("AFTER")
 
 
+STRICTLY, STRICT = keyword("STRICTLY"), keyword("STRICT")
+"""The same as CHANGED, and as ``True``, for a method at safety 3: for other arguments the same methods must apply."""
+
+
 class SameNextMethod:
     """What a method gets as ``next``: calling it is ``call-next-method``; ``exists`` is ``next-method-p``."""
 
@@ -119,9 +123,30 @@ def _step(method, classes, following, changed):
         return partial(function, following)
     if method.uses_next is CHANGED:
         return partial(function, following, changed)
+    if method.uses_next is STRICTLY:
+        return lambda *given: function(following, _same_methods(method, given, changed), *given)
+    if method.uses_next is STRICT:
+        return lambda *given, **keywords: function(
+            NextMethod(following, _same_methods(method, given, changed), given, keywords), *given, **keywords
+        )
     if method.uses_next is SAME:
         return lambda *arguments, **keywords: function(SameNextMethod(following, arguments, keywords), *arguments, **keywords)
     return lambda *arguments, **keywords: function(NextMethod(following, changed, arguments, keywords), *arguments, **keywords)
+
+
+def _same_methods(method, given, changed):
+    """``changed``, behind a test that the methods for its arguments are those for ``given`` (ANSI CALL-NEXT-METHOD)."""
+
+    def call(*arguments, **keywords):
+        function = method.generic_function
+        if function.applicable_methods(arguments) != function.applicable_methods(given):
+            text = (
+                "The methods of ~S that apply to ~S, the arguments of CALL-NEXT-METHOD, are not those for ~S, the arguments of the method."
+            )
+            return error(SimpleError(text, function, list_from(arguments), list_from(given)))
+        return changed(*arguments, **keywords)
+
+    return call
 
 
 class Combination:

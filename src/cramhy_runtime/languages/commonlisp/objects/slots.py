@@ -18,7 +18,7 @@ from cramhy_runtime.ground.slot_classes import Classes
 from cramhy_runtime.ground.data import UNBOUND, Symbol, boolean, list_from, one, truth
 from cramhy_runtime.ground.packages import is_symbol, sym
 from cramhy_runtime.ground.python_names import python_name
-from .class_objects import ClassSlot, InstanceSlot, StandardObject, effective_slots, find_slot, may_be_unbound
+from .class_objects import ClassSlot, InstanceSlot, StandardClass, StandardObject, effective_slots, find_slot, may_be_unbound
 from cramhy_runtime.ground.classes import when_classes_change
 from .classes import class_of
 
@@ -147,10 +147,20 @@ def slot_boundp(object, slot_name):
     attribute = _attribute(object, slot_name)
     if attribute is None:
         return boolean(truth(one(missing_slot(object, slot_name, "SLOT-BOUNDP", "test to see whether slot is bound (SLOT-BOUNDP)"))))
-    return boolean(_bound(object, attribute))
+    return boolean(is_bound(object, attribute))
 
 
-def _bound(obj, attribute):
+def _member(cls, attribute):
+    """What ``cls`` or a superclass has for ``attribute``, or ``None``."""
+    return next((vars(base)[attribute] for base in cls.__mro__ if attribute in vars(base)), None)
+
+
+def is_bound(obj, attribute):
+    """Whether ``attribute``, which stands for a slot of ``obj``, has a value."""
+    if obj.__class__.__class__ is not StandardClass or isinstance(obj, type):
+        asked = getattr(_member(type(obj), attribute), "is_bound", None)
+        if asked is not None:
+            return asked(obj)
     update_if_obsolete(obj)
     own = getattr(obj, "__dict__", None)
     if own is not None and attribute in own and not isinstance(getattr(type(obj), attribute, None), ClassSlot):
