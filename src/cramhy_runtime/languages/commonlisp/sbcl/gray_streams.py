@@ -145,6 +145,14 @@ class FundamentalOutputStream(FundamentalStream, OutputStream):
         elif text:
             STREAM_WRITE_STRING(self, text, 0, len(text))
 
+    def write_part(self, text: str, start: int, end: int) -> None:
+        """``stream-write-string`` of the characters ``start`` to ``end``"""
+        STREAM_WRITE_STRING(self, text, start, end)
+
+    def terpri(self) -> None:
+        """``stream-terpri``"""
+        STREAM_TERPRI(self)
+
     def fresh_line(self) -> bool:
         """``stream-fresh-line``"""
         return truth(one(STREAM_FRESH_LINE(self)))
