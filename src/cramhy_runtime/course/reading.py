@@ -11,6 +11,7 @@ a block with ``title="Begin with"``              in a task: the code to begin wi
                                                  leaves it out
 ``<!-- in the course`` ... ``-->``               text that the course has in its place
 ``<!-- lisp -->`` or ``<!-- hy -->``             the paragraph or the piece of a session below is for those who learn in this language
+code ``(in Hy `code`)``                          the first code for Lisp, the second one for Hy (`parts.OF_BOTH`)
 ===============================================  ==========================================================================
 
 All else is text.
@@ -21,7 +22,6 @@ from __future__ import annotations
 import functools
 import re
 import tomllib
-from dataclasses import replace
 
 from . import contents
 from .parts import Code, File, Page, Part, Task, Text, Typed
@@ -104,8 +104,6 @@ def _parts(text):
             pending = None
             continue
         tabs = _TABS.search(between) is not None
-        if isinstance(part, Code) and _APART_CODE.search(between):
-            part = replace(part, apart=True)
         _add_text(found, _APART_CODE.sub("", _TABS.sub("", between)))
         found.append(part)
         end, pending = match.end(), True if tabs else None

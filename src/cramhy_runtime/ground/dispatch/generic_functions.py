@@ -34,8 +34,7 @@ from ..ports import PORTS
 from ..python_names import python_name
 
 all_generic_functions = weakref.WeakSet()
-_with_known_calls = weakref.WeakSet()
-"""Those whose cache may hold something. There are far fewer, and each definition of a class goes through them."""
+_with_known_calls = weakref.WeakSet()  # whose cache may hold something: far fewer, and each definition of a class goes through them
 
 
 @when_classes_change
@@ -82,11 +81,9 @@ class GenericFunction(ReachedSlots, FunctionObject):
     """Whether the function is of a class of a user's, which says how calls are made."""
     method_class = None
     """What makes a new `Method` one of a user's class, or ``None``."""
-    watcher = None
+    watcher = direct = direct_methods = enclosure = None
     advice: str | None = None
     """What the error that no method is applicable tells the user to do."""
-    direct = direct_methods = None
-    enclosure = None
 
     def lisp_init(self, name=None, lambda_list=None, method_class=None):
         """What ``make-instance`` does."""
