@@ -17,7 +17,7 @@ from ..data import Symbol, lisp_list, list_from, one, truth
 from ..packages import keyword, sym, symbol_name
 from ..ports import PORTS
 from .generic_errors import no_next_method_error, no_primary_method_error
-from .methods import class_for_dispatch
+from .methods import class_for_dispatch, is_sized
 
 DIRECTLY, CHANGED = keyword("DIRECTLY"), keyword("CHANGED")
 """What ``uses_next`` of a method is that takes the function of the next method itself, and gives it all arguments. With CHANGED it takes
@@ -77,17 +77,20 @@ class _Changed:
     """The function of a method for other arguments than those for which it was chosen. It signals a type-error for one that is not of the
     method's class (ANSI 7.6.6.2); so do the next methods, which are not all asked before, as on SBCL."""
 
-    __slots__ = ("method", "following", "known")
+    __slots__ = ("method", "count", "following", "known")
 
     def __init__(self, method, following):
-        self.method, self.following, self.known = method, following, {}
+        self.method, self.count, self.following, self.known = method, len(method.specializers), following, {}
 
     def __call__(self, *arguments, **keywords):
-        classes = tuple(map(class_for_dispatch, arguments[: len(self.method.specializers)]))
-        function = self.known.get(classes)
+        kinds = tuple(map(type, arguments[: self.count]))
+        function = self.known.get(kinds)
         if function is None:
+            classes = tuple(map(class_for_dispatch, arguments[: self.count]))
             self._check(arguments, classes)
-            function = self.known[classes] = _step(self.method, classes, self.following, self.following)
+            function = _step(self.method, classes, self.following, self.following)
+            if bool not in kinds and not (int in kinds and any(map(is_sized, self.method.specializers))):
+                self.known[kinds] = function
         return function(*arguments, **keywords)
 
     def _check(self, arguments, classes):

@@ -155,7 +155,11 @@ class Slot(SlotDefinition):
         self.documentation = documentation
 
 
-class ClassSlot:
+class SlotMember:
+    """The attribute of a class for a slot whose value is not, or not only, in the dictionary of the instance."""
+
+
+class ClassSlot(SlotMember):
     """The Python attribute for a slot with ``:allocation :class``: one value for all instances."""
 
     def __init__(self, name):
@@ -196,7 +200,7 @@ VALUES = "lisp_slot_values"
 """The attribute of a class that holds the values of its own slots, those of its metaclass."""
 
 
-class MetaobjectSlot:
+class MetaobjectSlot(SlotMember):
     """The attribute of a metaclass for a slot of its classes. Were it an attribute of the class, instances would have it, too."""
 
     def __init__(self, slot):

@@ -397,7 +397,7 @@ def default_shared_initialize(instance, slot_names, *initargs):
         for slot in plan.shared:
             if slot.cell.value is UNBOUND and (wanted is True or slot.name in wanted):
                 slot.cell.value = one(slot.initfunction())
-    if isinstance(instance, SlotDefinition):
+    if not parameters or isinstance(instance, SlotDefinition):
         return instance
     for index in range(0, len(initargs), 2):  # after the Python __init__, reinitialization sets its attributes too
         if initargs[index] in parameters:

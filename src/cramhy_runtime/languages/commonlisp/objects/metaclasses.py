@@ -26,6 +26,7 @@ from .class_objects import (
     ClassSlot,
     DirectSlot,
     Slot,
+    SlotMember,
     StandardClass,
     StandardObject,
     attribute_for,
@@ -263,7 +264,7 @@ def compute_default_initargs(class_):
 # ---------------------------------------------------------------------------------------------------------- slots of instances
 
 
-class UsedSlot:
+class UsedSlot(SlotMember):
     """What a class has for a slot of its instances when a user's methods on ``slot-value-using-class`` may apply to it."""
 
     def __init__(self, slot):
@@ -274,7 +275,7 @@ class UsedSlot:
 
     def __get__(self, instance, owner):
         if instance is None:
-            raise AttributeError(self.name)  # the class has no value
+            return self
         return one(opened(slot_value_using_class)(owner, instance, self._slot(instance)))
 
     def __set__(self, instance, new):

@@ -126,6 +126,7 @@ class FundamentalOutputStream(FundamentalStream, OutputStream):
     """A user's stream to write to."""
 
     lisp_name = "SB-GRAY::FUNDAMENTAL-OUTPUT-STREAM"
+    of_user = True
 
     @property
     def column(self) -> int:  # type: ignore[override]

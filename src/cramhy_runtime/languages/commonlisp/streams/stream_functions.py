@@ -68,7 +68,7 @@ def write_string(string, stream=None, *, start=0, end=None):
         stream = output_stream(stream)
     if start or end is not None:
         start, end = bounds(start, end, len(text))
-        if hasattr(stream, "write_part"):  # of a user's class
+        if stream.of_user:
             stream.write_part(text, start, end)
             return string
         text = text[start:end]
@@ -81,7 +81,7 @@ def write_line(string, stream=None, *, start=0, end=None):
     text = _text(string)
     start, end = bounds(start, end, len(text))
     stream = output_stream(stream)
-    if hasattr(stream, "write_part"):
+    if stream.of_user:
         stream.write_part(text, start, end)
         stream.write("\n")
     else:
@@ -120,7 +120,7 @@ def write_sequence(sequence, stream, *, start=0, end=None):
 
 def terpri(stream=None):
     stream = stream if isinstance(stream, OutputStream) else output_stream(stream)
-    if hasattr(stream, "terpri"):  # of a user's class
+    if stream.of_user:
         stream.terpri()
     else:
         stream.write("\n")
