@@ -71,8 +71,8 @@ def _of_kind(kind, result, *operands):
     if kind is float:
         return result
     found = SingleFloat(result)
-    if found - found != 0.0 and result - result == 0.0 and not is_masked(OVERFLOW):
-        return error(FloatingPointOverflow())
+    if found - found != 0.0 and result - result == 0.0:
+        return too_large_for(result, "SINGLE-FLOAT")
     return found
 
 
@@ -350,9 +350,10 @@ def scale_float(number, exponent):
     """``number * 2**exponent``"""
     _need_float(number)
     try:
-        return _of_kind(number.__class__, math.ldexp(float(number), need_integer(exponent)))
+        result = number.__class__(math.ldexp(float(number), need_integer(exponent)))
     except OverflowError:
         return overflow("SCALE-FLOAT", number, exponent)
+    return overflow("SCALE-FLOAT", number, exponent) if math.isinf(result) and math.isfinite(number) else result
 
 
 def float_digits(number):
