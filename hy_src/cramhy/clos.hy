@@ -142,23 +142,24 @@
   (when (not (mentions (list-from body) #{(sym "CALL-NEXT-METHOD") (sym "NEXT-METHOD-P")}))
     (return #(`(lambda ~plain ~@declarations (block ~block ~@forms)) None)))
   (setv next (gensym "NEXT") rest (gensym "ARGUMENTS"))
+  (setv changes (mentions (list-from body) #{(sym "CALL-NEXT-METHOD")} (sym "CALL-NEXT-METHOD")))
   (if (and all-required (= (len (set required)) (len required)))  ; the next method gets what this one got, which nobody changes
       (do
-        (setv given (lfor variable required (gensym (symbol-name variable))))
-        #(`(lambda [~next ~@given]
-             (flet [[call-next-method [&rest ~rest] (%next-values ~next ~rest ~@given)]
+        (setv given (lfor variable required (gensym (symbol-name variable))) changed (if changes [(gensym "CHANGED")] []))
+        #(`(lambda [~next ~@changed ~@given]
+             (flet [[call-next-method [&rest ~rest] (%next-values ~next ~(if changes (get changed 0) next) ~rest ~@given)]
                     [next-method-p [] (%next-method-exists ~next)]]
                (let [~@(lfor #(variable value) (zip required given) (list-from [variable value]))]
                  ~@declarations
                  (block ~block ~@forms))))
-          :directly))
+          (if changes :changed :directly)))
       (do
         #(`(lambda [~next ~@(elements plain)]
              ~@declarations
              (flet [[call-next-method [&rest ~rest] (apply ~next ~rest)]
                     [next-method-p [] (%next-method-exists ~next)]]
                (block ~block ~@forms)))
-          True))))
+          (if changes True :same)))))
 
 (defoperator defmethod [name #* forms]
   (setv #(qualifiers lambda-list body) (method-parts forms))

@@ -15,7 +15,7 @@ pytestmark = needs_terminals
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from cramhy_runtime.course import reading  # noqa: E402
-from cramhy_runtime.course.guide import steps  # noqa: E402
+from cramhy_runtime.course.steps import steps  # noqa: E402
 from cramhy_runtime.course.parts import Code, Task  # noqa: E402
 
 from .walking import solution  # noqa: E402

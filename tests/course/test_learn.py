@@ -7,18 +7,39 @@ import io
 import json
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from cramhy_runtime.course import learn, reading
-from cramhy_runtime.course.guide import command, meant
+from cramhy_runtime.course import contents, learn, reading
+from cramhy_runtime.course.guide import Guide, command, meant
+from cramhy_runtime.course.parts import Code, File, Page, Text, Typed
 from cramhy_runtime.course.progress import Progress
-from cramhy_runtime.course.shown import Style, text
+from cramhy_runtime.course.shown import Style, filled, text
+from cramhy_runtime.course.steps import answer_shown, steps
 from cramhy_runtime.repl.session import Session
 
 from .walking import Script
 
 
-TASK = {"lisp": ":page 1 4", "hy": ":page 1 3"}
+def step_with(page, language, wanted):
+    """The command that leads to the first step of the page with that number whose part is as wanted, or has a task of that name."""
+    found = steps(reading.page(contents.NAMES[page - 1]), language)
+    for number, step in enumerate(found, 1):
+        if getattr(step.part, "name", None) == wanted if isinstance(wanted, str) else wanted(step.part):
+            return f":page {page} {number}"
+    raise AssertionError(f"no step of page {page} is as wanted")
+
+
+def types(beginning):
+    """Whether a part of a page has a form that begins so."""
+    return lambda part: any(typed.form.startswith(beginning) for typed in getattr(part, "lisp", None) or () if isinstance(part, Code))
+
+
+TASK = {language: step_with(1, language, "seconds-of-a-day") for language in ("lisp", "hy")}
 """Leads to the first task of the first page."""
+
+
+LAST = len(steps(reading.page("first-forms"), "lisp"))
 
 
 @pytest.fixture
@@ -155,7 +176,10 @@ def test_who_goes_on_in_the_debugger_is_told_once(typed):
 )
 def test_files_are_written_and_those_of_the_student_stay(typed, tmp_path, page, language, there):
     file = tmp_path / "files" / "lectures" / there
-    number = 2 if language == "lisp" else 1
+    number = next(
+        number for number, step in enumerate(steps(reading.page(page), language), 1)
+        if step.piece and step.piece.number == step.piece.count and getattr(step.part, language)[0] == there
+    )  # fmt: skip
     assert f"Written: {there}" in typed([*[":next"] * number, ":quit"], page, language)
     written = file.read_text()
     file.write_text("; mine\n")
@@ -192,10 +216,10 @@ def test_a_folder_that_cannot_be_made_is_told(tmp_path):
 def test_progress_is_kept_and_the_next_run_goes_on_there(typed, tmp_path):
     path = tmp_path / "state" / "learn.json"
     typed([TASK["lisp"], "(* 24 60 60)", ":check", ":n", ":quit"], progress=Progress(str(path)))
-    again = Progress(str(path))
-    assert (again.page, again.steps, again.solved) == ("first-forms", {"first-forms": 4}, {"seconds-of-a-day"})
+    again, place = Progress(str(path)), int(TASK["lisp"].split()[-1])
+    assert (again.page, again.steps, again.solved) == ("first-forms", {"first-forms": place}, {"seconds-of-a-day"})
     shown = typed([":pages", ":quit"], None, progress=again)
-    assert "Page 1, step 5 of " in shown and "1 of 3 tasks solved" in shown
+    assert f"Page 1, step {place + 1} of " in shown and "1 of 3 tasks solved" in shown
 
 
 @pytest.mark.parametrize(
@@ -276,19 +300,20 @@ def test_an_error_ends_what_is_typed_again(typed, tmp_path):
 
 
 def test_tasks_that_are_left_unsolved_are_told(typed):
-    shown = typed([TASK["lisp"], ":next", ":page 1 10", ":quit"])
+    shown = typed([TASK["lisp"], ":next", f":page 1 {LAST}", ":quit"])
     assert "You have not typed :check for this task: The seconds of a day. :back leads back to it." in shown
-    end = shown[shown.index("step 10 of 10") :]
-    assert "; Not solved yet: The seconds of a day (:page 1 4)\n; Not solved yet: Turn to the left (:page 1 8)\n" in end
-    shown = typed([TASK["lisp"], "(* 24 60 60)", ":check", ":next", ":page 1 10", ":quit"])
+    end = shown[shown.index(f"step {LAST} of {LAST}") :]
+    left = step_with(1, "lisp", "turn-left")
+    assert f"; Not solved yet: The seconds of a day ({TASK['lisp']})\n; Not solved yet: Turn to the left ({left})\n" in end
+    shown = typed([TASK["lisp"], "(* 24 60 60)", ":check", ":next", f":page 1 {LAST}", ":quit"])
     assert "The seconds of a day (:page" not in shown and ":back leads back" not in shown
     assert "The task is not solved yet: The seconds of a day." in typed([TASK["lisp"], "(* 24 60)", ":check", ":next", ":quit"])
 
 
 @pytest.mark.parametrize(
     ("argument", "told"),
-    [("1 2", "Page 1, step 2 of"), ("2 3", "Page 2, step 3 of"), ("1 99", "Page 1 has the steps 1 to 10"), ("1 0", "steps 1 to 10"),
-     ("2 x", "Page 2 has the steps 1 to 8"), ("99 1", "Which page?"), ("lecture-34 2", "Page 4, step 2 of")],
+    [("1 2", "Page 1, step 2 of"), ("2 3", "Page 2, step 3 of"), ("1 99", f"Page 1 has the steps 1 to {LAST}"), ("1 0", f"steps 1 to {LAST}"),
+     ("2 x", "Page 2 has the steps 1 to "), ("99 1", "Which page?"), ("lecture-34 2", "Page 4, step 2 of")],
 )  # fmt: skip
 def test_a_step_of_a_page_is_reached_by_its_number(typed, argument, told):
     assert told in typed([f":page {argument}", ":quit"])
@@ -303,8 +328,6 @@ def test_a_call_without_parentheses_is_told(typed, line):
 
 
 def test_remarks_are_filled_to_the_width_of_the_terminal():
-    from cramhy_runtime.course.shown import filled
-
     assert filled("; one two three four five six seven eight", Style(30)) == "; one two three four five six\n; seven eight"
     assert filled("short", Style(30)) == "short" and filled("    code " * 9, Style(30)) == "    code " * 9
 
@@ -317,18 +340,23 @@ def test_the_forms_of_a_step_are_typed_for_you(typed, language):
     shown = typed([":type", ":t", ":type", ":type", TASK[language], ":type", ":quit"], language=language)
     assert "(max 3 7 5)\n7\n" in shown and shown.count("To see the next step, type :next") == 1
     assert "This step has nothing more to type." in shown and "A task is for you to type." in shown
-    begun = typed([":page 2 4", ":type", "(rectangle-around 2 3)", ":check", ":quit"], "first-forms", language)
+    begun = typed([step_with(2, language, "rectangle"), ":type", "(rectangle-around 2 3)", ":check", ":quit"], "first-forms", language)
     assert "(rectangle-around 2 3)\n5\n" in begun and "Not yet." in begun
 
 
 def test_the_mistake_on_purpose_is_typed_too_and_left(typed):
     for out in ("q", "3", ":type"):
-        shown = typed([":page 1 3", ":type", out, ":type", ":quit"])
+        shown = typed([step_with(1, "lisp", types("(+ 1 two)")), ":type", out, ":type", ":quit"])
         assert shown.count("To see the next step, type :next") == 1 and shown.count("debugger invoked on") == 2, out
 
 
 def test_a_form_that_fails_is_still_to_be_typed(typed):
-    lines = [":page 1 5", "(in-package :nowhere)", "q", '(ros-load:load-system "cram_my_beginner_tutorial" :cram-my-beginner-tutorial)']
+    lines = [
+        step_with(1, "lisp", types("(ros-load:")),
+        "(in-package :nowhere)",
+        "q",
+        '(ros-load:load-system "cram_my_beginner_tutorial" :cram-my-beginner-tutorial)',
+    ]
     before = typed([*lines, "(init)", "q", "(in-package :tut)", ":quit"])
     assert "To see the next step" not in before
     assert "To see the next step" in typed([*lines, "(in-package :tut)", "(init)", ":quit"])
@@ -365,13 +393,57 @@ LOAD = ['(ros-load:load-system "cram_my_beginner_tutorial" :cram-my-beginner-tut
 
 
 def test_another_node_that_drives_the_turtle_is_named(typed):
-    shown = typed([*LOAD, ":page 1 9", "(turtlesim:draw-square)", "(defun drive-square () 1)", ":check", ":quit"])
+    shown = typed([*LOAD, step_with(1, "lisp", "first-square"), "(turtlesim:draw-square)", "(defun drive-square () 1)", ":check", ":quit"])
     assert "The node /draw_square may drive the turtle, too. End it: rosnode kill /draw_square" in shown
-    assert "may drive the turtle" not in typed([*LOAD, ":page 1 9", "(defun drive-square () 1)", ":check", ":quit"])
+    assert "may drive the turtle" not in typed(
+        [*LOAD, step_with(1, "lisp", "first-square"), "(defun drive-square () 1)", ":check", ":quit"]
+    )
 
 
-@pytest.mark.parametrize(("page", "step", "language", "shown_whole"), [(1, 5, "lisp", False), (7, 7, "lisp", True)])
-def test_many_lines_of_the_log_are_cut_where_a_step_is_shown(typed, page, step, language, shown_whole):
-    shown = typed([f":page {page} {step}", ":quit"], language=language)
-    shown = shown[shown.index(f"Page {page}, step {step}") :]
-    assert ("[... some lines of the log]" in shown and "INFO]" not in shown) if not shown_whole else "some lines of the log" not in shown
+def test_many_lines_of_the_log_are_cut_where_a_step_is_shown(typed):
+    shown = typed([step_with(1, "lisp", types("(ros-load:")), ":quit"])
+    assert "[... some lines of the log]" in shown and "INFO]" not in shown
+
+
+# ------------------------------------------------------------------------------------------------------------- the size of a step
+
+
+@pytest.mark.parametrize("language", ["lisp", "hy"])
+@pytest.mark.parametrize("name", contents.NAMES)
+def test_each_step_fits_a_terminal_of_24_rows_of_80_columns_with_the_prompt(name, language):
+    guide = Guide(name, language, Progress(), Style(79))
+    for place in range(len(guide.steps)):
+        guide.place = place
+        rows = [
+            row for line in guide.show().split("\n") for row in (filled(line, guide.style) if line.startswith("; ") else line).split("\n")
+        ]
+        assert len(rows) <= 23 and max(map(len, rows)) < 80, "\n".join(rows)
+
+
+LONG = [f"(defun f{number} (x)\n  (+ x\n     {number}))" for number in range(20)]
+
+
+@given(
+    st.lists(st.sampled_from(["A paragraph of a few words. " * 9, "# Heading", "These are them:", "* one\n* two", "```\n" + "\n\n".join(LONG) + "\n```"])),
+    st.lists(st.builds(Typed, st.just("CL-USER> "), st.sampled_from(LONG), st.integers(0, 40).map(lambda count: "line\n" * count)), max_size=9).map(tuple),
+    st.sampled_from(["code", "file", "nothing"]),
+)  # fmt: skip
+def test_a_page_is_cut_into_steps_without_loss(texts, typed, kind):
+    markdown, file = "\n\n".join(texts), ("f.lisp", "\n\n".join(each.form for each in typed) + "\n")
+    parts = {"code": [Code(lisp=typed)], "file": [File(lisp=file)], "nothing": []}[kind] if typed else []
+    found = steps(Page("p", "P", (Text(markdown), *parts)), "lisp")
+    words = [word for step in found for text in step.texts for word in text.split() if word != "```"]
+    assert words == [word for word in markdown.split() if word != "```"]
+    assert tuple(each for step in found if isinstance(step.part, Code) for each in step.part.lisp) == (typed if kind == "code" else ())
+    pieces = [step.piece for step in found if step.piece]
+    assert "\n".join(piece.text for piece in pieces) == (file[1] if kind == "file" and typed else "")
+    assert [piece.number for piece in pieces] == list(range(1, len(pieces) + 1))
+
+
+def test_a_long_answer_is_shown_without_its_middle_and_an_error_from_its_beginning():
+    answer = "one line\n" * 9 + "debugger invoked on a BAD:\n  It is bad.\n" + "a restart\n" * 9 + "last\n"
+    assert answer_shown(Typed("CL-USER> ", "(bad)", answer)).splitlines() == [
+        "[... 9 lines more when you type it]", "debugger invoked on a BAD:", "  It is bad.", *["a restart"] * 7,
+        "[... 2 lines more when you type it]", "last",
+    ]  # fmt: skip
+    assert answer_shown(Typed("CL-USER> ", "(good)", "line\n" * 12)) == "line\n" * 12

@@ -10,7 +10,7 @@ import io
 from pathlib import Path
 
 from cramhy_runtime.course import learn, reading
-from cramhy_runtime.course.guide import steps
+from cramhy_runtime.course.steps import steps
 from cramhy_runtime.course.parts import Code, Task
 from cramhy_runtime.course.progress import Progress
 from cramhy_runtime.course.shown import Style

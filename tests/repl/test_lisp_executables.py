@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
+import signal
 
 import pytest
 
@@ -121,3 +123,19 @@ def test_launch_files_start_lisp_programs(private, workspace):
         assert talker.status() == 0
     with pytest.raises(ProcessLookupError):
         os.kill(says, 0)
+
+
+def test_lisp_programs_end_with_a_launcher_that_is_killed(private, workspace):
+    """By SIGKILL, of which roslaunch hears nothing itself. They leave as when their terminal is closed: the node, too."""
+    pytest.importorskip("uvicorn")
+    pytest.importorskip("websockets")
+    (workspace / "says.launch").write_text('<launch><node pkg="tin_talk" type="talker" name="says"/></launch>')
+    with Terminal("ros", "roslaunch", "tin_talk", "says.launch") as launcher:
+        launcher.expect("Node startup complete")
+        os.kill(launcher.pid, signal.SIGKILL)
+        launcher.expect(rf"\[rosrun\] roslaunch \[pid {launcher.pid}\] is gone, so the programs that it started end\.\n")
+        assert launcher.status() == -signal.SIGKILL
+        os.set_blocking(launcher.master, False)
+        with pytest.raises(OSError) as problem:  # nobody has the terminal any more
+            os.read(launcher.master, 1)
+        assert problem.value.errno == errno.EIO

@@ -387,6 +387,47 @@ def test_a_spoon_at_the_back_of_its_drawer_is_brought_out(ask):
     assert ask("(place-of 'spoon)").startswith("(-0.8 1.2 ") and ask(f'(zerop (opened "{UPPER}"))') == "T"
 
 
+def turned(degrees):
+    return f"(0 0 {sin(degrees * pi / 360):.6f} {cos(degrees * pi / 360):.6f})"
+
+
+AMONG_OTHERS = [  # what is fetched, and what stands beside it: the kind, x and y in metres, degrees about z
+    pytest.param([("milk", 1.562, 1.04, 22), ("cereal", 1.48, 0.882, 19)], id="milk behind a box, CRAM's demo-random with seed 8"),
+    pytest.param([("milk", 1.402, 1.24, 5), ("cereal", 1.48, 1.158, -169)], id="milk between a box and a wall, seed 4", marks=takes_long),
+    pytest.param([("bottle", 1.45, 1.24, 0), ("cup", 1.34, 1.22, 0), ("milk", 1.45, 1.13, 0)], id="bottle among two", marks=takes_long),
+    pytest.param(
+        [("milk", 1.45, 0.7, 0), ("cereal", 1.43, 0.792, 180), ("breakfast-cereal", 1.43, 0.608, 0)],
+        id="milk between two boxes",
+        marks=takes_long,
+    ),
+]
+
+
+@pytest.mark.parametrize("things", AMONG_OTHERS)
+def test_what_keeps_every_hand_from_an_object_is_put_aside(ask, capsys, things):
+    for kind, x, y, degrees in things:
+        spawn(ask, kind, kind, x, y, turned(degrees))
+    wanted, *others = [kind for kind, *_ in things]
+    x, y, z = (float(number) for number in ask(f"(place-of '{wanted})").strip("()").split())
+    assert ask(f"(transport '({x} {y} {z}) '(-0.8 1.2 0.95) :{wanted})") == "NIL"
+    assert ask(f"(place-of '{wanted})").startswith("(-0.8 1.2 0.9") and ask("(held)") == "NIL"
+    assert " is in the way. It is put aside." in capsys.readouterr().out
+    for (kind, x, y, _), now in zip(things[1:], [ask(f"(place-of '{kind})") for kind in others], strict=True):
+        now_x, now_y, now_z = (float(number) for number in now.strip("()").split())
+        assert dist((x, y), (now_x, now_y)) < 0.6 and now_z > 0.88, f"{kind} is at {now}"
+
+
+def test_what_is_held_or_lies_in_a_drawer_or_stands_apart_is_not_put_aside(ask):
+    for name, x, y in (("it", 1.45, 0.7), ("held", 1.45, 0.5), ("beside", 1.45, 0.9), ("apart", 1.45, 0.1)):
+        spawn(ask, name, "bottle", x, y)
+    ask('(btr:attach-object (btr:get-robot-object) (btr:object btr:*current-bullet-world* \'held) "l_gripper_palm_link")')
+    ask(f'(put-spoon-into "{UPPER}")')
+    ask("(btr:add-object btr:*current-bullet-world* :box 'post '((1.3 0.7 0.93) (0 0 0 1)) :size '(0.04 0.2 0.16) :mass 0)")
+    names = "(pr2-fd-plans::neighbours (btr:object btr:*current-bullet-world* 'it))"
+    assert ask(names) == "(BESIDE)"
+    assert ask(f"(let ((pr2-fd-plans::*wanted* '(beside))) {names})") == "NIL"
+
+
 def let_fall(ask):
     """Deliver a bottle to a place in the air, before the counter; what came of it."""
     spawn(ask, "bottle", "bottle", 1.42, 0.7)

@@ -17,6 +17,9 @@ from typing import NamedTuple
 _CALL = re.compile(r"\b(?:rosbuild_)?add_(?:compiled_)?lisp_executable\s*\(([^()]*)\)", re.IGNORECASE)
 INTERRUPTED = 15.0  # s that a program gets to end after Ctrl-C, as with roslaunch
 TERMINATED = 2.0  # s after SIGTERM
+LAUNCHER = "CRAMHY_LAUNCHER"
+"""The environment variable that tells a program which process roslaunch is."""
+LOOK = 0.5  # s between two looks whether roslaunch is still there
 _COMMENT = re.compile(r"#\[\[.*?\]\]|#[^\n]*", re.DOTALL)
 
 
@@ -55,6 +58,7 @@ def run(package, executable, arguments):
 
         def work():
             made = cli.session(options, closings)
+            _end_with_launcher()
             add_features(["ROSLISP-STANDALONE-EXECUTABLE"])
             node.command_line.value = tuple(arguments)
             made.evaluate_text(f'(ros-load:load-system "{package}" "{executable.system}")', "<rosrun>")
@@ -65,6 +69,30 @@ def run(package, executable, arguments):
             return 0
 
         return cli.status_of(work)
+
+
+def _end_with_launcher():
+    """Have this program end as by the end of its terminal when the roslaunch that started it is gone, even by SIGKILL.
+
+    ROS leaves such programs behind. A process whose parent has ended gets another one, which POSIX systems tell (getppid(2)); Windows
+    does not, so there the program stays.
+    """
+    launcher = os.environ.pop(LAUNCHER, None)
+    if launcher is None:
+        return
+    import signal
+
+    from cramhy_runtime import kernel
+
+    session = kernel.active()
+
+    def look():
+        if str(os.getppid()) != launcher:
+            timer.cancel()
+            print(f"[rosrun] roslaunch [pid {launcher}] is gone, so the programs that it started end.", file=sys.stderr, flush=True)
+            session.terminate(getattr(signal, "SIGHUP", signal.SIGTERM))
+
+    timer = kernel.call_every(LOOK, look)
 
 
 def _end_line():
@@ -120,7 +148,8 @@ class Processes:
         from .shims import words_of
 
         words = [*words_of("rosrun"), program.package, program.executable, *program.arguments]
-        process = subprocess.Popen(words, stdin=subprocess.DEVNULL, start_new_session=True)  # Ctrl-C is ours to hand on, once
+        surroundings = {**os.environ, LAUNCHER: str(os.getpid())}
+        process = subprocess.Popen(words, stdin=subprocess.DEVNULL, start_new_session=True, env=surroundings)  # Ctrl-C is ours to hand on
         self._running[f"{program.label}-{number}"] = process
         return process.pid
 

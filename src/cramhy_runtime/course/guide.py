@@ -1,20 +1,20 @@
 """A student's way through a page in the terminal: which step is shown, and what the commands of ``cramhy learn`` say.
 
-A step is some text, and then code to type, a file or a task. Nothing here reads lines or evaluates anything: `learn` does.
+`steps` cuts the page. Nothing here reads lines or evaluates anything: `learn` does.
 """
 
 from __future__ import annotations
 
 import difflib
 import re
-from typing import NamedTuple
 
 from . import checking, contents, files, shown
-from .parts import Code, File, Page, Task, Text, Typed, text_in
+from .parts import Code, File, Task, Typed, text_in
 from .progress import Progress
 from .reading import PageError, page, pages
 from .replay import Replay
 from .shown import Style
+from .steps import ERROR, Step, file_shown, session_shown, steps, task_shown
 
 COMMANDS = {
     "next": ("n", "the next step, or the next page"),
@@ -35,36 +35,7 @@ _SHORT = {short: name for name, (short, _) in COMMANDS.items() if short}
 WITH_ARGUMENT = ("page",)
 _WITHOUT_PARENTHESES = re.compile(r"\s*[-+*/](?:\s+-?\d[\d.]*)+\s*")
 _OF_DEBUGGER = re.compile(r"\d+\] ")
-_LOG = re.compile(r"(?:^\[\([A-Z].*\) INFO\].*\n){3,}", re.M)
-_SHORT_LOG = "[... some lines of the log]\n"
-"""What a step shows in the place of many lines of the log; they come when the form is typed."""
-ERROR = "debugger invoked"
-"""In the answer of a form that a page shows to fail."""
 OVER = "; To see the next step, type :next"
-
-
-class Step(NamedTuple):
-    """What is shown at once: texts (Markdown), and then perhaps a part to do something with."""
-
-    texts: tuple[str, ...]
-    part: Code | File | Task | None
-
-
-def steps(wanted: Page, language: str) -> list[Step]:
-    """The steps of a page for those who learn in ``language``. Code and files of the other language are left out, or only shown."""
-    found, texts = [], []
-    for part in wanted.parts:
-        if isinstance(part, Text):
-            texts += filter(None, [text_in(part.markdown, language)])
-        elif isinstance(part, Task) or getattr(part, language):
-            found.append(Step(tuple(texts), part))
-            texts = []
-        elif isinstance(part, Code) and not part.apart:
-            block = "".join(f"{typed.prompt}{typed.form}\n{typed.answer}" for typed in part.lisp or part.hy)
-            texts.append(f"```\n{block}```")
-    if texts or not found:
-        found.append(Step(tuple(texts), None))
-    return found
 
 
 def command(line: str) -> tuple[str, str] | None:
@@ -158,44 +129,38 @@ class Guide:
         """The step as text, with what can be typed now."""
         number = contents.NAMES.index(self.page.name) + 1
         head = f"Page {number}, step {self.place + 1} of {len(self.steps)}: {self.page.title}"
-        found = ["", self.style.bold(f"--- {head} ---")]
+        found = [self.style.bold(f"--- {head} ---")]
         found += [shown.text(each, self.style) for each in self.step.texts]
         part = self.step.part
         if isinstance(part, Code):
-            typed = getattr(part, self.language)
-            found.append(
-                shown.code("".join(f"{each.prompt}{each.form}\n{_LOG.sub(_SHORT_LOG, each.answer)}" for each in typed), self.style)
-            )
+            found.append(shown.code(session_shown(part, self.language), self.style))
         elif isinstance(part, File):
-            found.append(self._file(*getattr(part, self.language)))
+            found.append(file_shown(getattr(part, self.language)[0], self.step.piece, self.style))
         elif isinstance(part, Task):
-            found.append(self._task(part))
+            found.append(task_shown(part, self.language, self.style, part.name in self.progress.solved))
         found.append(self._foot())
-        return "\n\n".join(found)
-
-    def _file(self, name, text):
-        return f"{self.style.bold(f'The file {name}')}\n\n{shown.code(text, self.style)}"
-
-    def _task(self, task):
-        solved = " (solved)" if task.name in self.progress.solved else ""
-        found = [self.style.bold(f"Task: {task.title}{solved}"), shown.text(text_in(task.markdown, self.language), self.style)]
-        if self.language in task.start:
-            begin = "Begin with this, and change it (:type types it, and the arrow key up brings it back):"
-            found += [begin, shown.code(task.start[self.language], self.style)]
-        return "\n\n".join(found)
+        return "\n" + "\n\n".join(found)
 
     def _foot(self):
         part = self.step.part
         if isinstance(part, Task):
-            return "; Type your solution at the prompt. Then type :check, or :hint for a hint. :next goes on."
+            return "; Type your solution, then :check. :hint gives a hint, and :next goes on."
         if isinstance(part, File):
-            return "; :next writes this file and goes on. You can also write it yourself, with an editor."
+            if not self._is_last_piece():
+                return "; :next shows the next part of the file."
+            return "; :next writes this file and goes on. Or write it yourself, with an editor."
         if self.place + 1 < len(self.steps):
-            return "; Type what stands behind the prompts, or :type does. :next goes on, and :help tells the rest."
+            if part is None:
+                return "; :next goes on."
+            return "; Type what stands behind the prompts, or :type does. :next goes on."
         after = self._after()
         if after is None:
             return self._with_unsolved("; This is the end of the course. :pages shows all pages.")
         return self._with_unsolved(f"; This is the end of the page. :next begins the next one: {page(after).title}.")
+
+    def _is_last_piece(self):
+        piece = self.step.piece
+        return piece is not None and piece.number == piece.count
 
     def _with_unsolved(self, told):
         """``told``, and before it how to come to the tasks of this page that are not solved yet."""
@@ -257,7 +222,7 @@ class Guide:
 
     def _next(self):
         said = []
-        if isinstance(self.step.part, File):
+        if isinstance(self.step.part, File) and self._is_last_piece():
             said = [self._provide(over=False)]
         elif isinstance(self.step.part, Task) and self.step.part.name not in self.progress.solved:
             why = "The task is not solved yet" if self._checked else "You have not typed :check for this task"
@@ -399,4 +364,4 @@ def _squeezed(form):
     return " ".join(form.split()).lower()
 
 
-__all__ = ["command", "COMMANDS", "Guide", "meant", "PageError", "Step", "steps"]
+__all__ = ["command", "COMMANDS", "Guide", "meant", "PageError"]

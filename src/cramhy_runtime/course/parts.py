@@ -8,21 +8,27 @@ from dataclasses import dataclass, field
 from cramhy_runtime.kernel.typing_names import Any
 
 LANGUAGES = ("lisp", "hy")
-_ONLY_FOR = re.compile(r"^<!-- (lisp|hy) -->\n(.+?)(?:\n\s*\n|\n?\Z)", re.M | re.S)
+_ONLY_FOR = re.compile(
+    r"^<!-- (?P<marked>lisp|hy) -->\n+(?P<text>```.*?^```$\n?|.+?(?:\n\s*\n|\n?\Z))|^(?P<code>```(?P<written>lisp|hy)\n.*?^```$\n?)",
+    re.M | re.S,
+)
 
 
 def by_language(markdown: str) -> list[tuple[str | None, str]]:
-    """Markdown in pieces, each with the language that it is for, ``None`` for both. A paragraph below ``<!-- hy -->`` is for Hy only."""
+    """Markdown in pieces, each with the language that it is for, ``None`` for both.
+
+    A paragraph or a block below ``<!-- hy -->`` is for Hy only, and so is a block of code that begins with `````hy``.
+    """
     found, end = [], 0
     for match in _ONLY_FOR.finditer(markdown):
-        found += [(None, markdown[end : match.start()]), (match[1], match[2])]
+        found += [(None, markdown[end : match.start()]), (match["marked"] or match["written"], match["text"] or match["code"])]
         end = match.end()
     found.append((None, markdown[end:]))
     return [(language, stripped) for language, text in found if (stripped := text.strip("\n"))]
 
 
 def text_in(markdown: str, language: str) -> str:
-    """Markdown without the paragraphs that are for the other language."""
+    """Markdown without what is for the other language."""
     return "\n\n".join(text for only, text in by_language(markdown) if only in (None, language))
 
 
@@ -51,14 +57,10 @@ class Typed:
 
 @dataclass(frozen=True)
 class Code:
-    """A piece of a session. ``lisp``, ``hy``: what is typed in each language; empty if there is nothing in that one.
-
-    ``apart``: those who learn in the other language do not even read it.
-    """
+    """A piece of a session. ``lisp``, ``hy``: what is typed in each language; empty if there is nothing in that one."""
 
     lisp: tuple[Typed, ...] = ()
     hy: tuple[Typed, ...] = ()
-    apart: bool = False
 
 
 @dataclass(frozen=True)

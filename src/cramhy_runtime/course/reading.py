@@ -21,7 +21,6 @@ from __future__ import annotations
 import functools
 import re
 import tomllib
-from dataclasses import replace
 
 from . import contents
 from .parts import Code, File, Page, Part, Task, Text, Typed
@@ -104,8 +103,6 @@ def _parts(text):
             pending = None
             continue
         tabs = _TABS.search(between) is not None
-        if isinstance(part, Code) and _APART_CODE.search(between):
-            part = replace(part, apart=True)
         _add_text(found, _APART_CODE.sub("", _TABS.sub("", between)))
         found.append(part)
         end, pending = match.end(), True if tabs else None

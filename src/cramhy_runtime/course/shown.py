@@ -63,8 +63,19 @@ def filled(line: str, style: Style) -> str:
 
 
 def code(block: str, style: Style) -> str:
-    """A block of code, indented."""
-    return "\n".join(f"    {style.code(line)}" if line else "" for line in block.rstrip("\n").split("\n"))
+    """A block of code, indented. A line that is too long goes on below, further in."""
+    return "\n".join(
+        f"    {style.code(part)}" if part else "" for line in block.rstrip("\n").split("\n") for part in _broken(line, style.width - 4)
+    )
+
+
+def _broken(line, width):
+    """A line of code in pieces of at most ``width`` columns. They end between words, so a longer word stays whole."""
+    if len(line) <= width:
+        return [line]
+    longest = max(map(len, line.split()))
+    further = " " * max(0, min(len(line) - len(line.lstrip()) + 4, width // 2, width - longest))
+    return textwrap.wrap(line, width, subsequent_indent=further, break_long_words=False, break_on_hyphens=False)
 
 
 def _paragraphs(markdown, style):
@@ -97,7 +108,14 @@ def _table(paragraph, style):
     rows = [[_marks(cell.strip(), Style()) for cell in row.strip("|").split("|")] for row in paragraph.split("\n")]
     rows = [row for row in rows if not all(re.fullmatch(r":?-+:?", cell) for cell in row)]
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
-    return "\n".join("  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows)
+    lead = sum(width + 2 for width in widths[:-1]) + 2  # columns before the last one, which is filled to the width
+    last = max(style.width - lead, style.width // 3)
+    lines = []
+    for row in rows:
+        first, *others = textwrap.wrap(row[-1], last, break_long_words=False, break_on_hyphens=False) or [""]
+        cells = [*(cell.ljust(width) for cell, width in zip(row, widths[:-1])), first]
+        lines += ["  " + "  ".join(cells).rstrip(), *(" " * lead + other for other in others)]
+    return "\n".join(lines)
 
 
 def _marks(line, style):

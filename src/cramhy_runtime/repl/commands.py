@@ -35,7 +35,7 @@ def run_line(line, write):
     try:
         conditions.handler_case(
             [(SimpleError, lambda problem: write(f"ERROR: {problem.report()}\n"))],
-            lambda: running.run(words, running.Terminal(write, write, lambda: local_graph.HereGraph(patience))),
+            lambda: running.run(words, running.Terminal(write, write, lambda: local_graph.reached(patience))),
         )
     except (local_graph.OutOfTime, kernel.Interrupted, kernel.Abandoned):
         pass  # Ctrl-C is the ordinary end of a command that goes on for ever

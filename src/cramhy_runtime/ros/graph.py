@@ -63,6 +63,7 @@ class Graph:
         self.on_demand: dict[str, Callable[[], object]] = {}
         self.type_elsewhere: Callable[[str, MessageType], tuple[str, str] | None] | None = None
         self.cut_off: str | None = None
+        self.joined: object = None  # the `rosbridge.attachment.Link` to another graph
         self._ports = 0
 
     def now(self) -> float:
@@ -182,6 +183,7 @@ class Node:
         self._accepted: list[list[Any]] = []
         self.on_shutdown: list[Callable[[], object]] = []
         self.program: object = None  # the `roscpp.Program` whose node it is
+        self.process: int | None = None  # the number of the process whose node it is, if it is not this one
 
     def __repr__(self) -> str:
         return f"<node {self.name}>"

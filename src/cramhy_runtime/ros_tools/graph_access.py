@@ -58,6 +58,10 @@ class Graph(ABC):
     def uri(self, node):
         """Where a node is reached: ``"127.0.0.1:40001"``."""
 
+    def process(self, node):
+        """The number of the process that a node runs in."""
+        return self.pid
+
     @abstractmethod
     def ping(self, node):
         """Ask a node for an answer: the seconds that it took."""

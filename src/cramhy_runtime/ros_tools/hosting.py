@@ -8,6 +8,7 @@ session's server, on a hidden node; it starts nodes of packages that are part of
 
 from __future__ import annotations
 
+import os
 import sys
 
 from cramhy_runtime.ground import conditions
@@ -24,7 +25,10 @@ from .executables import complaint
 from .executables import start as start_executable
 
 LOG = "/cramhy/program_log"
-SERVICES = {"start_program": "StartProgram", "feed_program": "FeedProgram", "end_node": "EndNode", "open_page": "OpenPage"}
+SERVICES = {
+    "start_program": "StartProgram", "feed_program": "FeedProgram", "end_node": "EndNode", "node_process": "NodeProcess",
+    "open_page": "OpenPage",
+}  # fmt: skip
 MOST_ARGUMENTS = 10_000
 """Characters in the arguments of a program that a client starts."""
 SHARED = {("turtlesim", "turtlesim_node"): Turtlesim.name, **{(PACKAGE, simulator): NAME for simulator in ("simulator", "manager_node")}}
@@ -147,13 +151,20 @@ class Host:
             raise Refusal(f"The program {name} reads no keys.")
         return (True if program.feed(bytes(keys)) else None,)
 
-    def end_node(self, name):
-        """End a node."""
+    def _node(self, name):
         node = self.graph.nodes.get(name)
         if node is None or node.hidden:
             raise Refusal(f"There is no node {name}.")
-        node.shutdown()
+        return node
+
+    def end_node(self, name):
+        """End a node."""
+        self._node(name).shutdown()
         return ()
+
+    def node_process(self, name):
+        """(number of the process whose node it is)."""
+        return (self._node(name).process or os.getpid(),)
 
     def open_page(self, asked, shows):
         """(address of the session's page, its port, whether a browser was opened for it before); the page opens if it is not open yet."""

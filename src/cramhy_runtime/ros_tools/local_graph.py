@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from cramhy_runtime import kernel
 from cramhy_runtime.ros import graph, message_json, services
 from cramhy_runtime.ros.messages import message_class_exact
+from cramhy_runtime.rosbridge.remote_types import as_ros1
 from .graph_access import Graph, Listener, NodeFacts, Refused
 
 
@@ -34,6 +35,9 @@ class HereGraph(Graph):
 
     def uri(self, node):
         return self.graph.nodes[node].address
+
+    def process(self, node):
+        return self.graph.nodes[node].process or self.pid
 
     def ping(self, node):
         before = self.now()
@@ -113,6 +117,82 @@ class HereGraph(Graph):
                 kernel.sleep(self.end - kernel.now())
             raise OutOfTime
         kernel.sleep(seconds)
+
+
+class JoinedGraph(HereGraph):
+    """The graph of a process that has joined another session, or a real ROS: what is there, and the nodes of this process."""
+
+    def __init__(self, patience=None):
+        super().__init__(patience)
+        self.link = self.graph.joined
+
+    def _ask(self, service, /, **values):
+        return self.link.ask(f"/rosapi/{service}", **values)
+
+    def _ends(self, topic, there, here):
+        mirror = self.link.node.name
+        own = [] if topic not in self.graph.topics else [name for name in here(topic) if name != mirror]
+        return sorted({*there, *own})
+
+    def nodes(self):
+        return sorted({*self._ask("nodes")["nodes"], *self.link.told_nodes.own()})
+
+    def node(self, name):
+        if name in self.link.told_nodes.own():
+            return super().node(name)
+        if name not in self.nodes():
+            return None
+        found = self._ask("node_details", node=name)
+        return NodeFacts(*(sorted(found[key]) for key in ("publishing", "subscribing", "services")))
+
+    def uri(self, node):
+        return super().uri(node) if node in self.link.told_nodes.own() else self.link.shown.split("/")[2]
+
+    def process(self, node):
+        if node in self.link.told_nodes.own():
+            return super().process(node)
+        if self.graph.service("/cramhy/node_process") is None:
+            return 0  # not told there
+        return self.link.ask("/cramhy/node_process", node=node)["pid"]
+
+    def ping(self, node):
+        if node in self.link.told_nodes.own():
+            return super().ping(node)
+        before = self.now()
+        self._ask("node_details", node=node)
+        return self.now() - before
+
+    def kill(self, node):
+        if node in self.link.told_nodes.own():
+            return super().kill(node)
+        if not self.link.told_nodes.wanted:
+            raise Refused(f"it runs at {self.link.shown}. Type there: rosnode kill {node}")
+        self.link.ask("/cramhy/end_node", node=node)
+
+    def topics(self):
+        found = self._ask("topics")
+        there = dict(zip(found["topics"], map(as_ros1, found["types"])))
+        return dict(sorted({**super().topics(), **there}.items()))
+
+    def publishers(self, topic):
+        return self._ends(topic, self._ask("publishers", topic=topic)["publishers"], super().publishers)
+
+    def subscribers(self, topic):
+        return self._ends(topic, self._ask("subscribers", topic=topic)["subscribers"], super().subscribers)
+
+    def services(self):
+        return sorted({*self._ask("services")["services"], *super().services()})
+
+    def service(self, name):
+        found = super().service(name)
+        if found is not None and found[0] == self.link.node.name:
+            return self._ask("service_node", service=name)["node"], found[1]
+        return found
+
+
+def reached(patience=None):
+    """The graph that a command typed at the prompt is about; see `HereGraph`."""
+    return (JoinedGraph if graph.active().joined is not None else HereGraph)(patience)
 
 
 class OutOfTime(Exception):

@@ -45,13 +45,14 @@ def _describe(terminal, name, facts):
     terminal.line(section("Publications", [f"{topic} [{types.get(topic, 'unknown type')}]" for topic in facts.publishing]))
     terminal.line(section("Subscriptions", [f"{topic} [{types.get(topic, 'unknown type')}]" for topic in facts.subscribing]))
     terminal.line(section("Services", facts.services))
-    terminal.line(f"\ncontacting node http://{graph.uri(name)}/ ...\nPid: {graph.pid}")
+    terminal.line(f"\ncontacting node http://{graph.uri(name)}/ ...\nPid: {graph.process(name)}")
     connections = [(topic, other, "outbound") for topic in facts.publishing for other in graph.subscribers(topic)]
     connections += [(topic, other, "inbound") for topic in facts.subscribing for other in graph.publishers(topic)]
     if connections:
         terminal.line("Connections:")
     for topic, other, direction in connections:
-        terminal.line(f" * topic: {topic}\n    * to: {other}\n    * direction: {direction}\n    * transport: INTRAPROCESS")
+        transport = "INTRAPROCESS" if graph.process(other) == graph.process(name) else "ROSBRIDGE"
+        terminal.line(f" * topic: {topic}\n    * to: {other}\n    * direction: {direction}\n    * transport: {transport}")
     terminal.line()
 
 

@@ -172,6 +172,12 @@ class ThereGraph(Graph):
     def uri(self, node):
         return self.address
 
+    def process(self, node):
+        try:
+            return self.call("/cramhy/node_process", "cramhy_msgs/NodeProcess", {"node": node})["pid"]
+        except Refused:  # a session without our tools, as rosbridge.start makes one
+            return self.pid
+
     def ping(self, node):
         began = time.perf_counter()
         self._ask("node_details", node=node)

@@ -4,6 +4,7 @@ Where the parts are:
 
 * `protocol`     one client's operations, done on the graph; `hub` what the clients share there; `rosapi` what they may ask
 * `parsing`, `encoding`, `outbox`, `raw`  what comes in, what goes out, how much may wait, the bytes of ROS 1
+* `operation_fields`  the fields of an operation; `joined_nodes` the nodes of a session that has joined, `told_nodes` what it tells of them
 * `no_answers`   what a caller hears instead of an answer, for both ends
 * `server`       sockets and pages in a thread beside the kernel; `connection` one client there; `authentication`, `http` before it is one
 * `attachment`   the other way round: a session as the client of a real ROS

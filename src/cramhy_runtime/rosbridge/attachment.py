@@ -28,11 +28,13 @@ from ..ros.message_json import MessageJsonError, from_json, service_named, to_js
 from ..ros.roslisp import logging
 from ..ros.type_texts import same_on_the_wire
 from . import addresses
-from .remote_types import TOPIC, FarParameters, FarService, NearParameters, as_ros2
+from .remote_types import TOPIC, FarParameters, FarService, NearParameters, as_ros1, as_ros2
 from .outbound_queue import Outflow
 from .service_proxies import Offering
 from .server import ServerError
 from .uplink import Uplink
+from .joined_nodes import END
+from .told_nodes import ToldNodes
 
 NODE = "rosbridge_client"
 LOCAL = {"/rosout", "/rosout_agg"}
@@ -59,6 +61,7 @@ class Link:
         self._not_known = set()  # services whose types no package here defines
         self._asked = set()  # services whose types have been asked for
         self._types = {}  # of topics, as the other side has them
+        self.told_nodes = ToldNodes(self)
         self.outflow, self.offering = Outflow(uplink, self._log), Offering(self)
         self._timers, self._joiner = (), None
         self._delivering = False
@@ -66,7 +69,7 @@ class Link:
         self._parameters = here.parameters
         here.before_first_node.clear()  # our turtle is not started: the robot is there
         here.on_demand.clear()
-        here.type_elsewhere, here.cut_off = self.type_there, None
+        here.type_elsewhere, here.cut_off, here.joined = self.type_there, None, self
         self.kernel.count_outside(1)
         self.kernel.at_stop(self.close)
         uplink.on_open, uplink.on_lost, uplink.on_flow, uplink.on_operation = self._opened, self._lost, self._flows, self._hear
@@ -112,7 +115,7 @@ class Link:
         if self._changed in self.graph.on_change:
             self.graph.on_change.remove(self._changed)
         self.graph.parameters = self._parameters
-        self.graph.type_elsewhere = self.graph.cut_off = None
+        self.graph.type_elsewhere = self.graph.cut_off = self.graph.joined = None
         self.kernel.count_outside(-1)
         self.kernel.not_at_stop(self.close)
         self._fail_all("the connection was closed")
@@ -175,6 +178,7 @@ class Link:
         """The connection is new: what we are to the other side is told it again."""
         if self.closed or not self._begun or not self.uplink.open:
             return
+        self.told_nodes.tell(again=True)
         for name in self._outgoing:
             self.uplink.send(self._advertisement(name))
             self._compare(name, self._outgoing[name])
@@ -272,7 +276,7 @@ class Link:
         return self._differs(name, message_class, found)
 
     def _differs(self, name, message_class, found):
-        kind = _as_ros1(found or "")
+        kind = as_ros1(found or "")
         if kind in ("", "*", message_class.ros_type):  # "*": somebody listens to whatever comes
             self._types.pop(name, None)
             return None
@@ -309,13 +313,14 @@ class Link:
         return f"{package}/{kind}/{name}" if self.ros2 else ros_type
 
     def _changed(self, kind, name, there):
-        if kind in ("topic", "service"):
+        if kind in ("node", "topic", "service"):
             self.look()
 
     def look(self):
         """Mirror what nodes here publish, subscribe to and offer."""
         if self.closed:
             return
+        self.told_nodes.tell()
         for name, topic in list(self.graph.topics.items()):
             if name in LOCAL:
                 continue
@@ -455,14 +460,9 @@ class Link:
         "publish": _arrive,
         "service_response": _answered,
         "status": _status,
+        END: lambda self, operation: self.told_nodes.end(operation),
         "call_service": lambda self, operation: self.offering.serve(operation),
     }
-
-
-def _as_ros1(kind):
-    """``geometry_msgs/msg/Twist`` is ``geometry_msgs/Twist``."""
-    parts = kind.split("/")
-    return f"{parts[0]}/{parts[2]}" if len(parts) == 3 else kind
 
 
 def join(url, patience=PATIENCE):

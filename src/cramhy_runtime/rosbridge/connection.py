@@ -12,6 +12,7 @@ import time
 
 from .guard import Bucket, query_of, same
 from .http import EXTENSION
+from .joined_nodes import SERVER
 from .outbox import Outbox, reason_text
 from .parsing import Fragments, Malformed, parse
 from .protocol import Session
@@ -71,7 +72,8 @@ class Connection:
             await self._refuse(*refusal)
             return
         offered = self.scope.get("subprotocols") or ()
-        await self._send({"type": "websocket.accept", "subprotocol": "rosbridge_v2" if "rosbridge_v2" in offered else None})
+        subprotocol = "rosbridge_v2" if "rosbridge_v2" in offered else None
+        await self._send({"type": "websocket.accept", "subprotocol": subprotocol, "headers": [(b"server", SERVER.encode())]})
         self._task = asyncio.current_task()
         self.server.connections.add(self)
         try:

@@ -56,6 +56,7 @@ class Limits:
     burst: int = 1000  # operations that may come at once
     waiting: int = 16  # operations of one client that wait for the plan to take notice
     complaints: int = 100  # status messages a minute about what a client sent; after that it is closed
+    nodes: int = 50  # of one process that has joined
     subscriptions: int = 200
     advertisements: int = 200
     services: int = 100

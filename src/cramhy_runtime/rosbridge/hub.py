@@ -1,8 +1,9 @@
 """What the clients of one server share on the graph: nodes, topics that they listen to, topics that they publish on.
 
 Clients are no nodes, as with rosbridge in ROS: one node, ``/rosbridge_websocket``, subscribes and publishes for all of them. It is on
-the graph while some client does either. A client that says it is an observer (our page, our tools) acts through a hidden node, and so
-leaves no trace in what a program or a command line shows.
+the graph while some client does either. But a session that has joined has nodes (`joined_nodes`).
+A client that says it is an observer (our page, our tools) acts through a hidden node, and so leaves no trace in what a program or a command
+line shows.
 
 A `Channel` hands each message of a topic to the server's thread once, however many clients listen. What happens here happens with the
 baton; `Hub.hand_out` takes functions to the other side.

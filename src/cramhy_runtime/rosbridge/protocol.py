@@ -22,12 +22,13 @@ from ..ros import services
 from ..ros.message_json import MessageJsonError, from_json, request_from_json, service_named, to_json
 from .encoding import COMPRESSIONS, text_of, weight
 from .hub import Refused
+from .joined_nodes import JoinedNodes
 from .no_answers import NOBODY, SESSION_ENDS, reason
+from .operation_fields import boolean, integer, shown
 from .parsing import json_type
 
 LEVELS = {"info": 0, "warning": 1, "error": 2, "none": 3}
 MOST_PLAN_TIME = 600.0
-LARGEST = 2**31
 SMALLEST_FRAGMENT = 100
 """Characters of a message that a fragment holds at least: a client that asks for less would get mostly wrapping."""
 
@@ -116,6 +117,7 @@ class Session:
         self.offered = {}
         self.asked = {}
         self.calls = {}
+        self.joined = None
         self.at_end = set()
         self.closed = False
         self._numbers = 0
@@ -177,6 +179,8 @@ class Session:
         for wish, _ in self.calls.values():
             wish.over()
         self.calls.clear()
+        if self.joined is not None:
+            self.joined.close()
         self.hub.sessions.discard(self)
         for end in list(self.at_end):
             end()
@@ -355,7 +359,9 @@ class Session:
             raise Refused(f"You offer {len(self.offered)} services; more are not allowed. Unadvertise some.")
         if name in self.offered:
             self._withdraw(self.offered[name])
-        service = ClientService(self, self.side.node, name, kind)
+        own = operation.get("node")
+        node = self.joined.get(own) if self.joined is not None and isinstance(own, str) else None
+        service = ClientService(self, node or self.side.node, name, kind)
         self.offered[name] = service
         service.node.add_service(service)
 
@@ -420,6 +426,14 @@ class Session:
 
     # -------------------------------------------------------------------------------------------------------------- the rest
 
+    def nodes(self, operation):
+        """The client is a process that has joined: these nodes are its."""
+        if self.joined is None:
+            if self.advertised or self.interests or self.offered:
+                raise Refused("Tell your nodes before you advertise, subscribe to and offer anything.")
+            self.joined, self.side = JoinedNodes(self), self.hub.sides[True]
+        self.joined.declare(operation.get("nodes"))
+
     def set_level(self, operation):
         level = operation.get("level")
         if not isinstance(level, str) or level not in LEVELS:
@@ -442,7 +456,7 @@ OPERATIONS = {
     "advertise": Session.advertise, "unadvertise": Session.unadvertise, "publish": Session.publish, "subscribe": Session.subscribe,
     "unsubscribe": Session.unsubscribe, "call_service": Session.call_service, "service_response": Session.service_response,
     "advertise_service": Session.advertise_service, "unadvertise_service": Session.unadvertise_service, "set_level": Session.set_level,
-    "status": Session.heard, "auth": Session.heard, "png": Session.png,
+    "status": Session.heard, "auth": Session.heard, "png": Session.png, "nodes": Session.nodes,
 }  # fmt: skip
 
 
@@ -460,33 +474,6 @@ def _can_be_repeated(identity, limits):
         return len(text_of(identity)) <= limits.name
     except ValueError:  # an infinity
         return False
-
-
-def shown(value):
-    """VALUE in a status message: short, whatever it is."""
-    if value.__class__ is str:
-        return repr(value if len(value) <= 60 else value[:60] + "…")
-    return json_type(value) if value.__class__ not in (int, float) else repr(value)[:60]
-
-
-def boolean(operation, key):
-    """A truth value that may be missing."""
-    value = operation.get(key)
-    if value is not None and value.__class__ is not bool:
-        raise Refused(f'"{key}" must be true or false, but it is {json_type(value)}.')
-    return bool(value)
-
-
-def integer(operation, key, least=0):
-    """A whole number that may be missing: then ``None``."""
-    value = operation.get(key)
-    if value is None:
-        return None
-    if value.__class__ is float and value.is_integer():
-        value = int(value)
-    if value.__class__ is not int or not least <= value < LARGEST:
-        raise Refused(f'"{key}" must be a whole number from {least} on, but it is {shown(value)}.')
-    return value
 
 
 def need_cbor():

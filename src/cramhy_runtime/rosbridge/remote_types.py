@@ -106,3 +106,9 @@ def as_ros2(cls, data):
             convert = lambda each: as_ros2(part, each)
         result[field.name] = [convert(each) for each in value] if field.is_array else convert(value)
     return result
+
+
+def as_ros1(kind):
+    """``geometry_msgs/msg/Twist`` is ``geometry_msgs/Twist``."""
+    parts = kind.split("/")
+    return f"{parts[0]}/{parts[2]}" if len(parts) == 3 else kind

@@ -27,7 +27,7 @@ class Offering:
 
     def look(self):
         """Offer what is new here, and withdraw what is gone."""
-        here = {name: service for name, service in self.link.graph.services.items() if isinstance(service, LispService)}
+        here = {name: service for name, service in self.link.graph.services.items() if self._is_offered(service)}
         for name in [name for name, service in self.services.items() if here.get(name) is not service]:
             del self.services[name]
             self.link.say(self._withdrawal(name))
@@ -35,6 +35,10 @@ class Offering:
             if name not in self.services:
                 self.services[name] = service
                 self.link.say(self._advertisement(name))
+
+    def _is_offered(self, service):
+        """Services of plans are. Where our nodes are shown, so are those that every node has."""
+        return isinstance(service, LispService) or self.link.told_nodes.wanted and service.node.name in self.link.told_nodes.own()
 
     def announce_again(self):
         """The connection is new. The callers of before are not there any more, or are told so."""
@@ -101,7 +105,9 @@ class Offering:
         return not self.link.ros2 and self.link.uplink.server.startswith(ROS1_SERVERS)
 
     def _advertisement(self, name):
-        return {"op": "advertise_service", "service": name, "type": self.link.spelled(self.services[name].type.name, "srv")}
+        service = self.services[name]
+        found = {"op": "advertise_service", "service": name, "type": self.link.spelled(service.type.name, "srv")}
+        return {**found, "node": service.node.name} if self.link.told_nodes.wanted else found
 
     def _withdrawal(self, name):
         return {"op": "unadvertise_service", "service": name}

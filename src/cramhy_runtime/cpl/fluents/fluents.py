@@ -120,7 +120,7 @@ class Fluent(Notation[T_co]):
 
     def _notify(self, value: Any) -> None:
         if not self.nets and not self.callbacks:  # as a rule only tasks wait
-            if value is not None and value is not False and (value.__class__ in TRUE_CLASSES or truth(value)):
+            if value is True or value is not None and value is not False and (value.__class__ in TRUE_CLASSES or truth(value)):
                 for task in self.waiters:
                     task.kernel.unpark(task)
         elif self.callbacks or self.sheltered:

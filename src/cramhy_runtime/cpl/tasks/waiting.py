@@ -52,7 +52,7 @@ def wait_for(fluent: Any, *, timeout: float | None = None, **ignored: Any) -> An
         return generic(fluent) if timeout is None else generic(fluent, TIMEOUT, timeout)
     if isinstance(fluent, Fluent):
         value = fluent.read()
-        if value is not None and value is not False and (value.__class__ in TRUE_CLASSES or truth(value)):
+        if value is True or value is not None and value is not False and (value.__class__ in TRUE_CLASSES or truth(value)):
             return value
         return wait(fluent, timeout)
     return plain_wait_for(fluent)
@@ -85,7 +85,7 @@ def wait(fluent: Fluent[object], timeout: float | None) -> Any:
         while True:
             in_time = me.kernel.park(why, until)
             value = fluent.read()
-            if value is not None and value is not False and (value.__class__ in TRUE_CLASSES or truth(value)):
+            if value is True or value is not None and value is not False and (value.__class__ in TRUE_CLASSES or truth(value)):
                 return value
             if not in_time and until is not None and kernel.now() >= until:
                 return None
@@ -117,7 +117,7 @@ def whenever(fluent: Fluent[object], body: Callable[[], object]) -> NoReturn:
     while True:
         if user_wait.value is None and isinstance(fluent, Fluent):  # as `wait_for` does
             value = fluent.read()
-            if not truth(value):
+            if value is None or value is not True and not truth(value):
                 wait(fluent, None)
         else:
             wait_for(fluent)

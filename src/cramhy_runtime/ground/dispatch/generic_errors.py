@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from ..condition_types import shown
-from ..conditions import Error, SimpleProgramError, error
+from ..condition_types import shown, shown_with
+from ..conditions import Error, SimpleProgramError, error, restart_case
 from ..data import list_from
+from ..packages import sym
 
 
 class NoMethodError(Error):
@@ -98,3 +99,15 @@ def incongruent(generic_function, method):
         difference = "the method does not accept each of the &KEY arguments~%~S."
     text = f"attempt to add the method~%  ~S~%to the generic function~%  ~S;~%but {difference}"
     return error(SimpleProgramError(text, method, generic_function, list_from(ours.keys_unknown_to(theirs))))
+
+
+class FunctionInTheWay(SimpleProgramError):
+    """A generic function is defined where there is an ordinary one."""
+
+
+def refuse_ordinary(symbol):
+    """Signal that ``symbol`` names an ordinary function or a macro, with a restart that replaces it unless it is Common Lisp's."""
+    condition = FunctionInTheWay("~A already names an ordinary function or a macro.", shown_with(symbol, "KEYWORD"))
+    if symbol.package is not None and symbol.package.name == "COMMON-LISP":
+        return error(condition)
+    return restart_case([(sym("CONTINUE"), lambda: None, "Replace the function binding.")], lambda: error(condition))

@@ -5,10 +5,10 @@ the method combination) under the classes of the arguments at the positions on w
 one dictionary look-up once it has been made with such arguments. ``(eql x)`` specializers are looked up in a second table.
 
 How methods are called (for the compiler): a method that uses neither ``call-next-method`` nor ``next-method-p`` is added with
-``uses_next=False`` and called as ``function(*arguments)``. Otherwise it is called as ``function(next, *arguments)``:
-``(call-next-method)`` is ``next()``, ``(call-next-method a b)`` is ``next(a, b)``, and ``(next-method-p)`` is
-``next.exists`` (``True`` or ``None``). With ``uses_next=DIRECTLY`` it is called so, too, but ``next`` is the function of the next
-method itself, and the method gives it all arguments. A lambda list with ``&key`` is compiled as if it said ``&allow-other-keys``: which
+``uses_next=False`` and called as ``function(*arguments)``. Otherwise it is called as ``function(next, *arguments)``: ``(call-next-
+method)`` is ``next()``, ``(call-next-method a b)`` is ``next(a, b)``, and ``(next-method-p)`` is ``next.exists`` (``True`` or ``None``).
+With ``uses_next=DIRECTLY`` it is called so, too, but ``next`` is the function of the next method itself, and the method gives it all
+arguments (`method_combination` has the other kinds). A lambda list with ``&key`` is compiled as if it said ``&allow-other-keys``: which
 keywords a call may have is checked here, because all applicable methods together decide it (ANSI 7.6.5).
 
 Runtime rooms make generic functions with `generic` and ``@function.method(Class, ...)``. Source: ANSI 7.6; texts are SBCL's.
@@ -19,15 +19,14 @@ from __future__ import annotations
 import weakref
 
 from ..classes import find_class_or_error, when_classes_change
-from ..conditions import SimpleError, SimpleProgramError, error, program_error, restart_case, wrong_argument_count
-from ..condition_types import shown_with
-from ..data import UNSUPPLIED, Cons, Symbol, UndefinedFunction, lisp_list, list_from, python_list
+from ..conditions import SimpleError, error, program_error, restart_case, wrong_argument_count
+from ..data import UNSUPPLIED, Cons, Keyword, Symbol, UndefinedFunction, lisp_list, list_from, python_list
 from ..equality import eql_key
 from ..functions import invalid_function_name
-from .generic_errors import incongruent, no_applicable_method_error
+from .generic_errors import incongruent, no_applicable_method_error, refuse_ordinary
 from ..keyword_calls import lispify
 from .keyword_checks import checking_keys
-from .method_combination import DIRECTLY, STANDARD, Combination, find_combination
+from .method_combination import STANDARD, Combination, find_combination
 from .reached_slots import ReachedSlots
 from .methods import EqlSpecializer, Method, Shape, class_for_dispatch, is_sized
 from ..packages import is_symbol, keyword, our_own, redefined, sym, symbol_name
@@ -35,8 +34,7 @@ from ..ports import PORTS
 from ..python_names import python_name
 
 all_generic_functions = weakref.WeakSet()
-_with_known_calls = weakref.WeakSet()
-"""Those whose cache may hold something. There are far fewer, and each definition of a class goes through them."""
+_with_known_calls = weakref.WeakSet()  # whose cache may hold something: far fewer, and each definition of a class goes through them
 
 
 @when_classes_change
@@ -79,11 +77,9 @@ class GenericFunction(ReachedSlots, FunctionObject):
         self.forget()
         all_generic_functions.add(self)
 
-    watcher = None
+    watcher = direct = direct_methods = enclosure = None
     advice: str | None = None
     """What the error that no method is applicable tells the user to do."""
-    direct = direct_methods = None
-    enclosure = None
 
     def enclose(self, enclosure):
         """Let ``enclosure(effective function)`` make the calls in which a method of a user takes part. Returns the argument."""
@@ -380,7 +376,7 @@ def ensure_generic_function(name, lambda_list=None, *, method_combination=None, 
         old = symbol.setf_function if setf else symbol.function
         opening = getattr(old, "opening", None)
         if opening is None and not setf and (symbol.macro is not None or not isinstance(old, UndefinedFunction)):
-            _refuse_ordinary(symbol)
+            refuse_ordinary(symbol)
         if opening is None:
             PORTS.definitions.check_symbol(symbol, "proclaiming ~S as a function", name)
         function = GenericFunction(name, lambda_list) if opening is None else opening.open()
@@ -402,17 +398,6 @@ def ensure_generic_function(name, lambda_list=None, *, method_combination=None, 
     if documentation is not None:
         function.__doc__ = documentation
     return function
-
-
-class FunctionInTheWay(SimpleProgramError):
-    """A generic function is defined where there is an ordinary one."""
-
-
-def _refuse_ordinary(symbol):
-    condition = FunctionInTheWay("~A already names an ordinary function or a macro.", shown_with(symbol, "KEYWORD"))
-    if symbol.package is not None and symbol.package.name == "COMMON-LISP":
-        return error(condition)
-    return restart_case([(sym("CONTINUE"), lambda: None, "Replace the function binding.")], lambda: error(condition))
 
 
 def define_generic(name, lambda_list=None, *, method_combination=None, argument_precedence_order=None, documentation=None, methods=None):
@@ -514,7 +499,7 @@ def add_method(
         tuple(python_list(qualifiers)),
         [specializer_of(specializer) for specializer in python_list(specializers)],
         function,
-        uses_next if uses_next is DIRECTLY else bool(uses_next),
+        uses_next if uses_next.__class__ is Keyword else bool(uses_next),
         Shape(lambda_list) if lambda_list is not None else shape or generic_function.shape,
         per_class,
         documentation,

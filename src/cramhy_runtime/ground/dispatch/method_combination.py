@@ -11,18 +11,23 @@ from __future__ import annotations
 
 from functools import partial
 
-from ..conditions import SimpleError, error, restart_case, warn
+from ..condition_types import shown
+from ..conditions import SimpleError, error, restart_case, type_error, warn
 from ..data import Symbol, lisp_list, list_from, one, truth
 from ..packages import keyword, sym, symbol_name
 from ..ports import PORTS
 from .generic_errors import no_next_method_error, no_primary_method_error
+from .methods import class_for_dispatch
 
-DIRECTLY = keyword("DIRECTLY")
-"""What ``uses_next`` of a method is that takes the function of the next method itself, and gives it all arguments."""
+DIRECTLY, CHANGED = keyword("DIRECTLY"), keyword("CHANGED")
+"""What ``uses_next`` of a method is that takes the function of the next method itself, and gives it all arguments. With CHANGED it takes
+two functions: one for its own arguments, and one for others, which looks whether the next methods take them."""
+SAME = keyword("SAME")
+"""What ``uses_next`` of a method is whose `NextMethod` is called without arguments only."""
 AROUND, BEFORE, AFTER = keyword("AROUND"), keyword("BEFORE"), keyword("AFTER")
 
 
-class NextMethod:
+class SameNextMethod:
     """What a method gets as ``next``: calling it is ``call-next-method``; ``exists`` is ``next-method-p``."""
 
     __slots__ = ("following", "arguments", "keywords")
@@ -30,14 +35,26 @@ class NextMethod:
     def __init__(self, following, arguments, keywords):
         self.following, self.arguments, self.keywords = following, arguments, keywords
 
-    def __call__(self, *arguments):
-        if arguments:
-            return self.following(*arguments)
+    def __call__(self):
         return self.following(*self.arguments, **self.keywords)
 
     @property
     def exists(self):
         return None if isinstance(self.following, _NoNext) else True
+
+
+class NextMethod(SameNextMethod):
+    """The same for a method that may give the next one other arguments; ``changed`` takes these."""
+
+    __slots__ = ("changed",)
+
+    def __init__(self, following, changed, arguments, keywords):
+        self.following, self.changed, self.arguments, self.keywords = following, changed, arguments, keywords
+
+    def __call__(self, *arguments):
+        if arguments:
+            return self.changed(*arguments)
+        return self.following(*self.arguments, **self.keywords)
 
 
 class _NoNext:
@@ -52,25 +69,59 @@ class _NoNext:
         return PORTS.definitions.no_next_method(self.generic_function, self.method, arguments, no_next_method_error)
 
 
+class _Changed:
+    """The function of a method for other arguments than those for which it was chosen. It signals a type-error for one that is not of the
+    method's class (ANSI 7.6.6.2); so do the next methods, which are not all asked before, as on SBCL."""
+
+    __slots__ = ("method", "following", "known")
+
+    def __init__(self, method, following):
+        self.method, self.following, self.known = method, following, {}
+
+    def __call__(self, *arguments, **keywords):
+        classes = tuple(map(class_for_dispatch, arguments[: len(self.method.specializers)]))
+        function = self.known.get(classes)
+        if function is None:
+            self._check(arguments, classes)
+            function = self.known[classes] = _step(self.method, classes, self.following, self.following)
+        return function(*arguments, **keywords)
+
+    def _check(self, arguments, classes):
+        for argument, cls, specializer, name in zip(arguments, classes, self.method.specializers, self.method.shape.names):
+            if isinstance(specializer, type) and specializer not in PORTS.classes.precedence(cls):
+                type_error(argument, PORTS.classes.name(specializer), f"\nwhen binding {shown(name)}")
+
+
+class Linked:
+    """What runs methods one after another: ``function``, and ``changed`` for other arguments than the methods were chosen for."""
+
+    __slots__ = ("function", "changed")
+
+    def __init__(self, function, changed):
+        self.function, self.changed = function, changed
+
+
 def link(generic_function, methods, classes, last=None):
-    """The function that runs the first of ``methods`` with the others as its next methods, and ``last`` behind them."""
-    following = last
+    """The `Linked` that runs the first of ``methods`` with the others as its next methods, and behind them ``last``, another one."""
+    following, changed = (None, None) if last is None else (last.function, last.changed)
     for method in reversed(methods):
-        following = _step(method, classes, following if following is not None else _NoNext(generic_function, method))
-    return following
+        if following is None:
+            following = changed = _NoNext(generic_function, method)
+        following, changed = _step(method, classes, following, changed), _Changed(method, changed)
+    return Linked(following, changed)
 
 
-def _step(method, classes, following):
+def _step(method, classes, following, changed):
     function = method.callable_for(classes)
     if not method.uses_next:
         return function
     if method.uses_next is DIRECTLY:
         return partial(function, following)
-
-    def run(*arguments, **keywords):
-        return function(NextMethod(following, arguments, keywords), *arguments, **keywords)
-
-    return run
+    if method.uses_next is CHANGED:
+        return partial(function, following, changed)
+    if method.uses_next is SAME:
+        return lambda *arguments, **keywords: function(SameNextMethod(following, arguments, keywords), *arguments, **keywords)
+    return lambda *arguments, **keywords: function(NextMethod(following, changed, arguments, keywords), *arguments, **keywords)
 
 
 class Combination:
@@ -115,11 +166,16 @@ class Combination:
         befores = [link(generic_function, [method], classes) for method in groups[(BEFORE,)]]
         afters = [link(generic_function, [method], classes) for method in reversed(groups[(AFTER,)])]
         if befores or afters:
-            main = _with_auxiliaries(main, befores, afters)
-        return link(generic_function, groups[(AROUND,)], classes, main)
+            main = Linked(
+                _with_auxiliaries(main.function, [each.function for each in befores], [each.function for each in afters]),
+                _with_auxiliaries(main.changed, [each.changed for each in befores], [each.changed for each in afters]),
+            )
+        return link(generic_function, groups[(AROUND,)], classes, main).function
 
 
 def _with_auxiliaries(main, befores, afters):
+    """The function that calls ``befores``, ``main`` and ``afters`` with its arguments, and gives the value of ``main``."""
+
     def run(*arguments, **keywords):
         for function in befores:
             function(*arguments, **keywords)
@@ -183,11 +239,15 @@ class ShortCombination(Combination):
         if len(functions) == 1 and self.identity:
             main = functions[0]
         else:
+            main = Linked(
+                _folded(self.fold, [each.function for each in functions]), _folded(self.fold, [each.changed for each in functions])
+            )
+        return link(generic_function, [method for method in methods if method.qualifiers == (AROUND,)], classes, main).function
 
-            def main(*arguments, **keywords):
-                return self.fold([_thunk(function, arguments, keywords) for function in functions])
 
-        return link(generic_function, [method for method in methods if method.qualifiers == (AROUND,)], classes, main)
+def _folded(fold, functions):
+    """The function that gives ``fold`` the calls of ``functions`` with its arguments, as thunks."""
+    return lambda *arguments, **keywords: fold([_thunk(function, arguments, keywords) for function in functions])
 
 
 def _thunk(function, arguments, keywords):
@@ -248,12 +308,8 @@ class HookCombination(Combination):
         for method in methods:
             if not self.knows(method.qualifiers):
                 return invalid(generic_function, method, self.requirement)
-        functions = [link(generic_function, [method], classes) for method in self.ordered(methods)]
-        fold = self._fold(generic_function.combination_options)
-
-        def run(*arguments, **keywords):
-            return fold([_thunk(function, arguments, keywords) for function in functions])
-
+        functions = [link(generic_function, [method], classes).function for method in self.ordered(methods)]
+        run = _folded(self._fold(generic_function.combination_options), functions)
         return run if functions else lambda *arguments, **keywords: None
 
     def _fold(self, options):
@@ -304,7 +360,7 @@ class FirstInOrderCombination(Combination):
         if not numbered:
             return lambda *arguments, **keywords: retrying(generic_function, arguments, no_primary_method_error)
         main = link(generic_function, [min(numbered, key=_number)], classes)
-        return link(generic_function, [method for method in methods if method.qualifiers == (AROUND,)], classes, main)
+        return link(generic_function, [method for method in methods if method.qualifiers == (AROUND,)], classes, main).function
 
 
 # ---------------------------------------------------------------------------------------------------------------- definitions

@@ -14,4 +14,5 @@
                (:file "fetching")
                (:file "delivering")
                (:file "transporting")
+               (:file "in-the-way")
                (:file "actions")))

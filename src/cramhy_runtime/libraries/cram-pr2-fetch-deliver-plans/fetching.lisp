@@ -88,23 +88,25 @@ none. What lies in a container, and is seen only from few places, is taken from 
 
 (defun other-way-to-fetch (location object arm pick-up-action)
   "A free place from which OBJECT can be taken as far as is known, whether or not it is seen from there, and the action for that; nil where
-there is none, and where LOCATION is no place to reach from, which costmaps find, but the very place to go to. Two values."
+there is none, and where LOCATION is no place to reach from, which costmaps find, but the very place to go to. Two values. What stands in
+the way is put aside."
   (let ((item (btr-belief:get-designator-object (desig:current-desig object))))
     (when (and item (desig:desig-prop-value location :reachable-for))
       (let* ((name (btr:name item))
              (others (when (top-grasp-p object) (list (from-above object pick-up-action))))
-             (chosen pick-up-action)
-             (place (free-place-around
-                     (btr:pose item)
-                     (lambda ()
-                       (setf chosen (or (find-if (lambda (action)
-                                                   (pr2-proj-reasoning::possible-p (lambda () (try-picking-up name object arm action t))))
-                                                 others)
-                                        pick-up-action))
-                       (unless (member chosen others)
-                         (try-picking-up name object arm pick-up-action t))))))
-        (when place
-          (values place chosen))))))
+             (chosen pick-up-action))
+        (flet ((try ()
+                 (setf chosen (or (find-if (lambda (action)
+                                             (pr2-proj-reasoning::possible-p (lambda () (try-picking-up name object arm action t))))
+                                           others)
+                                  pick-up-action))
+                 (unless (member chosen others)
+                   (try-picking-up name object arm pick-up-action t))))
+          (let ((place (or (free-place-around (btr:pose item) #'try)
+                           (let ((pose (make-room-for item #'try)))
+                             (and pose (free-place-around (btr:pose item) #'try pose))))))
+            (when place
+              (values place chosen))))))))
 
 (defun in-hand-p (object)
   "Whether the robot holds OBJECT; true where no world knows it."

@@ -51,11 +51,11 @@
       (loop for distance in *distances-around*
             append (sort (loop for turn below 24 collect (at distance (* turn (/ pi 12)))) #'< :key #'way-to)))))
 
-(defun free-place-around (pose try)
+(defun free-place-around (pose try &optional first)
   "A location of the first pose around POSE at which the robot touches nothing and the function TRY does not fail, whatever the costmaps say;
-nil where there is none, and for a real robot, which stays within the costmaps."
+the pose FIRST is tried before the others. Nil where there is none, and for a real robot, which stays within the costmaps."
   (when (pr2-proj-reasoning::simulated-p)
-    (let ((?pose (pr2-proj-reasoning::first-possible-pose (poses-around pose) try)))
+    (let ((?pose (pr2-proj-reasoning::first-possible-pose (append (when first (list first)) (poses-around pose)) try)))
       (when ?pose
         (roslisp:ros-warn (fd-plans places) "No place of the costmaps serves. The simulated robot takes another free place: ~a" ?pose)
         (desig:a location (pose ?pose))))))

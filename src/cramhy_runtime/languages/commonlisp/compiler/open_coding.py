@@ -219,29 +219,27 @@ NEXT_VALUES, NEXT_METHOD_EXISTS = sym("CRAMHY::NEXT-VALUES"), sym("CRAMHY::NEXT-
 
 
 def next_method(name, body):
-    """What the local function ``name`` with the forms ``body`` means: its name, the variable of the next method, and those of the
-    arguments; ``None`` if it is none of the two functions."""
+    """What the local function ``name`` with the forms ``body`` means: its name, the variables of the next method and of that for other
+    arguments, and those of the arguments; ``None`` if it is none of the two functions."""
     form = body.car if isinstance(body, Cons) else None
     if not isinstance(form, Cons):
         return None
     if name is CALL and form.car is NEXT_VALUES:
-        _, following, _, *given = form
-        return name, following, given
+        _, following, changed, _, *given = form
+        return name, following, changed, given
     if name is EXISTS and form.car is NEXT_METHOD_EXISTS:
-        return name, form.cdr.car, None
+        return name, form.cdr.car, None, None
     return None
 
 
 def call_of_next(analyzer, meaning, form, env):
     """The node of the call ``form`` of one of the two."""
-    name, following, given = meaning
-    function = env.variable(following).used_from(env.scope)
+    name, following, changed, given = meaning
+    changes = name is CALL and form.cdr is not None
+    function = env.variable(changed if changes else following).used_from(env.scope)
     if name is EXISTS:
         if form.cdr is not None:
             analyzer.fail("~S takes no arguments: ~S", EXISTS, form)
         return Support("next_method_exists", [LocalVariable(function)])
-    if given is None or form.cdr is not None:
-        arguments = analyzer.arguments(form, env)
-    else:
-        arguments = [analyzer.form(variable, env) for variable in given]
+    arguments = analyzer.arguments(form, env) if changes else [analyzer.form(variable, env) for variable in given]
     return CallLocal(function, arguments)

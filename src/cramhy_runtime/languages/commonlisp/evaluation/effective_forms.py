@@ -14,14 +14,16 @@ from .evaluator import compile_lambda
 from ..syntax.lambda_lists import gensym, parse
 from cramhy_runtime.ground.packages import sym, symbol_name
 from cramhy_runtime.ground.dispatch.method_combination import AROUND, link
+from cramhy_runtime.ground.dispatch.methods import Shape
 
 CALL_METHOD, MAKE_METHOD, LAMBDA, QUOTE = sym("CALL-METHOD"), sym("MAKE-METHOD"), sym("LAMBDA"), sym("QUOTE")
 
 
-def function_of_form(form, generic_function, classes, lambda_list=None):
+def function_of_form(form, generic_function, classes, lambda_list=None, *, made=False):
     """The function of the generic function's arguments that does what ``form`` says.
 
-    lambda_list: that of the option ``:arguments``; its variables stand for the arguments of the call in ``form``.
+    lambda_list: that of the option ``:arguments``; its variables stand for the arguments of the call in ``form``. made: whether it is the
+    form of a ``make-method``, which a method may have given other arguments.
     """
     state = gensym("STATE")
 
@@ -30,7 +32,8 @@ def function_of_form(form, generic_function, classes, lambda_list=None):
         methods = [
             _method(item, generic_function, classes, lambda_list) for item in (method, *python_list(following[0] if following else None))
         ]
-        function = link(generic_function, methods, classes)
+        linked = link(generic_function, methods, classes)
+        function = linked.changed if made else linked.function
         return lisp_list(sym("FUNCALL"), lisp_list(QUOTE, lambda given: function(*given[0], **given[1])), state)
 
     environment = Env()
@@ -44,7 +47,7 @@ def function_of_form(form, generic_function, classes, lambda_list=None):
 
 def _method(form, generic_function, classes, lambda_list):
     if isinstance(form, Cons) and symbol_name(form.car) == "MAKE-METHOD":
-        return _MadeMethod(function_of_form(form.cdr.car, generic_function, classes, lambda_list))
+        return _MadeMethod(function_of_form(form.cdr.car, generic_function, classes, lambda_list, made=True))
     return form
 
 
@@ -69,7 +72,7 @@ def _lenient(lambda_list):
 class _MadeMethod:
     """What ``(make-method form)`` stands for in a list of next methods."""
 
-    uses_next, per_class, qualifiers = False, False, (AROUND,)
+    uses_next, qualifiers, specializers, shape = False, (AROUND,), (), Shape()
 
     def __init__(self, function):
         self.function = function

@@ -140,9 +140,9 @@ def with_simple_restart(name, report, thunk):
     return conditions.with_simple_restart(name, report, thunk)
 
 
-def next_values(next_method, others, *given):
-    """``call-next-method`` in the body of a method that was called with ``given``: with ``others``, a list, if there are any."""
-    return next_method(*(python_list(others) or given))
+def next_values(next_method, changed, others, *given):
+    """``call-next-method`` in the body of a method that was called with ``given``; ``changed`` gets ``others``, a list, if any."""
+    return next_method(*given) if others is None else changed(*python_list(others))
 
 
 # ----------------------------------------------------------------------------------------------------------------- iteration

@@ -22,7 +22,7 @@ from .class_definition import default_initargs
 from .class_objects import StandardClass, StandardObject, effective_slots, find_slot, may_be_unbound
 from .constructors import instance_constructor
 from cramhy_runtime.ground.classes import when_classes_change
-from .classes import StructureClass, class_name, class_of, find_class_or_error, qualified
+from .classes import StructureClass, SystemClass, class_name, class_of, find_class_or_error, metaclass_of, qualified
 from cramhy_runtime.ground.dispatch.generic_functions import no_method_for, when_methods_change
 from cramhy_runtime.ground.dispatch.method_combination import AFTER, STANDARD
 from cramhy_runtime.kernel.images import part
@@ -350,7 +350,8 @@ def initialize_from_python(instance, initargs, keywords):
 
 
 def _plan_or_error(cls):
-    if isinstance(cls, BuiltInClass) or cls is object or issubclass(cls, type):
+    abstract = isinstance(cls, StructureClass) and not hasattr(cls, "lisp_structure")
+    if isinstance(cls, BuiltInClass) or cls is object or issubclass(cls, type) or metaclass_of(cls) is SystemClass or abstract:
         return error(SimpleError("Cannot allocate an instance of ~S.", cls))
     return plan_for(cls)
 

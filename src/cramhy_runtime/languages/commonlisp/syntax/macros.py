@@ -69,23 +69,26 @@ def macroexpand_1(form, environment=None):
     return form, False
 
 
-def mentions(form, symbols):
-    """Whether one of ``symbols`` stands in ``form``: in its code, its templates, or what the user's macros make of it."""
-    if isinstance(form, Cons) and form.car is QUOTE:
+def mentions(form, symbols, plain=None):
+    """Whether one of ``symbols`` stands in ``form``: in its code, its templates, or what the user's macros make of it.
+
+    plain: a symbol; where it stands as a call without arguments it does not count.
+    """
+    if isinstance(form, Cons) and (form.car is QUOTE or plain is not None and form.car is plain and form.cdr is None):
         return False
     while isinstance(form, Cons):
         head = form.car
         if isinstance(head, Symbol) and hasattr(head.macro, "__lisp_lambda_list__") and head.package is not COMMON_LISP:
             expansion = _tried(head.macro, form)
-            if expansion is not form and mentions(expansion, symbols):
+            if expansion is not form and mentions(expansion, symbols, plain):
                 return True
-        if mentions(head, symbols):
+        if mentions(head, symbols, plain):
             return True
         form = form.cdr
     if type(form) is Comma:
-        return mentions(form.form, symbols)
+        return mentions(form.form, symbols, plain)
     if type(form) is list:
-        return any(mentions(item, symbols) for item in form)
+        return any(mentions(item, symbols, plain) for item in form)
     return isinstance(form, Symbol) and form in symbols
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.ground.conditions import Error, SimpleError, error, handler_bind, handler_case, warn
-from cramhy_runtime.ground.dispatch.generic_functions import FunctionInTheWay
+from cramhy_runtime.ground.dispatch.generic_errors import FunctionInTheWay
 from cramhy_runtime.ground.restarts import find_restart, invoke_restart
 from cramhy_runtime.ground.data import Cons, Symbol, list_from
 from cramhy_runtime.ground.dynamic import binding
