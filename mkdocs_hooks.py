@@ -4,6 +4,7 @@
   repository if its address is known (CRAMHY_REPOSITORY), and else are plain words.
 * Blocks of code below the comment ``<!-- tabs -->`` become tabs, one for each language. Where the languages are the same, the first
   block is for Lisp and the second one for Hy.
+* Paragraphs and blocks below ``<!-- lisp -->`` and ``<!-- hy -->`` become tabs, too; so each says for whom it is.
 * Hints, which GitHub shows as ``<details>``, are Markdown inside.
 * The first use of a word of the glossary on a page becomes a link to its entry.
 """
@@ -24,6 +25,8 @@ PAGES["tutorials/README.md"] = "tutorials/the-package.md"
 
 FENCE = re.compile(r"^```(\w*)[^\n]*\n.*?^```$", re.M | re.S)
 TABS = re.compile(r"^<!-- tabs -->\n\n((?:```\w*[^\n]*\n(?:.*\n)*?```\n\n?){2,})", re.M)
+MARKED = re.compile(r"(?:^<!-- (?:lisp|hy) -->\n+(?:```[^\n]*\n.*?^```$|[^\n]+(?:\n[^\n]+)*)(?:\n\s*\n|\n?\Z))+", re.M | re.S)
+ONE_MARKED = re.compile(r"^<!-- (lisp|hy) -->\n+(```[^\n]*\n.*?^```$|[^\n]+(?:\n[^\n]+)*)", re.M | re.S)
 LABELS = {"lisp": "Lisp", "hy": "Hy", "python": "Python"}
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|!\[[^\]]*\]\([^)]*\))*)\]\((?![a-z]+:|#)([^)\s#]+)(#[^)\s]*)?\)")
 APART = re.compile(r"(^```.*?^```$|^#.*?$|^\|.*?$|^!!!.*?$|`[^`\n]*`|!?\[[^\]]*\]\([^)]*\)|<!--.*?-->)", re.M | re.S)
@@ -45,7 +48,19 @@ def on_page_markdown(markdown, page, config, files):
     text = with_links(markdown, source, place, {file.src_uri for file in files})
     if not place.startswith("reference/") and place not in ("glossary.md", "CHANGELOG.md"):
         text = with_glossary(text, posixpath.relpath("glossary.md", posixpath.dirname(place) or "."))
-    return with_tabs(with_hints(text))
+    return with_tabs(with_marked(with_hints(text)))
+
+
+def with_marked(text):
+    """A page's text in which what is for one language is in a tab: neighbours of both languages are one box."""
+
+    def tabs(match):
+        pieces: dict[str, list[str]] = {}
+        for language, piece in ONE_MARKED.findall(match[0]):
+            pieces.setdefault(language, []).append(re.sub(r"^(?=.)", "    ", piece, flags=re.M))
+        return _box((LABELS[language], "\n\n".join(each)) for language, each in pieces.items())
+
+    return MARKED.sub(tabs, text)
 
 
 def with_hints(text):
@@ -87,10 +102,15 @@ def with_tabs(text):
         shown = []
         for label, block in zip(labels, blocks, strict=True):
             indented = re.sub(r"^(?=.)", "    ", block[0], flags=re.M)
-            shown.append(f'=== "{label}"\n\n{indented}\n')
-        return "\n".join(shown) + "\n"
+            shown.append((label, indented))
+        return _box(shown)
 
     return TABS.sub(tabs, text)
+
+
+def _box(tabs):
+    """The Markdown of a box of (label, indented text); the exclamation mark keeps it apart from a box right before it."""
+    return "".join(f'==={"" if number else "!"} "{label}"\n\n{text}\n\n' for number, (label, text) in enumerate(tabs))
 
 
 def with_glossary(text, glossary):

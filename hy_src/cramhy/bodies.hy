@@ -28,7 +28,7 @@ becomes a function of no arguments, which `operator_bodies` hides: it assigns th
   "Let the names of this module be symbols of the Lisp package `name`, such as `:tut`, so that its plans meet those of Common Lisp."
   (setv module _hy-compiler.module.__name__ package (.lstrip (str name) ":"))
   (hy.I.cramhy_runtime/languages/hy/lisp_data.choose-package module package)
-  `((hy.R.cramhy._ours calls choose-package) ~module ~package))
+  `(do ((hy.R.cramhy._ours calls choose-package) ~module ~package) None))
 
 (defmacro lisp [_hy-compiler model]
   "The Lisp data that is written: `(lisp drive)` is a symbol, `(lisp (a b))` a list of Lisp."

@@ -1,8 +1,8 @@
 """``make notebooks OUT=folder``: write the pages of the tutorials as notebooks, from the same sources as the site.
 
 A page gives a notebook in Common Lisp, and one in Hy (``NAME-in-hy.ipynb``) if it has sessions in Hy. The sessions in that language become
-cells, one for each thing that is typed; files become cells that write them. The rest of the page stays text, the other language and
-commands of the shell, too. What is typed into the debugger is left out, and the cell before it, which fails, says so to Jupyter with the
+cells, one for each thing that is typed; files become cells that write them. What is for those who learn the other language is left out. The
+rest of the page stays text, commands of the shell, too. What is typed into the debugger is left out, and the cell before it, which fails, says so to Jupyter with the
 tag ``raises-exception``. A task's code to begin with is a cell, and so is its check.
 
 A package grows on the pages of the lectures, so their notebooks are in a folder of their own, and are run one after the other. The others
@@ -19,6 +19,7 @@ from pathlib import Path
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[2]))
 
+from cramhy_runtime.course.parts import LANGUAGES, text_in  # noqa: E402
 from cramhy_runtime.course.reading import tasks_in  # noqa: E402
 from tests.docs.pages import COURSE, DOCS, FENCE, LECTURES, Block, Page, exchanges  # noqa: E402
 
@@ -65,7 +66,9 @@ def cells(text, language="lisp"):
     found = [] if language == "lisp" else [["code", "(in-hy)", False]]
     for part in parts(text):
         if isinstance(part, str):
-            found.append(["markdown", part, False])
+            found.append(["markdown", f"{part[: len(part) - len(part.lstrip())]}{text_in(part, language)}\n\n", False])
+        elif part.language in LANGUAGES and part.language != language or part.language == "xml" and language != "lisp":
+            pass
         elif part.language == CHECK:
             task = part.text.strip()
             in_hy = f'(import cramhy-runtime.course.package [check])\n(check "{task}" "hy")'

@@ -298,7 +298,8 @@ def play_here(paths, backend, folder):
     texts = {}
     for path in paths:
         with contextlib.chdir(place_of(path, folder)):
-            texts[path] = [text.replace(f"{ROOT}/", "").replace(f"{folder}/", "") for text in played(Page(path), backend)]
+            here = f"{folder}/" if Path(path).name in LECTURES else f"{Path.cwd()}/"
+            texts[path] = [text.replace(f"{ROOT}/", "").replace(here, "") for text in played(Page(path), backend)]
     json.dump(texts, sys.stdout)
 
 

@@ -203,18 +203,29 @@ SHOWN = {
     "(lisp drive)": "DRIVE",
     '(lisp (1 (drive) "a"))': '(1 (DRIVE) "a")',
     "(make-3d-vector 1 2 3)": "#<3D-VECTOR (1.0 2.0 3.0)>",
-    '(make-msg "std_msgs/String" :data "a")': '[STD_MSGS-MSG:STRING\n   DATA:\n     "a"]',
+    '(make-msg "std_msgs/String" :data "a")': "String(data='a')",
+    '(make-msg "geometry_msgs/Twist" (:x :linear) 2.5)': (
+        "Twist(linear=Vector3(x=2.5, y=0.0, z=0.0), angular=Vector3(x=0.0, y=0.0, z=0.0))"
+    ),
+    "(reference (a motion (type halving)))": '("half" Half())',
+    "(lisp-package :door)": None,
     '[1 2.5 "a" True None]': '[1 2.5 "a" True None]',
     "'(drive [x])": "'(drive [x])",
 }
+
+
+HALVING = """(def-fact-group halving [motion-grounding] (<- (motion-grounding ?desig ["half" ?number])
+  (desig-prop ?desig (type halving)) (lisp-fun Half ?number))) None"""
 
 
 def test_values_of_plans_print_in_hy_as_lisp_prints_them_and_others_as_hy_does(hy_terminal):
     with hy_terminal() as hy:
         hy.expect("=> $")
         hy.ask(REQUIRE)
+        hy.ask('(defclass Half [] (defn __repr__ [self] "Half()"))')
+        hy.ask(" ".join(HALVING.split()))
         for text, shown in SHOWN.items():
-            assert hy.ask(text) == f"{shown}\n=> "
+            assert hy.ask(text) == ("=> " if shown is None else f"{shown}\n=> "), text
         assert hy.ask("None") == hy.ask("(setv door 5)") == "=> "
 
 

@@ -88,3 +88,24 @@ def test_arguments_are_evaluated_once_and_in_order(lisp):
 def test_nth_value(lisp, form, answer):
     shown = lisp(form)
     assert shown.startswith("#<SIMPLE-ERROR") if answer is None else shown == answer
+
+
+FLOATS = "0.5 1.5 2.5 -0.5 -1.5 -0.0 0.49999997 8388609.0 1e30 -3.7 0.5d0 2.5d0 -0.0d0 4503599627370497.5d0 -1d300 7 7/2 -5/2".split()
+DECLARED = {"": FLOATS, "single-float": [each for each in FLOATS if "." in each and "d" not in each], "double-float": FLOATS[10:15]}
+
+
+@pytest.mark.parametrize("name", ["floor", "truncate", "ceiling", "round"])
+@pytest.mark.parametrize("kind", DECLARED)
+def test_the_quotient_by_one_alone_is_that_of_the_function(lisp, name, kind):
+    declaration = f"(declare ({kind} x))" if kind else ""
+    lisp(f"(defun alone (x) {declaration} (let ((q ({name} x))) (list q (+ ({name} x) 1))))")
+    lisp(f"(defun half (x) {declaration} (nth-value 0 ({name} (* x 0.5))))")
+    for number in DECLARED[kind]:
+        quotient = lisp(f"(nth-value 0 (funcall #'{name} {number}))")
+        assert lisp(f"(alone {number})") == f"({quotient} {int(quotient) + 1})"
+        assert lisp(f"(half {number})") == lisp(f"(nth-value 0 (funcall #'{name} (funcall #'* {number} 0.5)))")
+
+
+def test_the_quotient_of_an_infinity_alone_is_an_error(lisp):
+    lisp("(defun endless (x) (handler-case (round x) (arithmetic-error () :none)))")
+    assert lisp("(endless sb-ext:double-float-positive-infinity)") == lisp("(endless sb-ext:single-float-negative-infinity)") == ":NONE"

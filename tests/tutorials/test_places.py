@@ -69,7 +69,7 @@ def test_the_generator_gives_five_points_walls_or_not(turtle):
 def test_points_near_a_wall_are_not_accepted(turtle, x, y, verdict):
     answer = turtle(f"""(navigation-goal-validator (desig:a location (horizontal-position :left) (vertical-position :top))
                                                    (make-3d-vector {x} {y} 0))""")
-    assert (answer and answer.name) == verdict
+    assert (answer and getattr(answer, "name", answer).upper()) == verdict  # a string in Hy
 
 
 @pytest.mark.parametrize(
@@ -93,7 +93,7 @@ def test_a_misspelled_third_is_told(turtle, language):
     told = text_of_error(turtle, "(goto-location :leftt :top)")
     texts = {
         "lisp": ":LEFTT fell through ECASE expression. Wanted one of (:LEFT :CENTER :RIGHT).",
-        "hy": "ecase: No test value matched",  # hyrule's
+        "hy": "'leftt'",  # of a KeyError
     }
     assert told.split() == texts[language].split()
     assert turtle.left() == []
@@ -121,6 +121,6 @@ def text_of_error(turtle, form):
     """Without the error itself, which would hold on to the plan that it came out of."""
     try:
         turtle(form)
-    except (Condition, ValueError) as problem:
+    except (Condition, ValueError, KeyError) as problem:
         return str(problem)
     return None

@@ -1,5 +1,4 @@
 (require cramhy *)
-(require hyrule [ecase])
 (import .control-turtlesim [turtle-pose])
 
 (defn get-shape-vertices [type #* parameters]
@@ -9,7 +8,7 @@
   (with-fields [x y] turtle-pose.value
     (defn corner [right up]
       [(+ x right) (+ y up) 0])
-    (ecase type
+    (match type
       "triangle"
         (let [[base-width height] parameters]
           [(corner base-width 0)

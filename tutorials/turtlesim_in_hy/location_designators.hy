@@ -1,5 +1,4 @@
 (require cramhy *)
-(require hyrule [ecase])
 (import random [uniform]
         cramhy_runtime.transforms.vectors [Vector3])
 
@@ -20,8 +19,8 @@
   "Five random points in the third of the world that the location `designator' describes."
   (with-desig-props [horizontal-position vertical-position] designator
     (when (and horizontal-position vertical-position)
-      (setv column (ecase (word horizontal-position) "left" 0 "center" 1 "right" 2)
-            row (ecase (word vertical-position) "bottom" 0 "center" 1 "top" 2))
+      (setv column (get {"left" 0 "center" 1 "right" 2} (word horizontal-position))
+            row (get {"bottom" 0 "center" 1 "top" 2} (word vertical-position)))
       (lfor _ (range 5)
         (make-3d-vector (random-coordinate column) (random-coordinate row) 0)))))
 
@@ -40,7 +39,7 @@
     (when (and horizontal-position vertical-position
                (isinstance solution Vector3)
                (within-bounds-p solution.x solution.y))
-      (lisp :accept))))
+      "accept")))
 
 (register-location-validation-function
  5 navigation-goal-validator

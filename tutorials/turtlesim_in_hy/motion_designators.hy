@@ -14,26 +14,26 @@
   ;; for each kind of motion, check for and extract the necessary info
 
   ;; drive and turn
-  (<- (desig:motion-grounding ?desig [drive ?motion])
+  (<- (desig:motion-grounding ?desig ["drive" ?motion])
     (desig-prop ?desig (type driving))
     (desig-prop ?desig (speed ?speed))
     (desig-prop ?desig (angle ?angle))
     (lisp-fun TurtleMotion :speed ?speed :angle ?angle ?motion))
 
   ;; drive
-  (<- (desig:motion-grounding ?desig [drive ?motion])
+  (<- (desig:motion-grounding ?desig ["drive" ?motion])
     (desig-prop ?desig (type driving))
     (desig-prop ?desig (speed ?speed))
     (lisp-fun TurtleMotion :speed ?speed ?motion))
 
   ;; turn
-  (<- (desig:motion-grounding ?desig [drive ?motion])
+  (<- (desig:motion-grounding ?desig ["drive" ?motion])
     (desig-prop ?desig (type driving))
     (desig-prop ?desig (angle ?angle))
     (lisp-fun TurtleMotion :angle ?angle ?motion))
 
   ;; move
-  (<- (desig:motion-grounding ?desig [move ?motion])
+  (<- (desig:motion-grounding ?desig ["move" ?motion])
     (desig-prop ?desig (type moving))
     (desig-prop ?desig (goal ?goal))
     (lisp-fun goal-vector ?goal ?motion)))
@@ -48,7 +48,7 @@
 
 (def-fact-group turtle-pen-motion-designators [motion-grounding]
   ;; colour, width, and whether it draws
-  (<- (desig:motion-grounding ?desig [set-pen ?motion])
+  (<- (desig:motion-grounding ?desig ["set-pen" ?motion])
     (desig-prop ?desig (type setting-pen))
     (desig-prop ?desig (r ?r))
     (desig-prop ?desig (g ?g))
@@ -58,7 +58,7 @@
     (lisp-fun PenMotion :r ?r :g ?g :b ?b :width ?width :off ?off ?motion))
 
   ;; colour and width
-  (<- (desig:motion-grounding ?desig [set-pen ?motion])
+  (<- (desig:motion-grounding ?desig ["set-pen" ?motion])
     (desig-prop ?desig (type setting-pen))
     (desig-prop ?desig (r ?r))
     (desig-prop ?desig (g ?g))
@@ -67,13 +67,13 @@
     (lisp-fun PenMotion :r ?r :g ?g :b ?b :width ?width ?motion))
 
   ;; up or down
-  (<- (desig:motion-grounding ?desig [set-pen ?motion])
+  (<- (desig:motion-grounding ?desig ["set-pen" ?motion])
     (desig-prop ?desig (type setting-pen))
     (desig-prop ?desig (off ?off))
     (lisp-fun PenMotion :off ?off ?motion)))
 
 (def-fact-group goal-motions [motion-grounding]
   ;; to a place that has a description
-  (<- (desig:motion-grounding ?desig [go-to ?point])
+  (<- (desig:motion-grounding ?desig ["go-to" ?point])
     (desig-prop ?desig (type going-to))
     (desig-prop ?desig (goal ?point))))

@@ -1,5 +1,4 @@
 (require cramhy *)
-(require hyrule [ecase])
 (import random [randrange]
         cramhy_runtime.designators [DesignatorError]
         .control-turtlesim [send-vel-cmd call-set-pen init-ros-turtle]
@@ -11,14 +10,14 @@
     "TurtleSim navigation invoked with motion designator `~a'."
     motion-designator)
   (setv [command motion] (reference motion-designator))
-  (ecase command
-    (lisp drive)
+  (match command
+    "drive"
       (send-vel-cmd
         motion.speed
         motion.angle)
-    (lisp move)
+    "move"
       (move-to motion)
-    (lisp go-to)
+    "go-to"
       (let [point (reference motion)]
         (roslisp:ros-info (turtle-process-modules)
           "Goint to point ~a."
@@ -30,8 +29,8 @@
     "TurtleSim pen control invoked with motion designator `~a'."
     motion-designator)
   (setv [command motion] (reference motion-designator))
-  (ecase command
-    (lisp set-pen)
+  (match command
+    "set-pen"
       (call-set-pen
         motion.r
         motion.g

@@ -12,6 +12,8 @@ _ONLY_FOR = re.compile(
     r"^<!-- (?P<marked>lisp|hy) -->\n+(?P<text>```.*?^```$\n?|.+?(?:\n\s*\n|\n?\Z))|^(?P<code>```(?P<written>lisp|hy)\n.*?^```$\n?)",
     re.M | re.S,
 )
+OF_BOTH = re.compile(r"(?P<lisp>`[^`]+`)\s\(in Hy\s(?P<hy>`[^`]+`)\)")
+"""Code in a line for Lisp, and what stands for it in Hy, as in ```:left` (in Hy `"left"`)``. Those who learn one language read its own."""
 
 
 def by_language(markdown: str) -> list[tuple[str | None, str]]:
@@ -29,7 +31,8 @@ def by_language(markdown: str) -> list[tuple[str | None, str]]:
 
 def text_in(markdown: str, language: str) -> str:
     """Markdown without what is for the other language."""
-    return "\n\n".join(text for only, text in by_language(markdown) if only in (None, language))
+    text = "\n\n".join(text for only, text in by_language(markdown) if only in (None, language))
+    return OF_BOTH.sub(rf"\g<{language}>", text)
 
 
 @dataclass(frozen=True)

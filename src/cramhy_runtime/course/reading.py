@@ -11,6 +11,7 @@ a block with ``title="Begin with"``              in a task: the code to begin wi
                                                  leaves it out
 ``<!-- in the course`` ... ``-->``               text that the course has in its place
 ``<!-- lisp -->`` or ``<!-- hy -->``             the paragraph or the piece of a session below is for those who learn in this language
+code ``(in Hy `code`)``                          the first code for Lisp, the second one for Hy (`parts.OF_BOTH`)
 ===============================================  ==========================================================================
 
 All else is text.

@@ -11,7 +11,7 @@ from cramhy_runtime.extras import install_command
 from cramhy_runtime.kernel.typing_names import Any
 
 from . import contents
-from .parts import LANGUAGES, Code, File, Task, Typed, by_language
+from .parts import LANGUAGES, OF_BOTH, Code, File, Task, Typed, by_language
 from .reading import pages
 
 _LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|!\[[^\]]*\]\([^)]*\))*)\]\((?![a-z]+:)[^)]*\)")
@@ -83,6 +83,7 @@ def as_html(text: str) -> str:
     pieces = []
     for language, piece in by_language(text):
         piece = _PICTURE.sub(_picture, _LINK.sub(r"\1", re.sub(r"<!--.*?-->\n?", "", piece, flags=re.S)))
+        piece = OF_BOTH.sub(r'<span data-only="lisp">\g<lisp></span><span data-only="hy">\g<hy></span>', piece)
         piece = markdown.markdown(piece, extensions=["tables", "fenced_code"])
         pieces.append(piece if language is None else f'<div data-only="{language}">{piece}</div>')
     return "\n".join(pieces)

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 ACCEPT, UNKNOWN, MAYBE_REJECT = keyword("ACCEPT"), keyword("UNKNOWN"), keyword("MAYBE-REJECT")
+_WORDS = {"accept": ACCEPT, "unknown": UNKNOWN, "maybe-reject": MAYBE_REJECT}
 PRINT_VERDICTS = special(sym("DESIG::*PRINT-LOCATION-VALIDATION-FUNCTION-RESULTS*"), None)
 MAX_RETRIES = special(sym("DESIG::*LOCATION-GENERATOR-MAX-RETRIES*"), 30)
 LOCATION_GROUNDING = sym("DESIG::LOCATION-GROUNDING")
@@ -294,8 +295,8 @@ def _verdict(name, designator, solution):
 def validate_location_designator_solution(designator, solution):
     """Whether the validators let ``solution`` pass: one accepts it, or all answer ``:unknown`` (designators.md 8.3).
 
-    Verdicts are keywords. Anything but ``:accept``, ``:unknown`` and ``:maybe-reject`` refuses at once, also ``t``. If ``designator`` is
-    not a location designator, it is a type error.
+    Verdicts are keywords; a validator in Hy may say them as strings. Anything but ``:accept``, ``:unknown`` and ``:maybe-reject`` refuses
+    at once, also ``t``. If ``designator`` is not a location designator, it is a type error.
     """
     if not isinstance(designator, LocationDesignator):
         return type_error(designator, "LOCATION-DESIGNATOR")
@@ -312,6 +313,8 @@ def _judge(designator, solution):
         verdict = UNKNOWN
         for name in names:
             answer = _verdict(name, designator, solution)
+            if answer.__class__ is str:
+                answer = _WORDS.get(answer, answer)
             if truth(PRINT_VERDICTS.value):
                 PORTS.output.stream("standard-output").write(f"validator {princ_to_string(name)} says: {princ_to_string(answer)}\n")
             if answer is ACCEPT:

@@ -27,6 +27,7 @@ from hy.reader.exceptions import LexException
 from cramhy_runtime import kernel
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.ground.conses import list_end
 from cramhy_runtime.ground.data import Cons, all_values
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.packages import sym
@@ -341,12 +342,19 @@ class HyPrompt(Listener):
         return complete
 
     def shown_in_hy(self, value):
-        """The text that the REPL shows for ``value`` in Hy: what is ours as Lisp prints it in the package of the module."""
-        if not answer_lists.is_ours(value):
+        """The text that the REPL shows for ``value`` in Hy: what is ours as Lisp prints it in the package of the module.
+
+        Messages are shown as Hy shows objects, and so are objects of Python's classes in a list of Lisp.
+        """
+        if not answer_lists.is_ours(value) or getattr(type(value), "ros_type", ""):
             return hy.repr(value)
         with binding(PACKAGE, package_of(self.repl.module.__name__)):
             text = prin1_to_string(value)
-        return hy.repr(value) if text.startswith("#<PYTHON ") else text
+        if text.startswith("#<PYTHON "):
+            return hy.repr(value)
+        if "#<PYTHON " in text and type(value) is Cons and list_end(value) is None:
+            return f"({' '.join(map(self.shown_in_hy, value))})"
+        return text
 
 
 def shown_by_lisp(value):

@@ -1,4 +1,4 @@
 (def-fact-group my-motions [motion-grounding]
-  (<- (desig:motion-grounding ?desig [drive ?motion])
+  (<- (desig:motion-grounding ?desig ["drive" ?motion])
     (desig-prop ?desig (type braking))
     (lisp-fun TurtleMotion ?motion)))

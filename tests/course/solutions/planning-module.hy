@@ -4,5 +4,5 @@
   (<- (cpm:available-process-module turtlesim-planning))
   (<- (cpm:matching-process-module ?desig turtlesim-planning)
     (desig-prop ?desig (type dreaming)))
-  (<- (desig:motion-grounding ?desig [dream])
+  (<- (desig:motion-grounding ?desig ["dream"])
     (desig-prop ?desig (type dreaming))))

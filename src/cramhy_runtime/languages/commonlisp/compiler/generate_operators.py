@@ -10,10 +10,10 @@ from cramhy_runtime.ground.packages import sym
 from . import nodes
 from .core import NONE, Expression, Symbol, expression, word
 from .declared_types import FIXNUM, is_fixnum
+from .arithmetic.comparisons import COMPARISONS
 from .arithmetic.operations import (
     AND,
     ARITHMETIC,
-    COMPARISONS,
     DOT,
     FLOAT_CLASS,
     IF,

@@ -417,6 +417,7 @@ NAMESPACE = {
     "Latan2": math.atan2,
     "Lceil": math.ceil,
     "Lfloor": math.floor,
+    "Lround": round,
     "Lvector": list,
     "Leach": each,
     "Leach_of_all": each_of_all,

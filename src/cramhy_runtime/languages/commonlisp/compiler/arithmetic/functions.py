@@ -40,6 +40,8 @@ from ..kinds import (
 LESS, LESS_OR_EQUAL, GREATER, GREATER_OR_EQUAL = map(word, "< <= > >=".split())
 REMAINDER, WHOLE_QUOTIENT, NEGATIVE = map(word, "% // -".split())
 FLOOR, CEILING, TRUNCATE, ROUND, ATAN = map(sym, "FLOOR CEILING TRUNCATE ROUND ATAN".split())
+IN_PYTHON = {FLOOR: "floor", CEILING: "ceil", TRUNCATE: "int", ROUND: "round"}
+"""Division of a float by 1 → the function of Python that gives its quotient. ``round`` goes from the middle to the even one, too."""
 
 
 def _finite(value):
@@ -222,12 +224,11 @@ class NumberGenerator(QuotientGenerator):
         """The first value of a division with rest."""
         one, *rest = operands = self.operands(arguments)
         divisor = arguments[1].value if rest and arguments[1].__class__ is nodes.Constant else None
-        if one.kind & FLOATS and not rest and one.known and exactly(one.kind, MACHINE) and symbol is not ROUND:
+        if one.kind & FLOATS and not rest and one.known and exactly(one.kind, MACHINE):
             if one.first is not one.later:
                 self.settle(operands)
             slow = self.first_value(self.called(node, symbol, operands))
-            name = {FLOOR: "floor", CEILING: "ceil", TRUNCATE: "int"}[symbol]
-            return expression(IF, _finite(one.later), self.call(name, one.later), slow), False
+            return expression(IF, _finite(one.later), self.call(IN_PYTHON[symbol], one.later), slow), False
         self.settle(operands)
         slow = self.first_value(self.called(node, symbol, operands))
         if divisor.__class__ is int and divisor > 0 and one.kind & INT and symbol is not ROUND and not one.raw:
@@ -241,11 +242,10 @@ class NumberGenerator(QuotientGenerator):
         if symbol is FLOOR and rest and all(each.kind & INT and not each.raw for each in operands) and divisor is None:
             quotient = expression(WHOLE_QUOTIENT, one.later, rest[0].later)
             return self.behind([self.integers(operands), rest[0].later], quotient, slow), False
-        if not rest and not one.raw and one.kind & FLOATS and symbol is not ROUND:
-            name = {FLOOR: "floor", CEILING: "ceil", TRUNCATE: "int"}[symbol]
+        if not rest and not one.raw and one.kind & FLOATS:
             of_float = [expression(IS, self.class_of(one.later), each) for each in (FLOAT_CLASS, SINGLE_CLASS)]
             tests = [expression(OR, *of_float), _finite(one.later)]
-            return self.behind(tests, self.call(name, one.later), slow), False
+            return self.behind(tests, self.call(IN_PYTHON[symbol], one.later), slow), False
         return slow, False
 
     def floated(self, node, symbol, arguments):

@@ -1,4 +1,4 @@
-"""Arithmetic and comparison: from calls of ``+ - * / < > <= >= =`` to Python's operators.
+"""Arithmetic: from calls of ``+ - * /`` to Python's operators.
 
 Where the kinds of the operands are known (``kinds.py``) a Python operator stands alone. Where they are not, one test of classes
 stands before as many operations as belong together (`fused`), and the generic functions of ``numbers/arithmetic.py`` behind it:
@@ -17,7 +17,7 @@ import sys
 from cramhy_runtime.ground.floats import SingleFloat
 from cramhy_runtime.ground.packages import sym
 from .. import nodes
-from ..core import NONE, TRUE, Symbol, expression, word
+from ..core import TRUE, Symbol, expression, word
 from ..declared_types import GREATEST_FIXNUM, LEAST_FIXNUM
 from ..destinations import FIRST_OF_VALUES, RAW, VALUE
 from ..environment import Variable
@@ -30,7 +30,6 @@ from ..kinds import (
     FIXNUM_BITS,
     FLOATS,
     INT,
-    MACHINE,
     MINUS,
     NUMBER,
     PLUS,
@@ -62,7 +61,6 @@ ARITHMETIC = {
     )
 }
 OPERATORS = {PLUS: word("+"), MINUS: word("-"), TIMES: word("*"), DIVIDE: word("/")}
-COMPARISONS = {sym(name): word(name) for name in ("<", ">", "<=", ">=", "=")}
 
 LARGEST = sys.float_info.max
 SMALL_INTEGERS = 2**24
@@ -398,6 +396,8 @@ class ArithmeticGenerator:
         if assumed == FIXNUM:
             return expression(AND, expression(IS, *classes, INT_CLASS), fixnum_test(unknown[0].later))
         of_class = FLOAT_CLASS if unknown[0].raw else {INT: INT_CLASS, SINGLE: SINGLE_CLASS, DOUBLE: FLOAT_CLASS}[assumed]
+        if all(each[1].__class__ is Symbol for each in classes if each.__class__ is not Symbol):
+            return expression(IS, of_class, *classes)  # it fails at the first
         return expression(IS, *classes, of_class)
 
     def kind_in(self, part, assumed):
@@ -413,16 +413,23 @@ class ArithmeticGenerator:
         kind = one and other and bare(part.symbol, one, other, size, other_size)
         return kind, size + other_size + 2 if kind & INT else 0
 
-    def bare_model(self, part, assumed, used):
-        """The expression of Python's operators. ``used``: the operands that have been evaluated, or ``None`` if all have."""
+    def bare_model(self, part, assumed, used, floats=None):
+        """The expression of Python's operators. ``used``: the operands that have been evaluated, or ``None`` if all have.
+
+        ``floats``: the names of operands that have been made raw, which is done once in the whole expression.
+        """
         if part.__class__ is Operand:
             if used is None or part in used:
                 model = part.later
             else:
                 used.add(part)
                 model = part.first
-            return self.call("float", model) if assumed == SINGLE and not part.known and not part.raw else model
-        models = [self.bare_model(each, assumed, used) for each in part.parts]
+            return model if assumed != SINGLE or part.known or part.raw else self.float_once(part, model, floats)
+        if floats is None:
+            floats = {}
+            operands = [each for operation in operations_of(part) for each in operation.parts if each.__class__ is Operand]
+            floats.update((each, None) for each in operands if operands.count(each) > 1)
+        models = [self.bare_model(each, assumed, used, floats) for each in part.parts]
         if self.kind_in(part, assumed) != SINGLE:
             return expression(OPERATORS[part.symbol], *models)
         for index, each in enumerate(part.parts):
@@ -439,6 +446,16 @@ class ArithmeticGenerator:
         shaping = {TIMES: shape_of_product, PLUS: shape_of_sum}.get(part.symbol)
         shape = shaping and shaping(part.parts[0].node, part.parts[1].node)
         return rounded(expression(OPERATORS[part.symbol], *models), part.symbol is TIMES or part.symbol is DIVIDE, slow, shape)
+
+    def float_once(self, operand, model, floats):
+        """The raw value of ``operand``, a single; with a name, if ``floats`` says that it is used again."""
+        raw_model = self.call("float", model)
+        if operand not in floats:
+            return raw_model
+        if floats[operand] is None:
+            floats[operand] = word(self.temporary())
+            return expression(SETX, floats[operand], raw_model)
+        return floats[operand]
 
     def needs_check(self, operation, kind):
         """Whether a result of ``kind`` may be infinite because of a product."""
@@ -483,48 +500,6 @@ class ArithmeticGenerator:
         noted, again = self.noted_class(tested.first)
         test = expression(OR, expression(IS, noted, INT_CLASS), expression(IS, again, FLOAT_CLASS))
         return expression(IF, test, expression(OPERATORS[operation.symbol], *models), slow)
-
-    # -------------------------------------------------------------------------------------------------------- comparisons
-
-    def comparison(self, node, symbol, arguments):
-        """The Python test of a comparison of two operands."""
-        operands = self.operands(arguments)
-        one, other = operands
-        operator = COMPARISONS[symbol]
-        if exactly(one.kind, MACHINE) and exactly(other.kind, MACHINE):
-            return expression(operator, one.first, other.first)
-        slow = expression(IS_NOT, self.generic(Operation(symbol, node, operands)), NONE)
-        if any(operand.kind and not operand.kind & (NUMBER | THING) for operand in operands):
-            self.settle(operands)
-            return slow
-        quick = expression(operator, one.later, other.later)
-        unsure = [operand for operand in operands if not exactly(operand.kind, MACHINE)]
-        if len(unsure) == 2 and not (one.raw or other.raw):
-            return expression(IF, self.same_class(one, other), quick, slow)
-        if len(unsure) == 2 or any(operand.first is not operand.later for operand in operands if operand is not unsure[0]):
-            self.settle(operands)
-        return expression(IF, expression(AND, *map(self.real_test, unsure)) if len(unsure) > 1 else self.real_test(unsure[0]), quick, slow)
-
-    def real_test(self, operand):
-        """A test that an operand is of a class whose values Python compares as Lisp does."""
-        noted, again = self.noted_class(operand.first)
-        classes = [INT_CLASS, FLOAT_CLASS] if operand.kind & INT or not operand.raw else [FLOAT_CLASS]
-        if not operand.raw:
-            classes.append(SINGLE_CLASS)
-        tests = [expression(IS, noted if index == 0 else again, each) for index, each in enumerate(classes)]
-        return tests[0] if len(tests) == 1 else expression(OR, *tests)
-
-    def same_class(self, one, other):
-        """A test that both operands are of one class whose values Python compares as Lisp does."""
-        if one.later is other.later:
-            return self.real_test(one)
-        second = other.first
-        if second.__class__ is Symbol:
-            first, second = expression(SETX, CLASSES, self.class_of(one.first)), self.class_of(second)
-        else:
-            first, second = self.class_of(one.first), expression(SETX, CLASSES, self.class_of(second))
-        classes = (INT_CLASS, FLOAT_CLASS, SINGLE_CLASS)
-        return expression(AND, expression(IS, first, second), expression(OR, *(expression(IS, CLASSES, each) for each in classes)))
 
 
 def nameable_node(node):

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from ..core import expression, word
-from .operations import AND, ARITHMETIC, FIXNUM, IF, INT_CLASS, IS, ArithmeticGenerator, Operand, Operation
+from .comparisons import ComparisonGenerator
+from .operations import AND, ARITHMETIC, FIXNUM, IF, INT_CLASS, IS, Operand, Operation
 from ..kinds import DIVIDE, DOUBLE, FLOATS, INT, NUMBER, SINGLE, THING, exactly, raw
 
 OVER, WHOLE_OVER, REST, NOT = map(word, "/ // % not".split())
 
 
-class QuotientGenerator(ArithmeticGenerator):
+class QuotientGenerator(ComparisonGenerator):
     """The part of the `Generator` that divides."""
 
     @staticmethod

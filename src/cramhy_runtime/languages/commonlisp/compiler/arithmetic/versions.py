@@ -14,7 +14,7 @@ from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.packages import sym
 from .. import nodes
 from ..facts import OPERANDS_OF, find_kinds, walk
-from .operations import COMPARISONS
+from .comparisons import COMPARISONS
 from ..kinds import BOOLEAN, DIVIDE, DOUBLE, FIXNUM_BITS, FLOATS, INFINITE, INT, NONE_YET, SINGLE, SMOOTH, SQRT, THING, kind_of
 from ..kinds import kind_of_type
 
