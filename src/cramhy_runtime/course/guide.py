@@ -15,6 +15,7 @@ from .reading import PageError, page, pages
 from .replay import Replay
 from .shown import Style
 from .steps import ERROR, Step, file_shown, session_shown, steps, task_shown
+from .typed_forms import TypedForms
 
 COMMANDS = {
     "next": ("n", "the next step, or the next page"),
@@ -92,6 +93,7 @@ class Guide:
         self._read: Typed | None = None  # which of them is being answered
         self._cue: str | None = None
         self.replay = Replay(self._typed_before())
+        self.forms = TypedForms()
         self._arrived()
 
     def _typed_before(self):
@@ -195,12 +197,14 @@ class Guide:
     def failed(self) -> None:
         """What was typed last has failed, or was ended by Ctrl-C."""
         self.replay.failed()
+        self.forms.failed()
         if self._read is not None and ERROR in self._read.answer:  # as it should
             self._waiting.remove(self._read)
         self._read = None
 
     def cue(self) -> str | None:
         """What to say before the next prompt, once."""
+        self.forms.answered()
         if self.replay.was_answered():
             self.progress.keep()
         some = bool(self._waiting)
@@ -347,7 +351,7 @@ class Guide:
         if not isinstance(part, Task):
             return "; Only tasks are checked, and this step is not one. :next goes on."
         self._checked = True
-        found = checking.check(part.name, language=self.language, evaluate=evaluate)
+        found = checking.check(part.name, language=self.language, evaluate=evaluate, typed=self.forms)
         if found["passed"]:
             self.progress.solved.add(part.name)
             self.progress.keep()
