@@ -433,3 +433,10 @@
 (format nil :k)
 (format nil "~?" 'a nil)
 (format nil (formatter "~a!") 1)
+; complex powers and exp of complex singles, in SBCL's steps
+(expt (cis 10) 2.0)
+(list (expt 2 #C(1/2 -3)) (expt -2 #C(1.5 -2.0)) (expt 1/3 #C(-0.25 0.75)) (expt -2.5 #C(1 2)))
+(list (expt #C(1 2) 2.5) (expt #C(1/2 -3) 1/3) (expt #C(1.5 -2.0) #C(1/2 -3)) (expt #C(-0.25 0.75) -7/3))
+(list (expt 2 #C(1.0d0 2.0d0)) (expt 0.1 #C(-3.5d0 0.1d0)) (expt -0.5d0 #C(1 2)))
+(list (expt -2.5 1/3) (expt -10 0.1) (expt -0.5d0 2.5) (expt -1000.5 3.25d0))
+(list (exp #C(0.3465736 -2.0794415)) (exp #C(1.5 2.5)) (exp #C(1/2 3)) (exp #C(10.1d0 -7.7d0)))

@@ -23,12 +23,13 @@ from .arithmetic.operations import (
     OR,
     SETX,
     SINGLE_CLASS,
+    Operand,
     class_of,
     fixnum_test,
 )
 from .arithmetic.elements import ELEMENTS, LENGTH, ArrayGenerator
 from .arithmetic.functions import NumberGenerator
-from .kinds import DOUBLE_TYPES, INT, MACHINE, SINGLE_TYPES, exactly, kind_of, kind_of_type
+from .kinds import ANY, DOUBLE_TYPES, INT, MACHINE, SINGLE_TYPES, exactly, kind_of, kind_of_type
 
 SIGNS = {sym("ZEROP"): COMPARISONS[sym("=")], sym("PLUSP"): COMPARISONS[sym(">")], sym("MINUSP"): COMPARISONS[sym("<")]}
 PARITY = {sym("EVENP"): 0, sym("ODDP"): 1}
@@ -64,7 +65,11 @@ class OperatorGenerator(ArrayGenerator, NumberGenerator):
         if classes is not None and not node.entry and exactly(kind, kind_of_type(node.type) & MACHINE):
             if fits or node.value.__class__ is nodes.Constant and is_fixnum(node.value.value):
                 return self.gen(node.value, destination)
-        (operand,) = self.operands([node.value], all_values=True)
+        if node.entry and not node.value.variable.raw:  # its kind is what is to be checked
+            name = self.reference(node.value.variable)
+            operand, kind = Operand(node.value, ANY, name, name), ANY
+        else:
+            (operand,) = self.operands([node.value], all_values=True)
         place = [self.constant(node.place)] if node.place is not None else []
         if classes is None:
             value = self.wrapped(operand.first, kind) if operand.raw else operand.first

@@ -318,7 +318,7 @@ def rounded(exact):
     """The single-float nearest to ``exact``, the result in doubles of an operation with singles, raw; an overflow where singles end."""
     result = to_float32(exact)
     if result - result != 0.0 and exact - exact == 0.0:
-        return float(arithmetic.overflow("FLOAT", exact))
+        return float(arithmetic.too_large_for(exact, "SINGLE-FLOAT"))
     return result
 
 

@@ -164,7 +164,8 @@ def too_large_for(number, kind):
     """Signal that ``number`` does not fit into the kind of float that ``kind`` names; an infinite one where that trap is masked."""
     if is_masked(OVERFLOW):
         return (SingleFloat if kind == "SINGLE-FLOAT" else float)(math.copysign(math.inf, number))
-    return error(FloatingPointOverflow(sym("FLOAT"), lisp_list(number, sym(kind))))
+    operation = "COERCE" if isinstance(number, float) else "FLOAT"
+    return error(FloatingPointOverflow(sym(operation), lisp_list(number, sym(kind))))
 
 
 _OPERATIONS = {

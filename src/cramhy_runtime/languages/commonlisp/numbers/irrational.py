@@ -71,8 +71,8 @@ def _of_kind(kind, result, *operands):
     if kind is float:
         return result
     found = SingleFloat(result)
-    if found - found != 0.0 and result - result == 0.0 and not is_masked(OVERFLOW):
-        return error(FloatingPointOverflow())
+    if found - found != 0.0 and result - result == 0.0:
+        return too_large_for(result, "SINGLE-FLOAT")
     return found
 
 
@@ -106,9 +106,17 @@ def _function(name, domain=None):
 
 sin, cos, tan = _function("sin"), _function("cos"), _function("tan")
 sinh, cosh, tanh, asinh = _function("sinh"), _function("cosh"), _function("tanh"), _function("asinh")
-exp = _function("exp")
+_exp = _function("exp")
 _acosh = _function("acosh", lambda x: x >= 1)
 atanh = _function("atanh", lambda x: -1 <= x <= 1)
+
+
+def exp(number):
+    """``cl:exp``; of a complex number in SBCL's two steps, which say something of the last digit."""
+    if isinstance(number, complex):
+        real, imaginary = parts(number)
+        return mul2(exp(real), cis(imaginary))
+    return _exp(number)
 
 
 def acosh(number):
@@ -210,14 +218,25 @@ def expt(base, power):
         if not isinstance(power, complex) and power < 0:
             return error(DivisionByZero())
         return error(ArgumentsOutOfDomain(sym("EXPT"), lisp_list(base, power)))
+    if isinstance(base, complex) or isinstance(power, complex):
+        return _complex_power(base, power)
     kind = result_class(base, power)
-    if isinstance(base, complex) or isinstance(power, complex) or base < 0 and power != math.floor(power):
-        result = complex(base) ** (complex(power) if isinstance(power, complex) else float(power))
-        return complex_kind(base, power)(result)
     try:
+        if base < 0 and power != math.floor(power):
+            size, angle = math.pow(-base, power), power * math.pi
+            return complex_kind(base, power)(size * math.cos(angle), size * math.sin(angle))
         return _of_kind(kind, math.pow(float(base), float(power)))
     except OverflowError:
         return overflow("EXPT", base, power)
+
+
+def _complex_power(base, power):
+    """``base`` to the power of ``power``, of which one is complex, in SBCL's steps: so the parts have its last digits."""
+    if is_rational(power):
+        return mul2(expt(abs_(base), power), cis(mul2(power, phase(base))))
+    if complex_kind(base, power) is complex:
+        base = complex(base) if isinstance(base, complex) else float(base)
+    return exp(mul2(power, log(base)))
 
 
 def _exact_power(base, power):
@@ -242,7 +261,7 @@ def _integer_power(base, power):
         if isinstance(base, ExactComplex):
             return _exact_power(base, power)
         if isinstance(base, complex):
-            return mul2(expt(abs_(base), power), cis(mul2(power, phase(base))))
+            return _complex_power(base, power)
         return _of_kind(base.__class__, math.pow(base, power))
     except OverflowError:
         return overflow("EXPT", base, power)
@@ -331,9 +350,10 @@ def scale_float(number, exponent):
     """``number * 2**exponent``"""
     _need_float(number)
     try:
-        return _of_kind(number.__class__, math.ldexp(float(number), need_integer(exponent)))
+        result = number.__class__(math.ldexp(float(number), need_integer(exponent)))
     except OverflowError:
         return overflow("SCALE-FLOAT", number, exponent)
+    return overflow("SCALE-FLOAT", number, exponent) if math.isinf(result) and math.isfinite(number) else result
 
 
 def float_digits(number):

@@ -441,7 +441,7 @@ class ArithmeticGenerator:
                     exact = expression(IF, expression(BELOW, *below, models[index], SMALL_INTEGERS), models[index], exact)
                 models[index] = exact
         slow = None
-        if part.parts[0].__class__ is part.parts[1].__class__ is Operand and used is None:
+        if part.parts[0].__class__ is part.parts[1].__class__ is Operand:
             slow = self.unwrapped(self.generic(part), SINGLE)
         shaping = {TIMES: shape_of_product, PLUS: shape_of_sum}.get(part.symbol)
         shape = shaping and shaping(part.parts[0].node, part.parts[1].node)
