@@ -412,8 +412,8 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 (defoperator restart-case [form #* clauses environment]
   (import cramhy_runtime.languages.commonlisp.syntax.macros [macroexpand])
   (setv operator (signalling form))
-  (when (and (not operator) (listp form))
-    (setv expansion (get (macroexpand form environment) 0))  ; of a local macro, say
+  (when (and (not operator) (or (listp form) (isinstance form LispSymbol)))
+    (setv expansion (get (macroexpand form environment) 0))  ; of a local macro or symbol macro, say
     (setv operator (signalling expansion))
     (when operator (setv form expansion)))
   `(%restart-case (list ~@(lfor clause clauses (restart-clause clause)))
@@ -429,6 +429,9 @@ Each is what the standard says that it expands into; see the section of ANSI in 
 
 (defoperator with-simple-restart [spec #* body]
   (setv #(name control #* arguments) spec)
+  (when (and (= (len body) 1) (signalling (get body 0)))  ; the restart belongs to the condition, as on SBCL
+    (return `(restart-case ~(get body 0)
+               (~name [] :report (lambda [stream] (format stream ~control ~@arguments)) (values nil t)))))
   `(%with-simple-restart (quote ~name) (lambda [] (format nil ~control ~@arguments)) (lambda [] ~@body)))
 
 (defoperator with-condition-restarts [condition restarts #* body]

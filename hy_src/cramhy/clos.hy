@@ -19,8 +19,8 @@
 
 (setv slot-options #{"INITARG" "INITFORM" "READER" "WRITER" "ACCESSOR" "ALLOCATION" "TYPE" "DOCUMENTATION"})
 
-(defn slot-specification [slot]
-  "The form that makes the description of a slot of `defclass` and `define-condition`."
+(defn slot-specification [slot [others-allowed False]]
+  "The form that makes the description of a slot of `defclass` and `define-condition`. Other options may be the metaclass's."
   (setv #(name #* rest) (if (listp slot) slot [slot]))
   (setv options (options-of rest))
   (defn every [key] (lfor #(option value) options :if (= option key) value))
@@ -28,8 +28,10 @@
     (when (> (len (every key)) 1)
       (program-error "Duplicate slot option :~A for slot ~S." key name))
     (if (every key) (get (every key) 0) None))
-  (for [#(option _) options]
-    (when (not-in option slot-options)
+  (setv others (lfor #(option _) options :if (not-in option slot-options) option)
+        keys (dict (zip (lfor #(option _) options option) (cut rest None None 2))))
+  (for [option others]
+    (when (not others-allowed)
       (program-error "There is no slot option :~A, which slot ~S has. The options are ~{:~A~^, ~}." option name
                      (list-from (sorted slot-options)))))
   (setv initforms (every "INITFORM"))
@@ -42,7 +44,11 @@
      :accessors ~(quoted-list (every "ACCESSOR"))
      :allocation (quote ~(only "ALLOCATION"))
      :type (quote ~(if (every "TYPE") (only "TYPE") True))
-     :documentation ~(only "DOCUMENTATION")))
+     :documentation ~(only "DOCUMENTATION")
+     ~@(if others [(sym ":OTHERS") (quoted-list (sum (lfor option (dict.fromkeys others)
+                                                       [(get keys option) (if (> (.count others option) 1) (list-from (every option)) (only option))])
+                                                     []))]
+           [])))
 
 (defn accessors-of [slot]
   "The names of the functions that a slot of `define-condition` gets."
@@ -63,24 +69,32 @@
     (listp form) `(function ~form)
     True `(quote ~form)))
 
-(defn class-options [options]
+(defn class-options [options [others-allowed False]]
   "Keyword arguments of `define-class` and `define-condition` for class options like (:documentation \"...\")."
-  (setv arguments [])
+  (setv arguments [] others [])
   (for [option options]
-    (setv key (symbol-name option.car) values (elements option.cdr))
+    (setv key (symbol-name option.car))
     (.extend arguments
       (match key
-        "DOCUMENTATION" [(sym ":DOCUMENTATION") (get values 0)]
-        "DEFAULT-INITARGS" [(sym ":DEFAULT-INITARGS") (initargs-form values)]
-        "METACLASS" [(sym ":METACLASS") `(quote ~(get values 0))]
-        "REPORT" [(sym ":REPORT") (function-form (get values 0))]
-        _ (raise (ValueError (+ "there is no option :" key "."))))))
-  arguments)
+        "DOCUMENTATION" [(sym ":DOCUMENTATION") option.cdr.car]
+        "DEFAULT-INITARGS" [(sym ":DEFAULT-INITARGS") (initargs-form (elements option.cdr))]
+        "METACLASS" [(sym ":METACLASS") `(quote ~option.cdr.car)]
+        "REPORT" [(sym ":REPORT") (function-form option.cdr.car)]
+        _ (if others-allowed
+            (do (.extend others [option.car option.cdr]) [])
+            (raise (ValueError (+ "there is no option :" key ".")))))))
+  (+ arguments (if others [(sym ":OTHERS") (quoted-list others)] [])))
+
+(defn own-metaclass [options]
+  "Whether class options name a metaclass that is not Common Lisp's."
+  (any (gfor option options
+         (and (listp option) (= (symbol-name option.car) "METACLASS") (!= (symbol-name option.cdr.car) "STANDARD-CLASS")))))
 
 (defoperator defclass [name superclasses slots #* options]
+  (setv others (own-metaclass options))
   `(%define-class (quote ~name) (quote ~superclasses)
-                  (list ~@(lfor slot (elements slots) (slot-specification slot)))
-                  ~@(class-options options)))
+                  (list ~@(lfor slot (elements slots) (slot-specification slot others)))
+                  ~@(class-options options others)))
 
 (defoperator define-condition [name parents slots #* options]
   (for [slot (elements slots)] (mention-definitions (accessors-of slot)))
@@ -133,10 +147,17 @@
     (.append names item))
   names)
 
+(defn safest [declarations]
+  "Whether one of the `declare` forms says `(optimize (safety 3))`."
+  (setv specifiers (lfor form declarations specifier (elements form.cdr) :if (listp specifier) specifier))
+  (any (gfor specifier specifiers :if (is specifier.car (sym "OPTIMIZE")) quality (elements specifier.cdr)
+         (or (is quality (sym "SAFETY"))
+             (and (listp quality) (is quality.car (sym "SAFETY")) quality.cdr (= quality.cdr.car 3))))))
+
 (defn method-function [name lambda-list body]
   "(function form, whether it takes the next methods)"
   (setv block (if (listp name) name.cdr.car name) #(plain _) (plain-parameters lambda-list))
-  (setv #(_ declarations forms) (body-parts body))
+  (setv #(_ declarations forms) (body-parts body) strict (safest declarations))
   (.append declarations `(declare (ignorable ~@(required-names plain))))  ; their classes choose the method, which is a use
   (setv required (required-names plain) all-required (= (list (elements plain)) required))
   (when (not (mentions (list-from body) #{(sym "CALL-NEXT-METHOD") (sym "NEXT-METHOD-P")}))
@@ -152,14 +173,14 @@
                (let [~@(lfor #(variable value) (zip required given) (list-from [variable value]))]
                  ~@declarations
                  (block ~block ~@forms))))
-          (if changes :changed :directly)))
+          (if (not changes) :directly (if strict :strictly :changed))))
       (do
         #(`(lambda [~next ~@(elements plain)]
              ~@declarations
              (flet [[call-next-method [&rest ~rest] (apply ~next ~rest)]
                     [next-method-p [] (%next-method-exists ~next)]]
                (block ~block ~@forms)))
-          (if changes True :same)))))
+          (if (not changes) :same (if strict :strict True))))))
 
 (defoperator defmethod [name #* forms]
   (setv #(qualifiers lambda-list body) (method-parts forms))
@@ -208,7 +229,11 @@
       "DOCUMENTATION" (.extend arguments [(sym ":DOCUMENTATION") option.cdr.car])
       "METHOD-COMBINATION" (.extend arguments [(sym ":METHOD-COMBINATION") `(quote ~option.cdr)])
       "ARGUMENT-PRECEDENCE-ORDER" (.extend arguments [(sym ":ARGUMENT-PRECEDENCE-ORDER") `(quote ~option.cdr)])
-      (| "DECLARE" "GENERIC-FUNCTION-CLASS" "METHOD-CLASS") None
+      "GENERIC-FUNCTION-CLASS" (when (!= (symbol-name option.cdr.car) "STANDARD-GENERIC-FUNCTION")
+                                 (.extend arguments [(sym ":GENERIC-FUNCTION-CLASS") `(quote ~option.cdr.car)]))
+      "METHOD-CLASS" (when (!= (symbol-name option.cdr.car) "STANDARD-METHOD")
+                       (.extend arguments [(sym ":METHOD-CLASS") `(quote ~option.cdr.car)]))
+      "DECLARE" None
       _ (raise (ValueError (+ "there is no option :" (symbol-name option.car) ".")))))
   `(%define-generic (quote ~name) (quote ~lambda-list) :methods (list ~@methods) ~@arguments))
 

@@ -447,3 +447,24 @@ def test_a_long_answer_is_shown_without_its_middle_and_an_error_from_its_beginni
         "[... 2 lines more when you type it]", "last",
     ]  # fmt: skip
     assert answer_shown(Typed("CL-USER> ", "(good)", "line\n" * 12)) == "line\n" * 12
+
+
+def test_a_slip_is_told_below_the_answer_of_the_prompt(typed):
+    assert "; Not evaluated: math\n; In Hy this is written (import math)\n=> " in typed(["import math", ":quit"], language="hy")
+    told = typed(["max(3, 7, 5)", "q", ":quit"])
+    assert "; In Lisp this is written (max 3 7 5)\n; q leads back to the prompt." in told and told.count("written (max 3 7 5)") == 1
+
+
+@pytest.mark.parametrize(("language", "define", "leave"), [("lisp", "(defun ahead (metres)", ["q"]), ("hy", "(defn ahead [metres]", [])])
+def test_a_form_that_was_passed_over_is_named_when_it_is_missed(typed, language, define, leave):
+    place = step_with(1, language, lambda part: any(each.form.startswith(define) for each in getattr(part, language, None) or ()))
+    told = " ".join(typed([place, ":next", "(ahead 1)", *leave, ":quit"], language=language).replace("\n;", " ").split())
+    assert f"ahead is defined by a form that you have not typed: {define} ... {place} leads back to it." in told
+
+
+def test_a_check_tells_no_warnings_of_the_compiler(typed):
+    task = step_with(2, "lisp", "rectangle")
+    told = typed([task, ":check", "(defun rectangle-around (width height) (* 4 width))", ":quit"], "names-and-functions")
+    before, after = told.split("(defun rectangle-around (width height) (* 4", 1)
+    assert "There is no function rectangle-around yet." in before and "STYLE-WARNING" not in before
+    assert "The variable HEIGHT is defined but never used." in after

@@ -46,10 +46,7 @@ OF_HY = {
 }
 """What a Lisp learner does not meet."""
 OTHERS = {"hy": OF_LISP, "lisp": OF_HY}
-MEANT = {
-    ("hy", "(lisp-package"): "explained where it comes first",
-    ("hy", "In Lisp a second defvar leaves a variable as it is. Use setf to change it."): "said by a check that is being changed",
-}
+MEANT = {("hy", "(lisp-package"): "explained where it comes first"}
 """What is of the other language, and has to be there: language and text, and why."""
 OF_THE_ROBOT = re.compile(r"\[\(.*\) (?:INFO|WARN)\].*|^WARNING:\n.*\n|.*#<[A-Z](?:.|\n)*?>'\.$|^cramhy: [A-Z:-]+\n(?: .*\n|\n)*", re.M)
 """The robot's log, and the reports of CRAM about rules that failed: they look the same in both languages."""

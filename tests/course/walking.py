@@ -1,6 +1,6 @@
 """Walks through a page of ``cramhy learn`` as a student does who types everything, and notes what the checks say.
 
-A solution of the task NAME is in ``solutions/NAME.lisp`` and ``solutions/NAME.hy``. Wrong ones are made of it by `WRONG`.
+A solution of the task NAME is in ``solutions/NAME.lisp`` and ``solutions/NAME.hy``. Other ones, and wrong ones, are typed by `tries`.
 """
 
 from __future__ import annotations
@@ -42,11 +42,11 @@ class Script(Lines):
 
 
 class Walk:
-    """What came of a walk. ``verdicts``: (task, "nothing", "start", "wrong" or "solution") → whether the check passed. ``text``: the screen."""
+    """What came of a walk. ``verdicts``: (task, "nothing", "start" or "solution") → whether the check passed. ``text``: the screen."""
 
-    def __init__(self, page, language, folder, wrong):
+    def __init__(self, page, language, folder):
         self.verdicts, self.progress = {}, Progress()
-        self.page, self.language, self.wrong = reading.page(page), language, wrong
+        self.page, self.language = reading.page(page), language
         out = io.StringIO()
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(out):
             self.status = learn.run(
@@ -64,29 +64,15 @@ class Walk:
             yield ":next"
         yield ":quit"
 
+    def _typed(self, text):
+        yield from (line for line in text.splitlines() if line.strip())
+
     def _task(self, task):
-        tries = [("nothing", ""), ("start", task.start.get(self.language))]
-        right = solution(task.name, self.language)
-        tries += [("wrong", right.replace(*each)) for name, language, *each in self.wrong if (name, language) == (task.name, self.language)]
-        for number, (kind, text) in enumerate([*tries, ("solution", right)]):
+        tries = [("nothing", ""), ("start", task.start.get(self.language)), ("solution", solution(task.name, self.language))]
+        for kind, text in tries:
             if text is None:
                 continue
-            assert kind != "wrong" or text != right, f"{task.name}: what is to be replaced is not in the solution"
-            for line in text.splitlines():
-                if line.strip():
-                    yield line
+            yield from self._typed(text)
             yield ":check"
-            self.verdicts[task.name, kind, number] = task.name in self.progress.solved
+            self.verdicts[task.name, kind] = task.name in self.progress.solved
             self.progress.solved.discard(task.name)
-
-
-if __name__ == "__main__":
-    import sys
-    import tempfile
-
-    from tests.course.test_tasks import WRONG
-
-    with tempfile.TemporaryDirectory() as folder:
-        walk = Walk(sys.argv[1], sys.argv[2], Path(folder), WRONG)
-    print(walk.text)
-    print(walk.verdicts)

@@ -21,6 +21,7 @@ if __name__ == "__main__":
 
 from cramhy_runtime.course.parts import LANGUAGES, text_in  # noqa: E402
 from cramhy_runtime.course.reading import tasks_in  # noqa: E402
+from cramhy_runtime.course.steps import ERROR  # noqa: E402
 from tests.docs.pages import COURSE, DOCS, FENCE, LECTURES, Block, Page, exchanges  # noqa: E402
 
 TUTORIALS = DOCS / "tutorials"
@@ -86,7 +87,7 @@ def cells(text, language="lisp"):
                 elif COMMAND.match(typed):
                     found.append(["markdown", f"```\n{typed}\n```\n", False])
                 else:
-                    found.append(["code", typed, "debugger invoked" in whole])
+                    found.append(["code", typed, any(line.startswith(ERROR) for line in whole.splitlines())])
         else:
             found.append(["markdown", f"```{part.language}\n{part.text}```\n", False])
     joined = []

@@ -41,6 +41,17 @@ def test_a_file_that_is_loaded_after_the_library(lisp, theirs):
     assert "is defined anew" not in lisp.warnings(f'(load "{theirs}")')
 
 
+@pytest.mark.parametrize("package", ["cram-language", "roslisp", "cram-utilities"])
+def test_a_file_that_defines_a_package_of_cramhy_itself(lisp, tmp_path, package):
+    path = tmp_path / "own.lisp"
+    path.write_text(f"(defpackage :{package} (:use :cl) (:export #:own)) (in-package :{package}) (defun own () 1)")
+    said = " ".join(lisp.warnings(f'(load "{path}")').split())
+    assert said == (
+        f"WARNING: The package {package.upper()} of cramhy itself is defined anew by {path}, whose definitions count from now on."
+    )
+    assert lisp(f"({package}:own)") == "1" and lisp.warnings(f'(load "{path}")').count("anew") == 0
+
+
 def test_a_file_that_is_loaded_before_the_library(lisp, theirs):
     assert lisp.warnings(f'(load "{theirs}")') == ""
     said = " ".join(lisp.warnings("(asdf:load-system :cram-math)").split())

@@ -152,3 +152,18 @@ def test_the_condition_for_an_exception_is_made_once(evaluate):
     problem = ValueError("x")
     assert conditions.from_python(problem) is conditions.from_python(problem)
     assert isinstance(conditions.from_python(problem), PythonError)
+
+
+INNER_RESTARTS = [
+    "(symbol-macrolet ((failing (error \"Boo!\"))) (restart-case (restart-case failing (foo () 'inner)) (foo () 'outer)))",
+    "(restart-case (restart-case always-failing (foo () 'inner)) (foo () 'outer))",
+    '(restart-case (with-simple-restart (foo "inner") (error "Boo!")) (foo () \'outer))',
+]
+
+
+@pytest.mark.parametrize("form", INNER_RESTARTS)
+def test_a_restart_of_a_form_that_signals_belongs_to_its_condition(session, form):
+    session.package = "CL-USER"
+    session.evaluate_text('(define-symbol-macro always-failing (error "Boo!"))')
+    first = "(handler-bind ((error (lambda (c) (invoke-restart (find-restart 'foo c)))))"
+    assert session.evaluate_text(f'(string {first} (handler-bind ((error (lambda (c) c (error "Blah")))) {form})))') == ["OUTER"]

@@ -64,6 +64,18 @@ def test_the_next_methods_behind_the_next_one_look_at_other_arguments_when_they_
     assert str(said).endswith("R")
 
 
+@pytest.mark.parametrize("parameters, others", [("((x integer))", ""), ("((x integer) &optional y)", " y")])
+def test_at_safety_3_the_same_methods_must_apply_to_other_arguments(session, parameters, others):
+    session.package = "CL-USER"
+    general = parameters.replace("(x integer)", "(x t)")
+    session.evaluate_text(f"(fmakunbound 'f) (defmethod f {general} x)")
+    body = f"(declare (optimize (speed 1) (safety 3))) (call-next-method (if (plusp x) 'a -9){others})"
+    session.evaluate_text(f"(defmethod f {parameters} {body})")
+    assert session.evaluate_text("(f -5)") == [-9]
+    (said,) = session.evaluate_text("(handler-case (f 5) (error (e) (princ-to-string e)))")
+    assert said.startswith("The methods of #<STANDARD-GENERIC-FUNCTION COMMON-LISP-USER::F (2)> that apply to (")
+
+
 def test_a_next_method_takes_other_arguments_of_its_class(session):
     session.package = "CL-USER"
     session.evaluate_text("(fmakunbound 'f) (defmethod f ((x number) &key y) (list x y))")

@@ -141,3 +141,26 @@ def test_a_slot_of_a_users_stream_may_have_any_name(session, slot):
     assert answer(session, f"(make-instance 'own-{slot} :typed text)", "(a)b", form) == ["((A) #\\b 7 T T)"]
     form = f"(progn (write-sequence '(#\\x) s) (format s \"y\") (list (slot-value s 'wrote) (slot-value s '{slot}) (output-stream-p s)))"
     assert answer(session, f"(make-instance 'own-out-{slot})", "", form) == ["((#\\y #\\x) 7 T)"]
+
+
+WRITTEN = {
+    '(write-string "hello" o :start 1 :end 4)': '((:STRING "hello" 1 4))',
+    '(write-line "hello" o)': '((:STRING "hello" 0 5) (:CHAR #\\Newline))',
+    '(write-line "hello" o :start 2)': '((:STRING "hello" 2 5) (:CHAR #\\Newline))',
+    '(write-sequence "abc" o :start 1)': '((:STRING "abc" 1 3))',
+    "(terpri o)": "(:TERPRI)",
+    "(write-char #\\a o)": "((:CHAR #\\a))",
+}
+
+
+@pytest.mark.parametrize("form", WRITTEN)
+def test_a_stream_of_the_users_gets_what_was_given_to_the_writing_function(session, form):
+    session.package = "CL-USER"
+    session.evaluate_text("(defclass noting (sb-gray:fundamental-character-output-stream) ()) (defvar *noted* nil)")
+    session.evaluate_text(
+        "(defmethod sb-gray:stream-write-string ((s noting) text &optional start end) (push (list :string text start end) *noted*) text)"
+        "(defmethod sb-gray:stream-write-char ((s noting) c) (push (list :char c) *noted*) c)"
+        "(defmethod sb-gray:stream-terpri ((s noting)) (push :terpri *noted*) nil)"
+    )
+    session.evaluate_text(f"(setf *noted* nil) (let ((o (make-instance 'noting))) {form})")
+    assert session.evaluate_text("(prin1-to-string (reverse *noted*))") == [WRITTEN[form]]

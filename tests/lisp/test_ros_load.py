@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from cramhy_runtime.ros import definition_files
 from cramhy_runtime import kernel
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.languages.commonlisp.tools.advice import explanation
@@ -77,11 +78,12 @@ def test_a_package_that_is_there_is_loaded(answer, words):
         ("turtelsim", '"turtlesim-msg"', "Did you mean turtlesim?"),
         ("plain_foldr", ":plain", None),
         ("zzzz", ":cram-language", None),
+        ("zzzz", ":no-such-system", None),
     ],
 )
 def test_a_package_that_is_not_there_is_an_error_that_says_what_is_near(answer, package, system, hint):
     form = f'(ros-load:load-system "{package}" {system})'
-    assert answer(form) == told(package, form, hint)
+    assert answer(form) == told(package, form, hint or f"No package {package} is below {definition_files.where_searched()}.")
 
 
 def test_of_a_system_that_is_not_there_its_own_error_tells(answer):

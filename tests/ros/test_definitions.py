@@ -269,7 +269,8 @@ class TestOnesOwn:
         assert condition.hint == (
             f"No package no_such_msgs with files msg/*.msg is below ROS_PACKAGE_PATH ({tmp_path}), the current folder and src of the workspace.\n"
             "Wanted of it: msg/Command.msg (f.lisp:2), action/Grip.action (f.lisp:3).\n"
-            "Lisp names of it: width (f.lisp:3), <grip> (f.lisp:3), open (f.lisp:4)."
+            "Lisp names of it: width (f.lisp:3), <grip> (f.lisp:3), open (f.lisp:4).\n"
+            f"user is defined in {tmp_path}/user/user.asd."
         )
 
     @pytest.mark.parametrize(

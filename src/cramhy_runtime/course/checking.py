@@ -5,7 +5,8 @@ from __future__ import annotations
 import sys
 
 from cramhy_runtime.grading import in_session
-from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.ground.packages import near_names, sym
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 from .parts import Task
@@ -16,6 +17,12 @@ if TYPE_CHECKING:
 
     from cramhy_runtime.session.session import Session
 
+    from .typed_forms import TypedForms
+
+NOT_TAKEN = (
+    "Your last definition of {} was not taken: it led to an error, and an older one still counts. "
+    "Type the definition again, without the mistake."
+)
 PASSED = "Well done: this task is solved."
 
 
@@ -29,18 +36,26 @@ def task(name: str) -> Task:
 
 
 def check(
-    name: str, session: Session | None = None, language: str = "lisp", evaluate: Callable[[str], list[Any]] | None = None
+    name: str,
+    session: Session | None = None,
+    language: str = "lisp",
+    evaluate: Callable[[str], list[Any]] | None = None,
+    typed: TypedForms | None = None,
 ) -> dict[str, Any]:
     """Whether the task ``name`` is solved: ``{"passed": bool, "told": [str, ...]}``. It is called by the session's main task.
 
     session: the student's; ``None``: the current one. language: "lisp" or "hy", in which the solution is written. evaluate: gives the
     values of a text in that language, for Hy in the module where the student types; by default the session evaluates Lisp in its package,
-    and Hy in the module of the prompt. Raises `PageError` for an unknown name, and `Interruption` after Ctrl-C.
+    and Hy in the module of the prompt. typed: what the student has typed, ``None`` if nobody knows. Raises `PageError` for an unknown
+    name, and `Interruption` after Ctrl-C.
     """
     wanted = task(name)
     if evaluate is None:
         evaluate = _hy_evaluator() if language == "hy" else _lisp_evaluator(session)
-    wrong = in_session.faults(wanted.title, [in_language(table, language) for table in wanted.checks], evaluate)
+    if typed is not None and (name_of := typed.refused()) is not None:
+        return {"passed": False, "told": [NOT_TAKEN.format(name_of)]}
+    tables = [in_language(table, language) for table in wanted.checks]
+    wrong = in_session.faults(wanted.title, tables, evaluate, language, typed.form if typed is not None else None)
     return {"passed": not wrong, "told": wrong or [PASSED]}
 
 
@@ -57,7 +72,18 @@ def _lisp_evaluator(session):
     chosen = session or current()
     if chosen is None:
         raise PageError("There is no session in which something could have been typed.")
-    return chosen.evaluate_text
+    return lisp_evaluator(chosen)
+
+
+def lisp_evaluator(session: Session) -> Callable[[str], list[Any]]:
+    """A function that evaluates texts of Lisp in ``session``, without the compiler's warnings: a check's text is not the student's."""
+    from cramhy_runtime.languages.commonlisp.compiler.compilation_unit import MUFFLED
+
+    def evaluate(text):
+        with binding(MUFFLED, (sym("WARNING"),)):
+            return session.evaluate_text(text)
+
+    return evaluate
 
 
 def _hy_evaluator():

@@ -8,13 +8,14 @@ from __future__ import annotations
 import difflib
 import re
 
-from . import checking, contents, files, shown
+from . import checking, contents, files, shown, slips
 from .parts import Code, File, Task, Typed, text_in
 from .progress import Progress
 from .reading import PageError, page, pages
 from .replay import Replay
 from .shown import Style
 from .steps import ERROR, Step, file_shown, session_shown, steps, task_shown
+from .typed_forms import TypedForms
 
 COMMANDS = {
     "next": ("n", "the next step, or the next page"),
@@ -91,7 +92,10 @@ class Guide:
         self._waiting: list[Typed] = []  # what is still to be typed of this step
         self._read: Typed | None = None  # which of them is being answered
         self._cue: str | None = None
+        self._text = ""  # what was typed last
+        self._typed: set[str] = set()  # the forms of this page that were typed in this session, squeezed
         self.replay = Replay(self._typed_before())
+        self.forms = TypedForms()
         self._arrived()
 
     def _typed_before(self):
@@ -185,22 +189,44 @@ class Guide:
             self._cue = (
                 f"; Lisp took each of these words for a form of its own. A call has parentheses around it: ({' '.join(text.split())})"
             )
+        else:
+            self._cue = slips.of_line(text, self.language)
+        self._text = text
+        self._typed.update(form for form in map(_squeezed, self._forms()) if form in _squeezed(text))
         self._read = next((typed for typed in self._waiting if _squeezed(typed.form) == _squeezed(text)), None)
+
+    def _forms(self):
+        """The texts of the forms of this page up to the step that is shown, each with the number of its step."""
+        return {
+            typed.text: number
+            for number, step in enumerate(self.steps[: self.place + 1], 1)
+            if isinstance(step.part, Code)
+            for typed in getattr(step.part, self.language)
+            if not _OF_DEBUGGER.match(typed.prompt)
+        }
 
     def of_debugger(self) -> str:
         """What to say when the debugger has opened."""
         more = " You need not read the choices." if self.page.name in contents.NAMES[:3] else ""
-        return f"; q leads back to the prompt.{more}"
+        cue, self._cue = self._cue, None
+        return "\n".join(filter(None, [cue, f"; q leads back to the prompt.{more}"]))
 
-    def failed(self) -> None:
-        """What was typed last has failed, or was ended by Ctrl-C."""
+    def failed(self, missing: str | None = None) -> None:
+        """What was typed last has failed, or was ended by Ctrl-C. missing: the name that was not defined."""
+        self._cue = self._cue or slips.of_failed_form(self._text, self.language)
+        if missing is not None and self._cue is None:
+            forms = [slips.Form(text, step) for text, step in self._forms().items() if _squeezed(text) not in self._typed]
+            self._cue = slips.of_missing(missing, forms, self.place + 1, contents.NAMES.index(self.page.name) + 1)
         self.replay.failed()
-        if self._read is not None and ERROR in self._read.answer:  # as it should
+        self.forms.failed()
+        if self._read is not None and any(line.startswith(ERROR) for line in self._read.answer.splitlines()):  # as it should
+            self._cue = None
             self._waiting.remove(self._read)
         self._read = None
 
     def cue(self) -> str | None:
         """What to say before the next prompt, once."""
+        self.forms.answered()
         if self.replay.was_answered():
             self.progress.keep()
         some = bool(self._waiting)
@@ -347,7 +373,7 @@ class Guide:
         if not isinstance(part, Task):
             return "; Only tasks are checked, and this step is not one. :next goes on."
         self._checked = True
-        found = checking.check(part.name, language=self.language, evaluate=evaluate)
+        found = checking.check(part.name, language=self.language, evaluate=evaluate, typed=self.forms)
         if found["passed"]:
             self.progress.solved.add(part.name)
             self.progress.keep()

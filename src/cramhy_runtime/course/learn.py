@@ -12,7 +12,11 @@ import re
 import sys
 from pathlib import Path
 
+import hy
+
 from cramhy_runtime import kernel
+from cramhy_runtime.ground.condition_types import UnboundVariable, UndefinedFunction
+from cramhy_runtime.ground.packages import is_symbol, symbol_name
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.repl import hy_prompt, prompt_words
@@ -23,7 +27,7 @@ from cramhy_runtime.session import Image
 from cramhy_runtime.session.session import Interruption
 
 from . import contents, files, guide
-from .checking import hy_evaluator
+from .checking import hy_evaluator, lisp_evaluator
 from .guide import Guide
 from .progress import Progress
 from .reading import PageError
@@ -54,7 +58,7 @@ class Guided(Listener):
             self._greeted = True
             self.tell(self.guide.greeting())
         if self.failed():
-            self.guide.failed()
+            self.guide.failed(self.missing())
         while not self.guide.over:
             if self._begins() and not self.level and (cue := self.guide.cue()):
                 self.tell(cue)
@@ -114,12 +118,13 @@ class Guided(Listener):
         super().remember(text)
         if not self.level:
             self.guide.replay.was_read(text)
+            self.guide.forms.read(text)
         elif self._answered_there is None:
             self._answered_there = True
         self.guide.typed(text)
 
     def announce(self, condition: Any, restarts: list[Any]) -> None:
-        self.guide.failed()
+        self.guide.failed(_name_of(condition))
         super().announce(condition, restarts)
         self.tell(self.guide.of_debugger())
         self._answered_there = None
@@ -131,6 +136,10 @@ class Guided(Listener):
     def failed(self) -> bool:
         """Whether the text that was read last has failed without a debugger."""
         return False
+
+    def missing(self) -> str | None:
+        """The name whose value the text that was read last has not found, if it has failed because of that."""
+        return None
 
     def evaluator(self) -> Callable[[str], list[Any]]:
         """The function by which a check evaluates texts."""
@@ -148,7 +157,7 @@ class LispPrompt(Guided, Console):
         return self.guide.over
 
     def evaluator(self):
-        return self.session.evaluate_text
+        return lisp_evaluator(self.session)
 
     def is_variable(self, word):
         return prompt_words.word(word, (word.lower(),)) is None
@@ -160,7 +169,7 @@ class HyPrompt(Guided, hy_prompt.HyPrompt):
     _error: Exception | None = None
 
     def evaluator(self):
-        return self.session.evaluate_text if self.in_lisp else hy_evaluator(self.repl.module)
+        return lisp_evaluator(self.session) if self.in_lisp else hy_evaluator(self.repl.module)
 
     def is_variable(self, word):
         return word in self.repl.locals
@@ -168,6 +177,16 @@ class HyPrompt(Guided, hy_prompt.HyPrompt):
     def failed(self):
         before, self._error = self._error, self.repl.locals.get(hy_prompt.LAST_ERROR)
         return self._error is not before
+
+    def missing(self):
+        return _name_of(self._error)
+
+
+def _name_of(error: Any) -> str | None:
+    """The name that an error says not to be defined, as Lisp and Hy write it; ``None`` for other errors."""
+    if isinstance(error, NameError):
+        return hy.unmangle(error.name) if error.name else None
+    return symbol_name(error.name) if isinstance(error, (UnboundVariable, UndefinedFunction)) and is_symbol(error.name) else None
 
 
 def run(

@@ -27,7 +27,7 @@ _STYLE = shown.Style(COLUMNS - 1)
 _LOG = re.compile(r"(?:^\[\([A-Z].*\) INFO\].*\n){3,}", re.M)
 _SHORT_LOG = "[... some lines of the log]\n"
 """What a step shows in the place of many lines of the log; they come when the form is typed."""
-ERROR = "debugger invoked"
+ERROR = ("debugger invoked", "Traceback (most recent", "cramhy: ")
 """In the answer of a form that a page shows to fail."""
 _OF_DEBUGGER = re.compile(r"\d+\] ")
 _BLOCKS = re.compile(r"^```.*?^```$|(?:^(?!```)[^\n]+\n?)+", re.M | re.S)

@@ -12,7 +12,7 @@ it prints is not looked at.
 
 Where the parts are: ``exercise``, ``expressions``, ``paths``, ``troubles`` (what an exercise says) · ``jobs``, ``processes``,
 ``watcher``, ``messages``, ``fork_server``, ``sandbox`` (the process of a submission), ``here`` (without one), ``in_session`` (in the
-session that is there) · ``performing``, ``recording``, ``uses``, ``tests_inside`` (what happens in it) · ``schema``, ``told`` (what it
+session that is there), ``noticing`` (what a plan does there on its way) · ``performing``, ``recording``, ``uses``, ``tests_inside`` (what happens in it) · ``schema``, ``told`` (what it
 says) · ``allowances``, ``replay``, ``drawings``, ``judging``, ``forms`` (the verdict) · ``sentences``, ``harmless`` (its words) ·
 ``grader``, ``report``, ``formats`` (points and words) · ``similar`` (submissions that are alike) · ``problems`` (errors of exercises).
 """

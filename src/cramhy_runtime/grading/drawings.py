@@ -2,7 +2,7 @@
 
 Both are cut into points that lie close together. A point of the target that is farther from the drawing than the tolerance is missing, and
 a point of the drawing that is farther from the target than that is too much. So the order, the direction and the number of strokes do not
-count, nor does a line that was drawn twice.
+count, nor does a line that was drawn twice. They count for `in_order` and `length`.
 """
 
 from __future__ import annotations
@@ -34,15 +34,37 @@ def difference(target, drawn, tolerance):
     return Difference(round(len(missing) * STEP, 2), missing[0] if missing else None, round(len(much) * STEP, 2), much[0] if much else None)
 
 
+def in_order(target, drawn, tolerance):
+    """Whether somebody who follows ``drawn`` from its beginning comes to the points of ``target`` in their order."""
+    ahead = iter([point for _, line in drawn for point in _along(line)])
+    here = next(ahead, None)
+    for x, y in [point for _, line in target for point in _along(line)]:
+        while here is not None and not math.dist(here, (x, y)) <= tolerance:
+            here = next(ahead, None)
+        if here is None:
+            return False
+    return True
+
+
+def length(drawing):
+    """The metres of all lines of a drawing; what was drawn twice counts twice."""
+    return sum(math.dist(one, other) for _, line in drawing for one, other in zip(line, line[1:]))
+
+
+def _along(line):
+    """The points of a line, from its beginning to its end."""
+    for (x, y), (to_x, to_y) in zip(line, line[1:]):
+        pieces = max(math.ceil(math.hypot(to_x - x, to_y - y) / STEP), 1)
+        yield from ((x + (to_x - x) * piece / pieces, y + (to_y - y) * piece / pieces) for piece in range(pieces))
+    yield from line[-1:]
+
+
 def _points(drawing, coloured):
     """For each colour a list of points."""
     found = {}
     for colour, line in drawing:
         points = found.setdefault(colour if coloured else None, [])
-        for (x, y), (to_x, to_y) in zip(line, line[1:]):
-            pieces = max(math.ceil(math.hypot(to_x - x, to_y - y) / STEP), 1)
-            points += [(x + (to_x - x) * piece / pieces, y + (to_y - y) * piece / pieces) for piece in range(pieces)]
-        points += line[-1:]
+        points += _along(line)
     return found
 
 

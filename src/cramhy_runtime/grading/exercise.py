@@ -22,6 +22,7 @@ BEFORE_TURTLE = ('(roslisp:start-ros-node "grader")',)
 """What happens before a plan, if the exercise says nothing else."""
 RUN_CRITERIA = {
     "paper", "at", "visits", "seconds", "distance", "commands", "walls", "teleports", "turtles", "value", "fails", "services",
+    "turned", "still",
 }  # fmt: skip
 """What a check may ask of a run of ``do``."""
 CHECK_KEYS = RUN_CRITERIA | {
@@ -169,7 +170,7 @@ def _check(folder, table, number, files, shows=False):
         raise ExerciseError(f"{where} has no do, but asks for {', '.join(sorted(criteria))}.")
     if "paper" in table:
         paper = table["paper"]
-        _known(paper, {"way", "from", "upright", "tolerance", "slack"}, f"paper of {where}")
+        _known(paper, {"way", "from", "upright", "tolerance", "slack", "width", "ordered"}, f"paper of {where}")
         if not isinstance(paper.get("way"), str):
             raise ExerciseError(f"paper of {where} has no way.")
     for trouble in table.get("troubles", ()):

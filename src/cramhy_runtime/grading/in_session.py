@@ -7,7 +7,9 @@ as they are.
 
 from __future__ import annotations
 
+import math
 import re
+import secrets
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -19,8 +21,9 @@ from cramhy_runtime.session.session import Interruption
 from cramhy_runtime.turtlesim.node import running_simulator
 
 from . import judging, schema
-from .exercise import Check, Exercise, of_checks
+from .exercise import RUN_CRITERIA, Check, Exercise, of_checks
 from .jobs import job
+from .noticing import KEYS, Noticing
 from .performing import carry_out
 from .recording import Recording
 from .sentences import said
@@ -34,6 +37,8 @@ _MISSING = re.compile(
     r"(?:The (?:function|variable) (?P<lisp>\S+) is (?:undefined|unbound)|name '(?P<hy>\S+)' is not defined$)"
 )
 """The report of a form with a name that may not have a meaning yet."""
+_TYPED = re.compile(r"\(typed(?:\s+([^\s()]+))?\)")
+"""In a form of a check: stands for what the student has typed."""
 NO_TURTLE = "There is no turtle yet. Start it as the page says, and check again."
 
 
@@ -55,24 +60,60 @@ class _Evaluator:
             raise
 
 
-def faults(title: str, tables: list[dict[str, Any]], evaluate: Callable[[str], list[Any]]) -> list[str]:
+def fresh_seed() -> int:
+    """A seed that nobody knows before: with it a check is tried beside those that it has always."""
+    return 1000 + secrets.randbelow(1_000_000)
+
+
+def faults(
+    title: str,
+    tables: list[dict[str, Any]],
+    evaluate: Callable[[str], list[Any]],
+    language: str = "lisp",
+    typed: Callable[[str | None], str | None] | None = None,
+) -> list[str]:
     """What is wrong, as sentences for the student; nothing if all checks pass.
 
     title: of the exercise. tables: its checks, as below ``[[check]]``; ``say`` takes the place of all that would be told of a check.
-    evaluate: gives the values of a text's last form, in the language of the checks. Raises `ExerciseError`, and `Interruption` after
-    Ctrl-C.
+    evaluate: gives the values of a text's last form, in the ``language`` of the checks, "lisp" or "hy". typed: gives the form that was
+    typed last, or for a name the form that was typed last for the value of that variable; ``None`` if nothing is known. A check that asks
+    for what is not known is left out. Raises `ExerciseError`, and `Interruption` after Ctrl-C.
     """
     looks, others = [table for table in tables if _looks(table)], [table for table in tables if not _looks(table)]
     wrong = [sentence for table in looks for sentence in _as_it_is(table)]
     if wrong or not others:
         return wrong
-    exercise = of_checks(title, [{key: value for key, value in table.items() if key != "say"} for table in others])
+    others = [whole for table in others if (whole := _with_typed(table, typed)) is not None]
+    own = KEYS | {"say"}
+    exercise = of_checks(title, [_with_a_criterion({key: table[key] for key in table if key not in own}) for table in others])
     for check, table in zip(exercise.checks, others):
-        for seed in range(1, check.seeds + 1):
-            wrong = _tried(exercise, check, seed, evaluate)
+        varies = "vary" in table or table.get("start") == "anywhere"
+        for seed in [*range(1, check.seeds + 1), *([fresh_seed()] if varies else [])]:
+            with Noticing({key: table[key] for key in KEYS & set(table)}, evaluate, language) as noticing:
+                wrong = _tried(exercise, check, seed, evaluate, len(others) > 1 or varies)
+            wrong = wrong or said(noticing.faults(), answers=True)
             if wrong:
                 return [table["say"]] if "say" in table else [*wrong, *([table["hint"]] if "hint" in table else [])]
     return []
+
+
+def _with_typed(table, typed):
+    """The table of a check with what was typed in its questions; ``None`` if a question needs something that is not known."""
+    known = True
+
+    def text_of(match):
+        nonlocal known
+        text = typed(match[1]) if typed is not None else None
+        known = known and text is not None
+        return text or ""
+
+    questions = [[_TYPED.sub(text_of, form), answer] for form, answer in table.get("ask", ())]
+    return ({**table, "ask": questions} if questions else table) if known else None
+
+
+def _with_a_criterion(table):
+    """A table that asks of a run only what is noticed has to ask something else of it, too: that it is over in the turtle's time."""
+    return table if "do" not in table or RUN_CRITERIA & set(table) else {**table, "teleports": 0}
 
 
 @contextmanager
@@ -97,7 +138,7 @@ def _looks(table):
     return not any(kind in table for kind in ("do", "ask", "tests", "source"))
 
 
-def _tried(exercise: Exercise, check: Check, seed: int, evaluate):
+def _tried(exercise: Exercise, check: Check, seed: int, evaluate, tell_call):
     work, values = job(exercise, check, seed, {})
     reports = []
 
@@ -126,7 +167,18 @@ def _tried(exercise: Exercise, check: Check, seed: int, evaluate):
         return [f"{told.what} cannot be used:\n{told.error['text']}"]
     judge = judging.of_answers if check.kind == "ask" else judging.of_run
     wrong = said(judge(check, work, values, told), answers=True)
-    return [*(_plainer(sentence) for sentence in wrong), *(_other_drivers() if wrong and check.kind == "do" else ())]
+    if not wrong or check.kind != "do":
+        return [_plainer(sentence) for sentence in wrong]
+    wrong = [_plainer(sentence) for sentence in wrong]
+    if tell_call and not any(work["do"] in sentence for sentence in wrong):
+        wrong.append(f"The check called {work['do']}, {_place(work['start'])}.")
+    return [*wrong, *_other_drivers()]
+
+
+def _place(start):
+    """Where the turtle was when a check began, in words."""
+    x, y, heading = start
+    return f"with the turtle at x {x:.1f}, y {y:.1f}, looking to {math.degrees(heading):.0f} degrees"
 
 
 def _other_drivers():
@@ -164,6 +216,10 @@ class _Now:
     def drawing(self):
         """As `Replay.drawing`."""
         return [(tuple(colour), [(x1, y1), (x2, y2)]) for x1, y1, x2, y2, colour, _ in self.simulator.canvas.strokes()]
+
+    def widths(self):
+        """As `Replay.widths`."""
+        return sorted({width for *_, width in self.simulator.canvas.strokes()})
 
     def place(self, name="turtle1"):
         """As `Replay.place`."""

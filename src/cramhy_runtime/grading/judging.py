@@ -230,8 +230,32 @@ def _paper(table, values, replay, told):
     if not found.much <= slack:
         much = f"{found.much:.1f} m of the drawing should not be there, the first near {_point(found.much_at)}."
         yield fault("There is too much in the drawing.", much)
+    if found.missing <= slack and found.much <= slack:
+        yield from _pen_and_order(paper, target, drawn, replay, values)
 
 
+def _pen_and_order(paper, target, drawn, replay, values):
+    """What is wrong with a drawing that has the right lines: the width of the pen, and how they were drawn."""
+    if "width" in paper:
+        wanted, widths = computed(paper["width"], values), replay.widths()
+        if widths != [wanted]:
+            lines = f"The lines are {' and '.join(map(str, widths))} pixels wide"
+            yield Fault(
+                "The lines have another width than they should.", f"{lines}, which is not right.", f"{lines}. They should be {wanted}."
+            )
+    if not paper.get("ordered"):
+        return
+    drew, asked = drawings.length(drawn), drawings.length(target)
+    if drew > asked * (1 + LONGER) + paper.get("slack", SLACK):
+        twice = f"The lines of the drawing are right, but {drew - asked:.1f} m of them were drawn more than once."
+        yield fault("A part of the drawing was drawn more than once.", twice)
+    elif not drawings.in_order(target, drawn, paper.get("tolerance", TOLERANCE) + paper.get("slack", SLACK)):
+        yield fault(OTHER_ORDER, OTHER_ORDER)
+
+
+LONGER = 0.03
+"""The share by which a drawing may be longer than the asked one: turtles overshoot."""
+OTHER_ORDER = "The lines of the drawing are right, but the turtle drew them in another order, or the other way round."
 EMPTY = "The paper is empty: the turtle has drawn nothing."
 
 
@@ -301,6 +325,19 @@ def _seconds(table, values, replay, told):
         yield _off(f"The plan took {took:.1f} s of the turtle's time", took, low, high, " s", "It should take")
 
 
+def _still(table, values, replay, told):
+    """Whether the turtle stands when the plan is over. One that nobody stops obeys its last speed for a second."""
+    if not table.get("still"):
+        return
+    metres, radians = replay.moved_since(told.run["end"])
+    if not (metres <= ROLLS and radians <= math.radians(TURNS_ON)):
+        yield fault(MOVES_ON, MOVES_ON)
+
+
+MOVES_ON = "When the plan is over, the turtle still moves."
+ROLLS = 0.06
+TURNS_ON = 4
+"""Metres and degrees for which a stopped turtle may go on: a command takes effect with the next tick."""
 CLOCKS_APART = 0.1
 """Seconds between what the plan's clock and the simulator's ticks say."""
 
@@ -348,6 +385,8 @@ _JUDGES = (
     _visits,
     _seconds,
     _services,
+    _still,
+    _counted("turned", Replay.turned, "To the left the turtle turned by {} degrees in all", "It should be"),
     _counted("distance", Replay.distance, "The turtle went {} m", "In metres it should go"),
     _counted("commands", lambda replay: replay.commands, "The plan sent {} commands", "It should send"),
     _counted("walls", lambda replay: replay.walls, "The turtle was at a wall in {} ticks", "It should be"),

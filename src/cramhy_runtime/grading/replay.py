@@ -22,14 +22,14 @@ class WrongReport(Exception):
 
 
 class _Paper:
-    """A canvas that keeps lines: (colour, (x1, y1), (x2, y2)), in metres on the screen (y down)."""
+    """A canvas that keeps lines: (colour, (x1, y1), (x2, y2), width), in metres on the screen (y down), and pixels."""
 
     def __init__(self):
         self.lines = []
 
     def line(self, x, y, old_x, old_y, colour, width):
         if (x + y + old_x + old_y) * 0.0 == 0.0:
-            self.lines.append((tuple(colour), (old_x, old_y), (x, y)))
+            self.lines.append((tuple(colour), (old_x, old_y), (x, y), width))
 
 
 class Replay:
@@ -106,7 +106,7 @@ class Replay:
     def drawing(self):
         """The lines that were drawn since the plan began: [(colour, [(x, y), ...]), ...], in metres of the world (y up)."""
         found, open_line = [], None
-        for colour, begin, end in self.paper.lines:
+        for colour, begin, end, _ in self.paper.lines:
             begin, end = _upright(begin), _upright(end)
             if open_line is not None and open_line[0] == colour and open_line[1][-1] == begin:
                 open_line[1].append(end)
@@ -114,6 +114,10 @@ class Replay:
                 open_line = (colour, [begin, end])
                 found.append(open_line)
         return found
+
+    def widths(self):
+        """The widths of the lines that were drawn since the plan began, in pixels, each once."""
+        return sorted({width for *_, width in self.paper.lines})
 
     def place(self, name="turtle1"):
         """Where a turtle is at the end, (x, y, heading), or ``None``. Numbers that are not finite stay so, and are near to nothing."""
@@ -123,6 +127,19 @@ class Replay:
         """The metres that a turtle went since the plan began."""
         way = self.way.get(name, ())
         return sum(math.dist(one[:2], other[:2]) for one, other in zip(way, way[1:]))
+
+    def turned(self, name="turtle1"):
+        """The degrees that a turtle turned to the left since the plan began, all turns together; those to the right count less than 0."""
+        way = self.way.get(name, ())
+        return math.degrees(sum(math.remainder(other[2] - one[2], math.tau) for one, other in zip(way, way[1:])))
+
+    def moved_since(self, tick, name="turtle1"):
+        """(metres, radians) between a turtle's place at a tick, counted from the first one of all, and its place at the end."""
+        way = self.way.get(name, ())
+        if not way:
+            return 0.0, 0.0
+        then, last = way[max(min(len(way) - 1 - (self.ticks - 1 - tick), len(way) - 1), 0)], way[-1]
+        return math.dist(then[:2], last[:2]), abs(math.remainder(last[2] - then[2], math.tau))
 
 
 def _upright(point):

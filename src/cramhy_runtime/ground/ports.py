@@ -192,6 +192,14 @@ class Definitions(Protocol):
         """The value of ``call-next-method`` where there is no next one; ``default`` signals the error."""
         ...
 
+    def generic_function_of(self, class_: Any, name: Any, lambda_list: Any) -> Any:
+        """A new generic function of a user's class."""
+        ...
+
+    def maker_of_methods(self, class_: Any) -> Any:
+        """What makes a new `Method` one of a user's class."""
+        ...
+
     def warn(self, kind: type, control: str, *arguments: Any) -> None:
         """Tell what a macro found wrong with its call while it was expanded: a warning of class ``kind``."""
         ...

@@ -18,9 +18,9 @@ from __future__ import annotations
 
 import weakref
 
-from ..classes import find_class_or_error, when_classes_change
+from ..classes import when_classes_change
 from ..conditions import SimpleError, error, program_error, restart_case, wrong_argument_count
-from ..data import UNSUPPLIED, Cons, Keyword, Symbol, UndefinedFunction, lisp_list, list_from, python_list
+from ..data import UNSUPPLIED, Cons, Keyword, UndefinedFunction, lisp_list, list_from, python_list
 from ..equality import eql_key
 from ..functions import invalid_function_name
 from .generic_errors import incongruent, no_applicable_method_error, refuse_ordinary
@@ -28,7 +28,7 @@ from ..keyword_calls import lispify
 from .keyword_checks import checking_keys
 from .method_combination import STANDARD, Combination, find_combination
 from .reached_slots import ReachedSlots
-from .methods import EqlSpecializer, Method, Shape, class_for_dispatch, is_sized
+from .methods import EqlSpecializer, Method, Shape, class_for_dispatch, generic_lambda_list, is_sized, specializer_of
 from ..packages import is_symbol, keyword, our_own, redefined, sym, symbol_name
 from ..ports import PORTS
 from ..python_names import python_name
@@ -77,9 +77,19 @@ class GenericFunction(ReachedSlots, FunctionObject):
         self.forget()
         all_generic_functions.add(self)
 
+    by_protocol = False
+    """Whether the function is of a class of a user's, which says how calls are made."""
+    method_class = None
+    """What makes a new `Method` one of a user's class, or ``None``."""
     watcher = direct = direct_methods = enclosure = None
     advice: str | None = None
     """What the error that no method is applicable tells the user to do."""
+
+    def lisp_init(self, name=None, lambda_list=None, method_class=None):
+        """What ``make-instance`` does."""
+        GenericFunction.__init__(self, name, lambda_list)
+        if method_class is not None:
+            self.method_class = PORTS.definitions.maker_of_methods(method_class)
 
     def enclose(self, enclosure):
         """Let ``enclosure(effective function)`` make the calls in which a method of a user takes part. Returns the argument."""
@@ -125,7 +135,9 @@ class GenericFunction(ReachedSlots, FunctionObject):
         self.sized = [index for index in positions if any(is_sized(method.specializers[index]) for method in self.methods)]
         self.minimum, self.maximum = self.shape.required, self.shape.maximum
         fixed = self.minimum == self.maximum
-        if self.watcher is not None:
+        if self.by_protocol:
+            self.discriminating = None
+        elif self.watcher is not None:
             self.__class__ = _WatchedGeneric
         elif self.direct is not None and self.methods == self.direct_methods:
             self.__class__ = self.direct
@@ -362,7 +374,16 @@ def find_generic_function(name):
     return function if isinstance(function, GenericFunction) else None
 
 
-def ensure_generic_function(name, lambda_list=None, *, method_combination=None, argument_precedence_order=None, documentation=None):
+def ensure_generic_function(
+    name,
+    lambda_list=None,
+    *,
+    method_combination=None,
+    argument_precedence_order=None,
+    documentation=None,
+    generic_function_class=None,
+    method_class=None,
+):
     """The generic function ``name``; made if there is none. Options that are given replace those it has.
 
     name: a Symbol or ``(setf symbol)``. lambda_list: a Lisp list, or text for Python rooms. method_combination: a list
@@ -379,12 +400,17 @@ def ensure_generic_function(name, lambda_list=None, *, method_combination=None, 
             refuse_ordinary(symbol)
         if opening is None:
             PORTS.definitions.check_symbol(symbol, "proclaiming ~S as a function", name)
-        function = GenericFunction(name, lambda_list) if opening is None else opening.open()
+        if generic_function_class is not None:
+            function = PORTS.definitions.generic_function_of(generic_function_class, name, lambda_list)
+        else:
+            function = GenericFunction(name, lambda_list) if opening is None else opening.open()
         if setf:
             symbol.setf_function = function
         else:
             symbol.function, symbol.macro = function, None
         symbol.function_changed()
+    if method_class is not None:
+        function.method_class = PORTS.definitions.maker_of_methods(method_class)
     if method_combination is not None:
         options = python_list(method_combination)
         function.combination, function.combination_options = find_combination(options[0]), tuple(options[1:])
@@ -400,7 +426,7 @@ def ensure_generic_function(name, lambda_list=None, *, method_combination=None, 
     return function
 
 
-def define_generic(name, lambda_list=None, *, method_combination=None, argument_precedence_order=None, documentation=None, methods=None):
+def define_generic(name, lambda_list=None, *, methods=None, generic_function_class=None, method_class=None, **options):
     """``defgeneric``: define or redefine the generic function ``name``; returns it.
 
     name, lambda_list and options: see `ensure_generic_function`. methods: a list of lists (qualifiers specializers
@@ -408,17 +434,15 @@ def define_generic(name, lambda_list=None, *, method_combination=None, argument_
     list that does not fit the existing methods is an error.
     """
     function = find_generic_function(name)
-    if function is None:
-        function = ensure_generic_function(name, lambda_list)
+    if function is None or generic_function_class is not None and not function.by_protocol:
+        function = ensure_generic_function(name, lambda_list, generic_function_class=generic_function_class)
     else:
         for method in function.from_defgeneric:
             remove_method(function, method)
         set_lambda_list(function, lambda_list)
     function.combination, function.combination_options, function.precedence = STANDARD, (), None
     function.from_defgeneric = []
-    ensure_generic_function(
-        name, method_combination=method_combination, documentation=documentation, argument_precedence_order=argument_precedence_order
-    )
+    ensure_generic_function(name, method_class=method_class, **options)
     for method in python_list(methods):
         qualifiers, specializers, method_lambda_list, code, uses_next = python_list(method)
         function.from_defgeneric.append(
@@ -438,17 +462,6 @@ def set_lambda_list(function, lambda_list):
     function.forget()
 
 
-def specializer_of(designator):
-    """The specializer that a class, a class name, ``(eql value)`` with its value, or an `EqlSpecializer` stands for."""
-    if designator is True or designator is object:
-        return object
-    if isinstance(designator, (EqlSpecializer, type)):
-        return designator
-    if isinstance(designator, Cons) and designator.car is sym("EQL"):
-        return EqlSpecializer(designator.cdr.car)
-    return find_class_or_error(designator)
-
-
 def define_method(name, qualifiers, specializers, lambda_list, function, *, uses_next=True, documentation=None):
     """``defmethod``: add a method to the generic function ``name``, which is made if there is none; returns the method.
 
@@ -457,23 +470,10 @@ def define_method(name, qualifiers, specializers, lambda_list, function, *, uses
     specialized or not. function: see the top of this module. uses_next: whether it takes ``next``; nil is false.
     """
     classes = [specializer_of(specializer) for specializer in python_list(specializers)]
-    generic_function = ensure_generic_function(name, _generic_lambda_list(lambda_list) if find_generic_function(name) is None else None)
+    generic_function = ensure_generic_function(name, generic_lambda_list(lambda_list) if find_generic_function(name) is None else None)
     return add_method(
         generic_function, qualifiers, classes, function, lambda_list=lambda_list, uses_next=uses_next, documentation=documentation
     )
-
-
-def _generic_lambda_list(lambda_list):
-    # The method's lambda list without specializers and defaults, and with no particular keywords.
-    result, keys = [], False
-    for item in python_list(lambda_list):
-        name = item.name if isinstance(item, Symbol) else ""
-        if name == "&AUX":
-            break
-        if not keys:
-            result.append(item.car if isinstance(item, Cons) else item)
-        keys = keys or name == "&KEY"
-    return list_from(result)
 
 
 def add_method(
@@ -504,6 +504,8 @@ def add_method(
         per_class,
         documentation,
     )
+    if generic_function.method_class is not None:
+        method = generic_function.method_class(method)
     return enter_method(generic_function, method, user=user)
 
 

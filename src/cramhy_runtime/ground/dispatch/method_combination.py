@@ -17,7 +17,7 @@ from ..data import Symbol, lisp_list, list_from, one, truth
 from ..packages import keyword, sym, symbol_name
 from ..ports import PORTS
 from .generic_errors import no_next_method_error, no_primary_method_error
-from .methods import class_for_dispatch
+from .methods import class_for_dispatch, is_sized
 
 DIRECTLY, CHANGED = keyword("DIRECTLY"), keyword("CHANGED")
 """What ``uses_next`` of a method is that takes the function of the next method itself, and gives it all arguments. With CHANGED it takes
@@ -25,6 +25,10 @@ two functions: one for its own arguments, and one for others, which looks whethe
 SAME = keyword("SAME")
 """What ``uses_next`` of a method is whose `NextMethod` is called without arguments only."""
 AROUND, BEFORE, AFTER = keyword("AROUND"), keyword("BEFORE"), keyword("AFTER")
+
+
+STRICTLY, STRICT = keyword("STRICTLY"), keyword("STRICT")
+"""The same as CHANGED, and as ``True``, for a method at safety 3: for other arguments the same methods must apply."""
 
 
 class SameNextMethod:
@@ -73,17 +77,20 @@ class _Changed:
     """The function of a method for other arguments than those for which it was chosen. It signals a type-error for one that is not of the
     method's class (ANSI 7.6.6.2); so do the next methods, which are not all asked before, as on SBCL."""
 
-    __slots__ = ("method", "following", "known")
+    __slots__ = ("method", "count", "following", "known")
 
     def __init__(self, method, following):
-        self.method, self.following, self.known = method, following, {}
+        self.method, self.count, self.following, self.known = method, len(method.specializers), following, {}
 
     def __call__(self, *arguments, **keywords):
-        classes = tuple(map(class_for_dispatch, arguments[: len(self.method.specializers)]))
-        function = self.known.get(classes)
+        kinds = tuple(map(type, arguments[: self.count]))
+        function = self.known.get(kinds)
         if function is None:
+            classes = tuple(map(class_for_dispatch, arguments[: self.count]))
             self._check(arguments, classes)
-            function = self.known[classes] = _step(self.method, classes, self.following, self.following)
+            function = _step(self.method, classes, self.following, self.following)
+            if bool not in kinds and not (int in kinds and any(map(is_sized, self.method.specializers))):
+                self.known[kinds] = function
         return function(*arguments, **keywords)
 
     def _check(self, arguments, classes):
@@ -119,9 +126,30 @@ def _step(method, classes, following, changed):
         return partial(function, following)
     if method.uses_next is CHANGED:
         return partial(function, following, changed)
+    if method.uses_next is STRICTLY:
+        return lambda *given: function(following, _same_methods(method, given, changed), *given)
+    if method.uses_next is STRICT:
+        return lambda *given, **keywords: function(
+            NextMethod(following, _same_methods(method, given, changed), given, keywords), *given, **keywords
+        )
     if method.uses_next is SAME:
         return lambda *arguments, **keywords: function(SameNextMethod(following, arguments, keywords), *arguments, **keywords)
     return lambda *arguments, **keywords: function(NextMethod(following, changed, arguments, keywords), *arguments, **keywords)
+
+
+def _same_methods(method, given, changed):
+    """``changed``, behind a test that the methods for its arguments are those for ``given`` (ANSI CALL-NEXT-METHOD)."""
+
+    def call(*arguments, **keywords):
+        function = method.generic_function
+        if function.applicable_methods(arguments) != function.applicable_methods(given):
+            text = (
+                "The methods of ~S that apply to ~S, the arguments of CALL-NEXT-METHOD, are not those for ~S, the arguments of the method."
+            )
+            return error(SimpleError(text, function, list_from(arguments), list_from(given)))
+        return changed(*arguments, **keywords)
+
+    return call
 
 
 class Combination:

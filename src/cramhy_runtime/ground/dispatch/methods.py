@@ -7,8 +7,8 @@ lambda list says about calls (how many arguments, which keywords) is a `Shape`; 
 
 from __future__ import annotations
 
-from ..classes import BigInteger
-from ..data import Cons, Keyword, Symbol, python_list
+from ..classes import BigInteger, find_class_or_error
+from ..data import Cons, Keyword, Symbol, lisp_list, list_from, python_list
 from ..equality import eql_key
 from ..packages import keyword, sym, symbol_name
 
@@ -109,6 +109,21 @@ class Method(MethodObject):
         self.qualifiers, self.specializers, self.function = qualifiers, specializers, function
         self.uses_next, self.shape, self.per_class, self.documentation = uses_next, shape, per_class, documentation
 
+    metafunction = None
+    """The function of a method that was made by ``make-instance``: of a list of arguments and one of next methods."""
+
+    def lisp_init(self, qualifiers=None, lambda_list=None, specializers=None, function=None, documentation=None):
+        """What ``make-instance`` does: a method that belongs to no generic function."""
+
+        def run(following, *arguments):
+            return function(list_from(arguments), None if following.exists is None else lisp_list(following))
+
+        shape = Shape(lambda_list)
+        Method.__init__(
+            self, None, tuple(python_list(qualifiers)), python_list(specializers), run, True, shape, documentation=documentation
+        )
+        self.metafunction = function
+
     def applies(self, mros, keys):
         """Whether the method is applicable to arguments with these class precedence lists and eql keys."""
         for specializer, mro, key in zip(self.specializers, mros, keys):
@@ -129,6 +144,21 @@ class Method(MethodObject):
         return self.function(classes) if self.per_class else self.function
 
 
+class AccessorMethod(Method):
+    """A method that was made for a slot, ``slot_definition``."""
+
+    lisp_name = "SB-MOP::STANDARD-ACCESSOR-METHOD"
+    slot_definition: object = None
+
+
+class ReaderMethod(AccessorMethod):
+    lisp_name = "SB-MOP::STANDARD-READER-METHOD"
+
+
+class WriterMethod(AccessorMethod):
+    lisp_name = "SB-MOP::STANDARD-WRITER-METHOD"
+
+
 def class_for_dispatch(argument):
     """The class that methods are chosen by: Python's own, but that integers beyond the fixnums have one of their own."""
     if argument.__class__ is int:
@@ -139,3 +169,27 @@ def class_for_dispatch(argument):
 def is_sized(specializer):
     """Whether instances of ``specializer`` are told by the size of an integer, not by its Python class."""
     return getattr(specializer, "lisp_name", None) in ("FIXNUM", "BIGNUM")
+
+
+def specializer_of(designator):
+    """The specializer that a class, a class name, ``(eql value)`` with its value, or an `EqlSpecializer` stands for."""
+    if designator is True or designator is object:
+        return object
+    if isinstance(designator, (EqlSpecializer, type)):
+        return designator
+    if isinstance(designator, Cons) and designator.car is sym("EQL"):
+        return EqlSpecializer(designator.cdr.car)
+    return find_class_or_error(designator)
+
+
+def generic_lambda_list(lambda_list):
+    """The lambda list of a method without specializers and defaults, and with no particular keywords."""
+    result, keys = [], False
+    for item in python_list(lambda_list):
+        name = item.name if isinstance(item, Symbol) else ""
+        if name == "&AUX":
+            break
+        if not keys:
+            result.append(item.car if isinstance(item, Cons) else item)
+        keys = keys or name == "&KEY"
+    return list_from(result)

@@ -6,7 +6,7 @@ from cramhy_runtime.ground import classes
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import lisp_list, one
 from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import KEYWORD, Package
+from cramhy_runtime.ground.packages import KEYWORD, Package, keyword
 from cramhy_runtime.ground.ports import PORTS
 from .compiler import compilation_unit
 from .objects import builtin_classes, protocol
@@ -126,6 +126,14 @@ class _Definitions:
 
     def no_next_method(self, function, method, arguments, default):
         return protocol.no_next_method(function, method, *arguments)
+
+    def generic_function_of(self, class_, name, lambda_list):
+        return make_instance(class_, keyword("NAME"), name, keyword("LAMBDA-LIST"), lambda_list)
+
+    def maker_of_methods(self, class_):
+        from .objects.metafunctions import as_method_of
+
+        return as_method_of(class_world.find_class_or_error(class_))
 
 
 def install():

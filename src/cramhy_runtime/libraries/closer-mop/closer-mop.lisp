@@ -1,5 +1,5 @@
 ;;;; Closer to MOP: what SB-MOP has here, with the functions and macros of Common Lisp that belong to it, in one package. The packages are
-;;;; those of closer-mop 1.0; the protocol itself cannot be changed by methods.
+;;;; those of closer-mop 1.0.
 
 (defpackage #:closer-mop
   (:use)

@@ -18,7 +18,8 @@ from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from, list_pa
 from cramhy_runtime.ground.equality import eql_key, equal_key
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.printing import define_printer, output_object, print_unreadable
-from cramhy_runtime.ground.dispatch.generic_functions import generic, specializer_of, when_methods_change
+from cramhy_runtime.ground.dispatch.generic_functions import generic, when_methods_change
+from cramhy_runtime.ground.dispatch.methods import specializer_of
 from cramhy_runtime.utilities.lazy_lists import force_ll, from_iterator, lazy_cdr
 from cramhy_runtime.utilities.patterns import ANONYMOUS, compared_by_python, equal, substitute_vars, variable, vars_in
 from cramhy_runtime.kernel.images import Cell, per_image

@@ -118,7 +118,8 @@ def _compute_mro(cls):
         result.append(base)
     result.pop()  # object, which is T, comes last
     if issubclass(cls, type):
-        result.append(_standard_object.value)
+        if _standard_object.value not in result:  # that of a user has it
+            result.append(_standard_object.value)
     else:
         if "__call__" in _attributes_of(cls) or any(vars(base).get("lisp_name") == "GENERIC-FUNCTION" for base in result):
             result += [CLASSES["COMPILED-FUNCTION"], CLASSES["FUNCTION"]]

@@ -11,13 +11,14 @@ from cramhy_runtime.ground.condition_types import Condition
 from cramhy_runtime.ground.conditions import SimpleError, error
 from cramhy_runtime.ground.data import UNBOUND, Symbol, list_from, one, python_list
 from cramhy_runtime.ground.python_names import python_name
-from cramhy_runtime.ground.packages import is_symbol, sym, symbol_name
+from cramhy_runtime.ground.packages import is_symbol, keyword, sym, symbol_name
 from ..streams.streams import StringOutputStream
 from ..packages.package_errors import check_symbol
 from ..syntax.declaration_names import check_type_name
 from .class_objects import (
     ClassSlot,
     InstanceSlot,
+    MetaobjectSlot,
     hide_class_slots,
     DirectSlot,
     StandardClass,
@@ -25,10 +26,12 @@ from .class_objects import (
     effective_slots,
     may_be_unbound,
     missing_attribute,
+    tell_of_change,
     touch_classes,
 )
 from .classes import (
     BuiltInClass,
+    FuncallableStandardClass,
     StructureClass,
     class_name,
     find_class_or_error,
@@ -38,7 +41,8 @@ from .classes import (
     registered_class,
     symbol_class,
 )
-from cramhy_runtime.ground.dispatch.generic_functions import add_method, ensure_generic_function, remove_method
+from cramhy_runtime.ground.dispatch.generic_functions import FunctionObject, add_method, ensure_generic_function, remove_method
+from cramhy_runtime.ground.dispatch.methods import ReaderMethod, WriterMethod
 from .slots import reader_for, writer_for
 
 
@@ -54,19 +58,21 @@ def slot_spec(
     allocation=None,
     type=True,
     documentation=None,
+    others=None,
 ):
     """The description of one slot for `define_class` and `define_condition`.
 
     name: a Symbol. initargs: a Lisp list of symbols. initform: a thunk, or nil when there is no initform; initform_source: the
     form. readers, accessors: lists of symbols. writers: a list of function names, symbols or ``(setf symbol)``. allocation:
-    ``:instance`` or ``:class``. type: a type specifier. documentation: a string.
+    ``:instance`` or ``:class``. type: a type specifier. documentation: a string. others: a property list of further options, for the
+    metaclass.
     """
     readers, writers = python_list(readers), python_list(writers)
     for accessor in python_list(accessors):
         readers.append(accessor)
         writers.append(list_from([sym("SETF"), accessor]))
     shared = allocation is not None and symbol_name(allocation) == "CLASS"
-    return DirectSlot(
+    slot = DirectSlot(
         name,
         tuple(python_list(initargs)),
         initform,
@@ -77,41 +83,105 @@ def slot_spec(
         tuple(readers),
         tuple(writers),
     )
+    if others is not None:
+        slot.others = tuple(python_list(others))
+    return slot
 
 
-def define_class(name, superclasses=None, slots=None, *, default_initargs=None, metaclass=None, documentation=None):
+def define_class(name, superclasses=None, slots=None, *, default_initargs=None, metaclass=None, documentation=None, others=None):
     """``defclass``: define or redefine the class ``name``; returns the class.
 
     name: a Symbol. superclasses: a list (Lisp or Python) of symbols or classes; one that is not defined yet becomes a forward
     reference. slots: a list of `slot_spec` results. default_initargs: a list of (initarg, thunk, form) lists. metaclass: a
-    symbol; only STANDARD-CLASS is built, others are remembered for printing. documentation: a string.
+    symbol; a class of a user's metaclass is made by `metaclasses.ensure_class`. documentation: a string. others: a property list of
+    further options, for the metaclass.
     """
     slots = python_list(slots)
     check_symbol(name, "defining ~S as a class", name)
     check_type_name(name)
-    _check_slots(name, slots, "DEFCLASS")
+    check_slots(name, slots, "DEFCLASS")
     initargs = [python_list(entry)[0] for entry in python_list(default_initargs)]
     for initarg in initargs:
         if initargs.count(initarg) > 1:
             invalid_class_definition("Duplicate initialization argument name ~S in :DEFAULT-INITARGS of DEFCLASS ~S.", initarg, name)
     superclasses = python_list(superclasses)
+    found = find_class_or_error(metaclass) if metaclass is not None else StandardClass
+    if "lisp_direct_slots" in vars(found):
+        return _defined_by_protocol(name, superclasses, slots, default_initargs, found, documentation, others)
+    _refuse_others(slots, others)
     if name in superclasses or registered_class(name) in superclasses:
         error(SimpleError("Class named ~A specified as its own superclass.", qualified(name)))
-    bases = [_superclass(name, base) for base in superclasses]
+    bases = [superclass(name, base) for base in superclasses]
     _check_superclasses(name, bases)
     bases = [base for base in bases if base is not object]
+    if found is FuncallableStandardClass:
+        bases = _function_bases(bases)
     if not any(issubclass(base, StandardObject) for base in bases):
         bases.append(StandardObject)
+    if any("lisp_direct_slots" in vars(type(base)) for base in bases):
+        from .metaclasses import check_superclasses
+
+        check_superclasses(StandardObject, bases, name)
     cls = _make_or_change(name, bases, slots)
     cls.lisp_default_initargs = [tuple(python_list(entry))[:2] for entry in python_list(default_initargs)]
     cls.__doc__ = documentation
-    if metaclass is not None and symbol_name(metaclass) != "STANDARD-CLASS":
-        cls.lisp_metaclass = find_class_or_error(metaclass)
-    _define_accessors(cls, slots)
+    if found is not StandardClass:
+        cls.lisp_metaclass = found
+    define_accessors(cls, slots)
     return cls
 
 
-def _check_slots(name, slots, operator):
+def _defined_by_protocol(name, superclasses, slots, default_initargs, metaclass, documentation, others):
+    """The class that the metaobject protocol makes of the parts of a ``defclass`` form."""
+    from .metaclasses import ensure_class
+
+    given = {"DIRECT-SUPERCLASSES": list_from(superclasses), "DIRECT-SLOTS": list_from([_plist_of_slot(slot) for slot in slots])}
+    defaults = [python_list(entry) for entry in python_list(default_initargs)]
+    given["DIRECT-DEFAULT-INITARGS"] = list_from([list_from([key, form, thunk]) for key, thunk, form in defaults])
+    given["DOCUMENTATION"] = documentation
+    given["METACLASS"] = metaclass
+    initargs = [part for key, value in given.items() if value is not None for part in (keyword(key), value)]
+    return ensure_class(name, *initargs, *python_list(others))
+
+
+def _plist_of_slot(slot):
+    given = {"NAME": slot.name, "INITARGS": list_from(slot.initargs), "READERS": list_from(slot.readers)}
+    given["WRITERS"] = list_from(slot.writers)
+    if slot.initfunction is not None:
+        given |= {"INITFORM": slot.initform, "INITFUNCTION": slot.initfunction}
+    if slot.allocation == "CLASS":
+        given["ALLOCATION"] = keyword("CLASS")
+    if slot.type is not True:
+        given["TYPE"] = slot.type
+    if slot.documentation is not None:
+        given["DOCUMENTATION"] = slot.documentation
+    return list_from([*(part for key, value in given.items() for part in (keyword(key), value)), *slot.others])
+
+
+def _function_bases(bases):
+    """The superclasses of a class of functions: it inherits from FUNCALLABLE-STANDARD-OBJECT, and from generic functions as users have
+    them."""
+    from .metafunctions import FuncallableObject, function_base
+
+    bases = [function_base(base) for base in bases]
+    return bases if any(issubclass(base, (FuncallableObject, FunctionObject)) for base in bases) else [*bases, FuncallableObject]
+
+
+def _refuse_others(slots, others):
+    """Signal an error for options of a class or of slots that only a metaclass of a user could know."""
+    for slot in slots:
+        if slot.others:
+            invalid_class_definition(
+                "There is no slot option ~S, which slot ~S has. The options are ~{:~A~^, ~}.",
+                slot.others[0],
+                slot.name,
+                list_from(sorted("INITARG INITFORM READER WRITER ACCESSOR ALLOCATION TYPE DOCUMENTATION".split())),
+            )
+    if others is not None:
+        invalid_class_definition("there is no option ~S.", others.car)
+
+
+def check_slots(name, slots, operator):
     names = [slot.name for slot in slots]
     for slot in slots:
         if not is_symbol(slot.name) or slot.name in (None, True) or slot.name.constant:
@@ -124,7 +194,7 @@ def _check_slots(name, slots, operator):
         invalid_class_definition("The name of the class in ~A must be a symbol, not ~S.", operator, name)
 
 
-def _superclass(name, base):
+def superclass(name, base):
     cls = base if isinstance(base, type) else symbol_class(base)
     if cls is None:
         cls = StandardClass(
@@ -170,13 +240,20 @@ def _make_or_change(name, bases, slots):
 def _new_class(name, bases, slots):
     metaclass = _metaclass(bases)
     namespace = {"lisp_symbol": name, "lisp_direct_slots": slots, "__module__": _module_name(name)}
-    cls = metaclass(python_name(name.name), tuple(bases), namespace)
+    if metaclass is None:
+        cls = StandardClass(python_name(name.name), (StandardObject,), namespace)
+        cls.__bases__ = tuple(bases)
+    else:
+        cls = metaclass(python_name(name.name), tuple(bases), namespace)
     _install_class_slots(cls, slots)
     return cls
 
 
 def _metaclass(bases):
-    """`StandardClass`, combined with whatever metaclass the Python superclasses have."""
+    """`StandardClass`, combined with whatever metaclass the Python superclasses have; ``None`` if a superclass is of a user's metaclass,
+    which its subclasses in Python would have, too."""
+    if any("lisp_direct_slots" in vars(type(base)) for base in bases):
+        return None
     others = {type(base) for base in bases if not issubclass(StandardClass, type(base))}
     if not others or others == {StandardClass}:
         return StandardClass
@@ -187,6 +264,21 @@ def _metaclass(bases):
 
 def _module_name(symbol):
     return python_name(symbol.package.name) if symbol.package else "lisp"
+
+
+def begin(cls, bases, slots):
+    """Give a class that was just made its superclasses and slots."""
+    if tuple(bases) != cls.__bases__:
+        cls.__bases__ = tuple(bases)
+    cls.lisp_direct_slots = slots
+    cls.lisp_stale = True
+    touch_classes()
+    _install_class_slots(cls, slots)
+
+
+def change(cls, bases, slots):
+    """The same for a class that exists; its instances are updated when they are next looked at."""
+    _change(class_name(cls), cls, bases, slots)
 
 
 def _change(name, cls, bases, slots):
@@ -207,12 +299,15 @@ def _change(name, cls, bases, slots):
             slot.cell.value = old_cells[slot.name].value
     for sub in changed:
         kinds = (ClassSlot, InstanceSlot) if sub is cls else InstanceSlot
-        for attribute in [name for name, value in vars(sub).items() if isinstance(value, kinds)]:
+        for attribute in [name for name, value in vars(sub).items() if isinstance(value, kinds) or hasattr(value, "is_bound")]:
             delattr(sub, attribute)
     _remove_accessors(cls)
     cls.lisp_direct_slots = slots
     if "lisp_forward_reference" in vars(cls):
         del cls.lisp_forward_reference
+    for sub in changed:
+        if "lisp_made_slots" in vars(sub):
+            sub.lisp_stale = True
     touch_classes()
     for sub in changed:
         sub.lisp_attributes = before[sub]
@@ -224,6 +319,7 @@ def _change(name, cls, bases, slots):
     _install_class_slots(cls, slots)
     for sub in changed:
         hide_class_slots(sub)
+    tell_of_change(cls)
     return cls
 
 
@@ -240,6 +336,13 @@ def _with_subclasses(cls):
 
 
 def _install_class_slots(cls, slots):
+    if issubclass(cls, type):
+        for slot in effective_slots(cls).values():
+            setattr(cls, slot.attribute, MetaobjectSlot(slot))
+        from .metaclasses import become_metaclass
+
+        become_metaclass(cls)
+        return
     for slot in slots:
         if slot.cell is not None:
             setattr(cls, effective_slots(cls)[slot.name].attribute, slot.cell)
@@ -251,16 +354,18 @@ def _install_class_slots(cls, slots):
 # ----------------------------------------------------------------------------------------------------------------- accessors
 
 
-def _define_accessors(cls, slots):
+def define_accessors(cls, slots):
     cls.lisp_accessors = []
     for slot in slots:
         for reader in slot.readers:
             gf = ensure_generic_function(reader, list_from([sym("OBJECT")]))
             method = add_method(gf, (), [cls], reader_for(slot.name), uses_next=False, per_class=True)
+            method.__class__, method.slot_definition = ReaderMethod, slot
             cls.lisp_accessors.append((gf, method))
         for writer in slot.writers:
             gf = ensure_generic_function(writer, list_from([sym("NEW-VALUE"), sym("OBJECT")]))
             method = add_method(gf, (), [True, cls], writer_for(slot.name), uses_next=False, per_class=True)
+            method.__class__, method.slot_definition = WriterMethod, slot
             cls.lisp_accessors.append((gf, method))
 
 
@@ -281,7 +386,7 @@ def define_condition(name, parents=None, slots=None, *, report=None, default_ini
     slots = python_list(slots)
     check_symbol(name, "defining ~S as a condition", name)
     check_type_name(name)
-    _check_slots(name, slots, "DEFINE-CONDITION")
+    check_slots(name, slots, "DEFINE-CONDITION")
     bases = [find_class_or_error(parent) for parent in python_list(parents)] or [Condition]
     for base in bases:
         if not issubclass(base, Condition):
@@ -296,7 +401,7 @@ def define_condition(name, parents=None, slots=None, *, report=None, default_ini
         del cls.report
     if "__getattr__" not in vars(cls):
         cls.__getattr__ = missing_attribute
-    _define_accessors(cls, slots)
+    define_accessors(cls, slots)
     return name
 
 

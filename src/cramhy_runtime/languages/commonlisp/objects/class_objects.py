@@ -17,9 +17,9 @@ from cramhy_runtime.ground.printing import prin1_to_string
 
 from cramhy_runtime.ground import classes
 from cramhy_runtime.ground.conditions import SimpleError, UnboundSlot, error
-from cramhy_runtime.ground.data import UNBOUND, Symbol
+from cramhy_runtime.ground.data import UNBOUND, Symbol, python_list
 from cramhy_runtime.ground.python_names import python_name
-from cramhy_runtime.ground.packages import keyword, printed, sym
+from cramhy_runtime.ground.packages import keyword, printed, sym, symbol_name
 from . import builtin_classes
 
 
@@ -91,10 +91,14 @@ class SlotDefinition:
     """The class of `DirectSlot` and `Slot`."""
 
     lisp_name = "SB-MOP::SLOT-DEFINITION"
+    others: tuple = ()
+    """Options that only a metaclass of a user knows, as a property list."""
 
 
 class DirectSlot(SlotDefinition):
     """A slot as a class definition gives it. ``initfunction`` is a thunk or ``None``; ``cell`` holds the value of a class slot."""
+
+    lisp_name = "SB-MOP::STANDARD-DIRECT-SLOT-DEFINITION"
 
     def __init__(
         self,
@@ -113,9 +117,30 @@ class DirectSlot(SlotDefinition):
         self.readers, self.writers = readers, writers
         self.cell = None
 
+    def lisp_init(
+        self,
+        name=None,
+        initargs=None,
+        initfunction=None,
+        initform=None,
+        allocation=None,
+        type=True,
+        documentation=None,
+        readers=None,
+        writers=None,
+    ):
+        """What ``make-instance`` does, where lists are Lisp's and the allocation is a keyword."""
+        shared = allocation is not None and symbol_name(allocation) == "CLASS"
+        lists = [tuple(python_list(each)) for each in (initargs, readers, writers)]
+        DirectSlot.__init__(
+            self, name, lists[0], initfunction, initform, "CLASS" if shared else "INSTANCE", type, documentation, lists[1], lists[2]
+        )
+
 
 class Slot(SlotDefinition):
     """A slot as instances of one class have it: `DirectSlot` definitions of all superclasses combined (ANSI 7.5.3)."""
+
+    lisp_name = "SB-MOP::STANDARD-EFFECTIVE-SLOT-DEFINITION"
 
     def __init__(self, name, attribute, initargs=(), initfunction=None, initform=None, type=True, owner=None):
         self.name, self.attribute, self.initargs = name, attribute, initargs
@@ -124,8 +149,17 @@ class Slot(SlotDefinition):
         self.owner = owner
         self.direct: list = []
 
+    def lisp_init(self, name=None, initargs=None, initfunction=None, initform=None, type=True, allocation=None, documentation=None):
+        """What ``make-instance`` does. The attribute is found when a class has the slot."""
+        Slot.__init__(self, name, None, tuple(python_list(initargs)), initfunction, initform, type)
+        self.documentation = documentation
 
-class ClassSlot:
+
+class SlotMember:
+    """The attribute of a class for a slot whose value is not, or not only, in the dictionary of the instance."""
+
+
+class ClassSlot(SlotMember):
     """The Python attribute for a slot with ``:allocation :class``: one value for all instances."""
 
     def __init__(self, name):
@@ -160,6 +194,41 @@ class InstanceSlot:
         if instance is None:
             raise AttributeError(self.attribute)  # the class has no value
         return missing_attribute(instance, self.attribute)
+
+
+VALUES = "lisp_slot_values"
+"""The attribute of a class that holds the values of its own slots, those of its metaclass."""
+
+
+class MetaobjectSlot(SlotMember):
+    """The attribute of a metaclass for a slot of its classes. Were it an attribute of the class, instances would have it, too."""
+
+    def __init__(self, slot):
+        self.slot = slot
+
+    def __get__(self, cls, owner):
+        if cls is None:
+            return self
+        if self.slot.cell is not None:
+            return self.slot.cell.__get__(cls, owner)
+        value = vars(cls).get(VALUES, {}).get(self.slot.name, UNBOUND)
+        return protocol_functions.slot_unbound(owner, cls, self.slot.name) if value is UNBOUND else value
+
+    def __set__(self, cls, value):
+        if self.slot.cell is not None:
+            self.slot.cell.value = value
+        elif VALUES in vars(cls):
+            vars(cls)[VALUES][self.slot.name] = value
+        else:
+            setattr(cls, VALUES, {self.slot.name: value})
+
+    def __delete__(self, cls):
+        self.__set__(cls, UNBOUND)
+
+    def is_bound(self, cls):
+        """Whether the slot of ``cls`` has a value."""
+        values = vars(cls).get(VALUES, {})
+        return (self.slot.cell.value if self.slot.cell is not None else values.get(self.slot.name, UNBOUND)) is not UNBOUND
 
 
 def missing_attribute(instance, attribute):
@@ -215,11 +284,26 @@ def touch_classes():
     classes.touch_classes()
 
 
+_class_watchers: list = []
+
+
+def when_class_is_changed(function):
+    """Call ``function(class)`` whenever a class was defined again."""
+    _class_watchers.append(function)
+
+
+def tell_of_change(cls):
+    """Tell those that want to know that ``cls`` was defined again."""
+    for function in _class_watchers:
+        function(cls)
+
+
 def effective_slots(cls):
     """The slots of instances of ``cls``: a dict from slot name (a Symbol) to `Slot`, in order of definition."""
     found = _slots.get(cls)
     if found is None:
-        found = _slots[cls] = _compute_slots(cls)
+        by_protocol = getattr(type(cls), "lisp_protocol", None)
+        found = _slots[cls] = _compute_slots(cls) if by_protocol is None else by_protocol(cls)
         if issubclass(cls, StandardObject):
             hide_class_slots(cls)
     return found
@@ -289,9 +373,8 @@ def _compute_slots(cls):
     slots: dict = {}
     taken = _python_attributes(cls)
     kept = vars(cls).get("lisp_attributes", {})  # the attributes before the class was defined again
-    lisp_defined = [base for base in cls.__mro__ if "lisp_direct_slots" in vars(base)]
     for base in reversed(cls.__mro__):
-        if base not in lisp_defined:
+        if "lisp_direct_slots" not in vars(base):
             for name, attribute in vars(base).get("initargs", {}).items():
                 symbol = _runtime_symbol(base, name)
                 slots[symbol] = Slot(symbol, attribute, (keyword(name.rpartition("::")[2]),), owner=base)
@@ -300,8 +383,8 @@ def _compute_slots(cls):
                 symbol = _runtime_symbol(base, name)
                 slots[symbol] = Slot(symbol, attribute, owner=base)
                 taken.add(attribute)
-    for base in reversed(lisp_defined):
-        for direct in base.lisp_direct_slots:
+    for base in reversed(cls.__mro__):
+        for direct in vars(base).get("lisp_direct_slots", ()):
             slot = slots.get(direct.name)
             if slot is None:
                 attribute = kept.get(direct.name) or _free_attribute(direct.name, taken)
@@ -309,6 +392,32 @@ def _compute_slots(cls):
                 taken.add(attribute)
             _inherit(slot, direct)
     return slots
+
+
+def direct_slots_by_name(cls):
+    """The direct slots that ``cls`` and its superclasses define, by name: lists, the most specific first, in order of definition."""
+    found: dict = {}
+    for base in reversed(cls.__mro__):
+        for direct in vars(base).get("lisp_direct_slots", ()):
+            found.setdefault(direct.name, []).insert(0, direct)
+    return found
+
+
+def combined_slot(name, direct):
+    """The `Slot` of the `DirectSlot` definitions ``direct``, the most specific first; it has no attribute yet."""
+    slot = Slot(name, None)
+    for each in reversed(direct):
+        _inherit(slot, each)
+    return slot
+
+
+def attribute_for(cls, name, taken=None):
+    """The attribute for the slot ``name`` of instances of ``cls``, and the attributes that are then taken, of which some were."""
+    taken = _python_attributes(cls) if taken is None else taken
+    inherited = [slots[name].attribute for base in cls.__mro__[1:] if (slots := _slots.get(base)) is not None and name in slots]
+    attribute = vars(cls).get("lisp_attributes", {}).get(name) or (inherited or [_free_attribute(name, taken)])[0]
+    taken.add(attribute)
+    return attribute, taken
 
 
 def _free_attribute(symbol, taken):
@@ -342,7 +451,7 @@ def _python_attributes(cls):
             continue
         taken.update(vars(base).get("reserved_attributes", ()))
         for name, value in vars(base).items():
-            if isinstance(value, (ClassSlot, InstanceSlot)):
+            if isinstance(value, (ClassSlot, InstanceSlot)) or hasattr(value, "is_bound"):
                 continue
             taken.add(name)
             code = getattr(value, "__code__", None)

@@ -260,6 +260,8 @@ def metaclass_of(cls):
         return SystemClass if name in SystemClass.names else StructureClass if name in StructureClass.names else BuiltInClass
     if cls is type:
         return StandardClass
+    if "lisp_direct_slots" in vars(type(cls)):  # a user's metaclass
+        return type(cls)
     if issubclass(cls, Condition):
         return ConditionClass
     if isinstance(cls, StructureClass):

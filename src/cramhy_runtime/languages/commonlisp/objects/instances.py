@@ -19,7 +19,7 @@ from cramhy_runtime.ground.data import FLOATS, UNBOUND, Character, Cons, Keyword
 from cramhy_runtime.ground.packages import is_symbol, keyword, symbol_name
 from .builtin_classes import BuiltInClass, lisp_mro
 from .class_definition import default_initargs
-from .class_objects import StandardClass, StandardObject, effective_slots, find_slot, may_be_unbound
+from .class_objects import SlotDefinition, StandardClass, StandardObject, effective_slots, find_slot, may_be_unbound
 from .constructors import instance_constructor
 from cramhy_runtime.ground.classes import when_classes_change
 from .classes import StructureClass, SystemClass, class_name, class_of, find_class_or_error, metaclass_of, qualified
@@ -111,9 +111,11 @@ _PROTOCOL = ("INITIALIZE-INSTANCE", "SHARED-INITIALIZE", "ALLOCATE-INSTANCE", "R
 class Plan:
     """How instances of one class are made."""
 
+    by_protocol = False
+
     def __init__(self, cls):
         self.cls = cls
-        _check_finalized(cls)
+        check_finalized(cls)
         slots = effective_slots(cls).values()
         self.targets: dict = {}  # initarg -> slots that it sets
         for slot in slots:
@@ -218,7 +220,8 @@ def constructor_for(cls, keys):
     if found.__class__ is int:
         if len(_constructors) > 5000:
             _constructors.clear()
-        found = _constructors[cls, keys] = instance_constructor(_plans.get(cls) or _plan_or_error(cls), keys)
+        plan = _plans.get(cls) or _plan_or_error(cls)
+        found = _constructors[cls, keys] = None if plan.by_protocol else instance_constructor(plan, keys)
         _hear_of_traces()
     return found
 
@@ -231,7 +234,8 @@ def _hear_of_traces():
         symbol.keyed["constructors"] = _Callers
 
 
-def _check_finalized(cls):
+def check_finalized(cls):
+    """Signal an error if a superclass of ``cls`` is not defined yet."""
     if vars(cls).get("lisp_forward_reference"):
         error(_undefined_class(SimpleError("FINALIZE-INHERITANCE was called on a forward referenced class:~%~S", cls), cls))
     for base in cls.__mro__:
@@ -261,7 +265,7 @@ def _child(cls, base):
 def _python_init(cls, slots):
     """(the ``lisp_init`` or ``__init__`` of the runtime class behind ``cls``, or None; its parameters by initarg)"""
     for base in cls.__mro__:
-        if base in (object, BaseException, Exception, StandardObject):
+        if base in (object, type, BaseException, Exception, StandardObject):
             continue
         init = getattr(base, "lisp_init", None) or vars(base).get("__init__")
         if init is None or "lisp_direct_slots" in vars(base):
@@ -298,7 +302,10 @@ def applicable_user_methods(generic_function, *argument_classes):
 def plan_for(cls):
     plan = _plans.get(cls)
     if plan is None:
-        plan = _plans[cls] = Plan(cls)
+        kind = Plan
+        if issubclass(cls, type) or "lisp_direct_slots" in vars(type(cls)):
+            from .metaclasses import UsersPlan as kind
+        plan = _plans[cls] = kind(cls)
     return plan
 
 
@@ -318,6 +325,8 @@ def make_instance(class_, *initargs, **keywords):
     if written.__class__ is FunctionType and not len(initargs) & 1:
         return written(*initargs[1::2])
     plan = _plans.get(cls) or _plan_or_error(cls)
+    if plan.by_protocol:
+        return plan.make(initargs)
     if written.__class__ is int and not isinstance(cls, StructureClass):
         _constructors[key] = written + 1
         if written > _OFTEN:
@@ -349,9 +358,14 @@ def initialize_from_python(instance, initargs, keywords):
         plan.fill(instance, initargs)
 
 
+def _is_closed(cls):
+    """Whether ``cls`` is a class of classes of which nobody may make any."""
+    return issubclass(cls, type) and not issubclass(cls, StandardClass)
+
+
 def _plan_or_error(cls):
     abstract = isinstance(cls, StructureClass) and not hasattr(cls, "lisp_structure")
-    if isinstance(cls, BuiltInClass) or cls is object or issubclass(cls, type) or metaclass_of(cls) is SystemClass or abstract:
+    if isinstance(cls, BuiltInClass) or cls is object or _is_closed(cls) or metaclass_of(cls) is SystemClass or abstract:
         return error(SimpleError("Cannot allocate an instance of ~S.", cls))
     return plan_for(cls)
 
@@ -383,6 +397,8 @@ def default_shared_initialize(instance, slot_names, *initargs):
         for slot in plan.shared:
             if slot.cell.value is UNBOUND and (wanted is True or slot.name in wanted):
                 slot.cell.value = one(slot.initfunction())
+    if not parameters or isinstance(instance, SlotDefinition):
+        return instance
     for index in range(0, len(initargs), 2):  # after the Python __init__, reinitialization sets its attributes too
         if initargs[index] in parameters:
             setattr(instance, parameters[initargs[index]], initargs[index + 1])

@@ -17,17 +17,10 @@ from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
 from ..packages.package_errors import check_function_name
 from . import instances, slots
 from .builtin_classes import CLASSES
-from .class_definition import define_class
 from .class_objects import Slot, direct_slots, effective_slots
 from .classes import class_name, find_class_or_error
-from cramhy_runtime.ground.dispatch.generic_functions import (
-    GenericFunction,
-    Method,
-    find_method_or_none,
-    generic,
-    no_method_for,
-    specializer_of,
-)
+from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction, Method, find_method_or_none, generic, no_method_for
+from cramhy_runtime.ground.dispatch.methods import specializer_of
 from . import protocol_functions  # noqa: F401  makes the functions that get their defaults here
 from cramhy_runtime.ground.dispatch.generic_functions import protocol_function
 from cramhy_runtime.ground.dispatch.generic_errors import no_next_method_error
@@ -54,8 +47,7 @@ OPEN = {
 MOP_NAMES = """class-precedence-list class-direct-superclasses class-direct-subclasses class-slots class-direct-slots
 slot-definition-name slot-definition-initargs slot-definition-type slot-definition-initform slot-definition-initfunction
 slot-definition-readers slot-definition-writers slot-definition-allocation generic-function-methods generic-function-name
-generic-function-lambda-list method-specializers method-generic-function method-function finalize-inheritance
-class-finalized-p ensure-class eql-specializer-object"""
+generic-function-lambda-list method-specializers method-generic-function eql-specializer-object"""
 """Names of the package SB-MOP (the metaobject protocol, as far as programs look at classes with it)."""
 
 
@@ -172,7 +164,15 @@ def make_instances_obsolete(class_):
 
 
 def ensure_generic_function(
-    name, *, lambda_list=UNSUPPLIED, method_combination=None, argument_precedence_order=None, documentation=None, **others
+    name,
+    *,
+    lambda_list=UNSUPPLIED,
+    method_combination=None,
+    argument_precedence_order=None,
+    documentation=None,
+    generic_function_class=None,
+    method_class=None,
+    **others,
 ):
     """``cl:ensure-generic-function``"""
     if not isinstance(name, (Symbol, Cons)):
@@ -186,11 +186,17 @@ def ensure_generic_function(
         method_combination=method_combination,
         argument_precedence_order=argument_precedence_order,
         documentation=documentation,
+        generic_function_class=generic_function_class,
+        method_class=method_class,
     )
 
 
 def _need_generic(obj):
-    return obj if isinstance(obj, GenericFunction) else type_error(obj, sym("GENERIC-FUNCTION"))
+    """``obj``, a generic function, or the one that it is for programs, as long as no user has a method on it."""
+    if isinstance(obj, GenericFunction):
+        return obj
+    opening = getattr(getattr(obj, "python", obj), "opening", None)
+    return type_error(obj, sym("GENERIC-FUNCTION")) if opening is None else generics.ensure_generic_function(opening.name)
 
 
 def remove_method(generic_function, method):
@@ -349,25 +355,8 @@ def method_generic_function(method):
     return method.generic_function
 
 
-def method_function(method):
-    return method.function
-
-
 def eql_specializer_object(specializer):
     return specializer.value
-
-
-def finalize_inheritance(class_):
-    return None
-
-
-def class_finalized_p(class_):
-    return True
-
-
-def ensure_class(name, *, direct_superclasses=None, direct_slots=None, **others):
-    """``sb-mop:ensure-class``, without slots in property list form."""
-    return define_class(name, direct_superclasses, direct_slots)
 
 
 def open_functions():

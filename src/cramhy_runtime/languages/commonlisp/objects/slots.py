@@ -18,7 +18,7 @@ from cramhy_runtime.ground.slot_classes import Classes
 from cramhy_runtime.ground.data import UNBOUND, Symbol, boolean, list_from, one, truth
 from cramhy_runtime.ground.packages import is_symbol, sym
 from cramhy_runtime.ground.python_names import python_name
-from .class_objects import ClassSlot, InstanceSlot, StandardObject, effective_slots, find_slot, may_be_unbound
+from .class_objects import InstanceSlot, SlotMember, StandardObject, effective_slots, find_slot, may_be_unbound
 from cramhy_runtime.ground.classes import when_classes_change
 from .classes import class_of
 
@@ -147,19 +147,22 @@ def slot_boundp(object, slot_name):
     attribute = _attribute(object, slot_name)
     if attribute is None:
         return boolean(truth(one(missing_slot(object, slot_name, "SLOT-BOUNDP", "test to see whether slot is bound (SLOT-BOUNDP)"))))
-    return boolean(_bound(object, attribute))
+    return boolean(is_bound(object, attribute))
 
 
-def _bound(obj, attribute):
+def is_bound(obj, attribute):
+    """Whether ``attribute``, which stands for a slot of ``obj``, has a value."""
     update_if_obsolete(obj)
     own = getattr(obj, "__dict__", None)
-    if own is not None and attribute in own and not isinstance(getattr(type(obj), attribute, None), ClassSlot):
+    if own is not None and attribute in own and not isinstance(getattr(type(obj), attribute, None), SlotMember):
         return own[attribute] is not UNBOUND
     for cls in type(obj).__mro__:
         if attribute in vars(cls):
             member = vars(cls)[attribute]
             if isinstance(member, InstanceSlot):
                 return False
+            if hasattr(member, "is_bound"):
+                return member.is_bound(obj)
             if hasattr(member, "value") and hasattr(member, "__set__"):
                 return member.value is not UNBOUND
             try:
@@ -231,7 +234,7 @@ def update_if_obsolete(obj):
     """Bring ``obj`` up to date when its class was defined again since; whether there was something to do."""
     cls = type(obj)
     version = vars(cls).get("lisp_version", 0)
-    if not version:
+    if not version or isinstance(obj, type):
         return False
     own = obj.__dict__
     seen = own.get("lisp_version", 0)

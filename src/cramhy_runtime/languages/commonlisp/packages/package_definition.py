@@ -107,6 +107,8 @@ def define_package(name, options):
     elif package.defined:
         _warn_of_other_place(package)
         _warn_of_differences(package, definition, uses)
+    else:
+        _warn_of_other_place(package)
     with unlocked([package]):
         _fill(package, definition, uses)
     package.defined, package.file = True, _file_of_load()
@@ -122,10 +124,11 @@ def _file_of_load():
 
 
 def _warn_of_other_place(package):
-    """Warn if a file of the user's defines a package of cramhy's libraries anew."""
+    """Warn if a file of the user's defines a package of cramhy's libraries, or of cramhy itself, anew."""
     old, new = package.file, _file_of_load()
-    if old is not None and new is not None and is_library(old) and not is_library(new):
-        warn("The package ~A of ~A is defined anew by ~A, whose definitions count from now on.", package.name, old, new)
+    if new is None or is_library(new) or not (package.built_in if old is None else is_library(old)):
+        return
+    warn("The package ~A of ~A is defined anew by ~A, whose definitions count from now on.", package.name, old or "cramhy itself", new)
 
 
 def _fill(package, definition, uses):

@@ -40,7 +40,7 @@ def print_class(cls, stream):
 
 def print_generic_function(function, stream):
     def contents():
-        output_object(sym("STANDARD-GENERIC-FUNCTION"), stream)
+        output_object(class_name(type(function)), stream)
         stream.write(f" {name_text(function.__lisp_name__)} ({len(function.methods)})")
 
     print_unreadable(function, stream, body=contents)
@@ -55,7 +55,7 @@ def specializer_names(method):
 
 def print_method(method, stream):
     def contents():
-        output_object(sym("STANDARD-METHOD"), stream)
+        output_object(class_name(type(method)), stream)
         if method.generic_function is not None:
             stream.write(f" {name_text(method.generic_function.__lisp_name__)}")
         stream.write(" ")

@@ -126,6 +126,7 @@ class FundamentalOutputStream(FundamentalStream, OutputStream):
     """A user's stream to write to."""
 
     lisp_name = "SB-GRAY::FUNDAMENTAL-OUTPUT-STREAM"
+    of_user = True
 
     @property
     def column(self) -> int:  # type: ignore[override]
@@ -144,6 +145,14 @@ class FundamentalOutputStream(FundamentalStream, OutputStream):
             STREAM_WRITE_CHAR(self, Character(text))
         elif text:
             STREAM_WRITE_STRING(self, text, 0, len(text))
+
+    def write_part(self, text: str, start: int, end: int) -> None:
+        """``stream-write-string`` of the characters ``start`` to ``end``"""
+        STREAM_WRITE_STRING(self, text, start, end)
+
+    def terpri(self) -> None:
+        """``stream-terpri``"""
+        STREAM_TERPRI(self)
 
     def fresh_line(self) -> bool:
         """``stream-fresh-line``"""

@@ -1,21 +1,22 @@
 """More of SB-MOP: what programs ask about classes, slots, methods and generic functions; SB-PCL has the same names.
 
-The protocol cannot be changed by methods on it: classes, slots and dispatch are as they are. Of its functions, users may define methods on
-``validate-superclass``, which programs do to allow what is allowed here anyway. Source: chapters 5 and 6 of the MOP.
+What users may change by methods is in `objects.metaclasses` and `objects.metafunctions`. Source: chapters 5 and 6 of the MOP.
 """
 
 from __future__ import annotations
 
 import sys
 
-from cramhy_runtime.ground.data import list_from, lisp_list, one
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction, all_generic_functions, generic
+from cramhy_runtime.ground.data import boolean, list_from, lisp_list, one
+from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction, all_generic_functions
+from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
 from cramhy_runtime.ground.dispatch.methods import EqlSpecializer
+from cramhy_runtime.ground.keyword_calls import lispify
 from cramhy_runtime.ground.packages import ensure_package, sym
 from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.utilities.wait_queue import need
 
-from ..objects import protocol, slots
+from ..objects import metaclasses, metafunctions
 from ..objects.class_definition import default_initargs
 from ..objects.class_objects import DirectSlot, Slot, SlotDefinition
 from ..objects.classes import ConditionClass, alias_class, class_of
@@ -44,34 +45,14 @@ def class_prototype(class_: Any) -> object:
     return _prototypes[class_]
 
 
-def compute_slots(class_: Any) -> object:
-    """``sb-mop:compute-slots``: the slots of instances of the class, as they are. Methods on it change what programs get that ask."""
-    return protocol.class_slots(class_)
-
-
 def slot_definition_location(slot: Any) -> object:
     """``sb-mop:slot-definition-location``: the name of the Python attribute that holds the slot."""
     return getattr(slot, "attribute", None)
 
 
-def slot_value_using_class(class_: Any, instance: Any, slot: Any) -> object:
-    """``sb-mop:slot-value-using-class``"""
-    return slots.slot_value(instance, slot.name)
-
-
-def set_slot_value_using_class(new: object, class_: Any, instance: Any, slot: Any) -> object:
-    """``(setf sb-mop:slot-value-using-class)``"""
-    return slots.set_slot_value(new, instance, slot.name)
-
-
-def slot_boundp_using_class(class_: Any, instance: Any, slot: Any) -> object:
-    """``sb-mop:slot-boundp-using-class``"""
-    return slots.slot_boundp(instance, slot.name)
-
-
-def slot_makunbound_using_class(class_: Any, instance: Any, slot: Any) -> object:
-    """``sb-mop:slot-makunbound-using-class``"""
-    return slots.slot_makunbound(instance, slot.name)
+def classp(thing: object) -> object:
+    """``sb-pcl:classp``: whether ``thing`` is a class."""
+    return boolean(isinstance(thing, type))
 
 
 def _generic_function(thing: Any) -> GenericFunction:
@@ -119,16 +100,54 @@ def specializer_direct_generic_functions(specializer: Any) -> object:
     )
 
 
-NAMES = """compute-slots
-class-default-initargs class-direct-default-initargs class-prototype slot-definition-location slot-value-using-class
-slot-boundp-using-class slot-makunbound-using-class method-lambda-list generic-function-method-combination
+NAMES = """class-default-initargs class-direct-default-initargs class-prototype slot-definition-location
+method-lambda-list generic-function-method-combination
 generic-function-argument-precedence-order generic-function-declarations intern-eql-specializer specializer-direct-methods
 specializer-direct-generic-functions"""
-OF_COMMON_LISP = """add-method allocate-instance built-in-class class class-name ensure-generic-function generic-function make-instance
+OF_CLASSES = {
+    "validate-superclass": "(class superclass)",
+    "ensure-class-using-class": "(class name &rest initargs &key &allow-other-keys)",
+    "direct-slot-definition-class": "(class &rest initargs &key &allow-other-keys)",
+    "effective-slot-definition-class": "(class &rest initargs &key &allow-other-keys)",
+    "finalize-inheritance": "(class)",
+    "class-finalized-p": "(class)",
+    "compute-class-precedence-list": "(class)",
+    "compute-slots": "(class)",
+    "compute-effective-slot-definition": "(class name direct-slot-definitions)",
+    "compute-default-initargs": "(class)",
+    "slot-value-using-class": "(class instance slot)",
+    "slot-boundp-using-class": "(class instance slot)",
+    "slot-makunbound-using-class": "(class instance slot)",
+}
+"""The functions by which classes of users' metaclasses are made, and their slots reached: their lambda lists."""
+OF_FUNCTIONS = {
+    "compute-discriminating-function": "(generic-function)",
+    "compute-applicable-methods-using-classes": "(generic-function classes)",
+    "compute-effective-method": "(generic-function method-combination methods)",
+    "make-method-lambda": "(generic-function method lambda-expression environment)",
+    "generic-function-method-class": "(generic-function)",
+    "find-method-combination": "(generic-function name options)",
+    "accessor-method-slot-definition": "(method)",
+    "reader-method-class": "(class direct-slot &rest initargs)",
+    "writer-method-class": "(class direct-slot &rest initargs)",
+    "add-dependent": "(metaobject dependent)",
+    "remove-dependent": "(metaobject dependent)",
+    "map-dependents": "(metaobject function)",
+    "update-dependent": "(metaobject dependent &rest initargs)",
+    "add-direct-method": "(specializer method)",
+    "remove-direct-method": "(specializer method)",
+    "add-direct-subclass": "(class subclass)",
+    "remove-direct-subclass": "(class subclass)",
+}
+"""The same for functions, methods and those who are told of changes."""
+PLAIN = """method-function set-funcallable-instance-function extract-lambda-list extract-specializer-names standard-instance-access
+ensure-generic-function-using-class"""
+OF_COMMON_LISP = """add-method allocate-instance built-in-class class class-name compute-applicable-methods ensure-generic-function
+function generic-function make-instance
 method method-combination method-qualifiers remove-method standard-class standard-generic-function standard-method standard-object"""
 CLASSES = """eql-specializer forward-referenced-class funcallable-standard-class funcallable-standard-object metaobject specializer
 slot-definition direct-slot-definition effective-slot-definition standard-slot-definition standard-direct-slot-definition
-standard-effective-slot-definition"""
+standard-effective-slot-definition standard-accessor-method standard-reader-method standard-writer-method"""
 
 
 _SLOT_CLASSES = {
@@ -138,21 +157,39 @@ _SLOT_CLASSES = {
 }
 
 
+def _open(function: Any, name: str, lambda_list: str) -> None:
+    """Let users define methods on ``function``, the function of ``name``."""
+    if not hasattr(function, "opening"):
+        open_to_methods(function, name, lambda_list, *[None] * len(lambda_list.strip("()").partition("&")[0].split()))
+
+
 def define() -> None:
     """Complete SB-MOP, and make SB-PCL of it."""
     this = sys.modules[__name__]
     package = define_face(
-        "SB-MOP", functions={this: NAMES}, generic="compute-slots", imports={"COMMON-LISP": OF_COMMON_LISP}, export=CLASSES
+        "SB-MOP",
+        functions={
+            this: NAMES,
+            metaclasses: f"ensure-class {' '.join(OF_CLASSES)}",
+            metafunctions: f"{PLAIN} {' '.join(OF_FUNCTIONS)}",
+            "funcallable-standard-instance-access": metafunctions.standard_instance_access,
+        },
+        imports={"COMMON-LISP": OF_COMMON_LISP},
+        export=CLASSES,
     )
-    package.intern("SLOT-VALUE-USING-CLASS").setf_function = set_slot_value_using_class
-    validate = generic("SB-MOP::VALIDATE-SUPERCLASS", "(class superclass)")
-    if not validate.methods:
-        validate.method(None, None)(lambda class_, superclass: True)
-    package.export(package.intern("VALIDATE-SUPERCLASS"))
+    for module, table in ((metaclasses, OF_CLASSES), (metafunctions, OF_FUNCTIONS)):
+        for name, lambda_list in table.items():
+            _open(getattr(module, name.replace("-", "_")), f"SB-MOP::{name.upper()}", lambda_list)
+    for name in ("STANDARD-INSTANCE-ACCESS", "FUNCALLABLE-STANDARD-INSTANCE-ACCESS"):
+        package.intern(name).setf_function = metafunctions.set_standard_instance_access
+    _open(metaclasses.set_slot_value_using_class, "(setf SB-MOP::SLOT-VALUE-USING-CLASS)", "(new-value class instance slot)")
     for cls, names in _SLOT_CLASSES.items():
         for name in names.split():
             alias_class(package.intern(name), cls)
     pcl = ensure_package("SB-PCL")
+    symbol = pcl.intern("CLASSP")
+    symbol.function = lispify(classp)
+    pcl.export(symbol)
     define_own_type(sym("SB-PCL::CONDITION-CLASS"), lambda thing: isinstance(thing, type) and class_of(thing) is ConditionClass)
     for symbol in list(package.external.values()):
         name = getattr(symbol, "name", None)

@@ -69,6 +69,8 @@ class OutputStream(Stream):
     """
 
     is_output = True
+    of_user = False
+    """Whether the stream is of a class of a user's, who may want to know what was written how."""
     column = 0
     line_length = None
 

@@ -64,10 +64,15 @@ def _characters(vector):
 def write_string(string, stream=None, *, start=0, end=None):
     """``write-string``: the characters ``start`` to ``end`` of ``string``. Returns ``string``."""
     text = string if string.__class__ is str else _text(string)
+    if not isinstance(stream, OutputStream):
+        stream = output_stream(stream)
     if start or end is not None:
         start, end = bounds(start, end, len(text))
+        if stream.of_user:
+            stream.write_part(text, start, end)
+            return string
         text = text[start:end]
-    (stream if isinstance(stream, OutputStream) else output_stream(stream)).write(text)
+    stream.write(text)
     return string
 
 
@@ -75,7 +80,12 @@ def write_line(string, stream=None, *, start=0, end=None):
     """``write-line``: as ``write-string``, and a newline."""
     text = _text(string)
     start, end = bounds(start, end, len(text))
-    output_stream(stream).write(text[start:end] + "\n")
+    stream = output_stream(stream)
+    if stream.of_user:
+        stream.write_part(text, start, end)
+        stream.write("\n")
+    else:
+        stream.write(text[start:end] + "\n")
     return string
 
 
@@ -109,7 +119,11 @@ def write_sequence(sequence, stream, *, start=0, end=None):
 
 
 def terpri(stream=None):
-    (stream if isinstance(stream, OutputStream) else output_stream(stream)).write("\n")
+    stream = stream if isinstance(stream, OutputStream) else output_stream(stream)
+    if stream.of_user:
+        stream.terpri()
+    else:
+        stream.write("\n")
 
 
 def fresh_line(stream=None):

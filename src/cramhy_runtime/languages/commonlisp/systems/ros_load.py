@@ -36,13 +36,13 @@ def load_system(package, system=None, force=None):
 def check_package(name, system):
     """An error if there is no ROS package ``name``. cramhy's own systems are packages, too, and so are folders with a system in them.
 
-    Nothing is checked for a ``system`` that is not there: whoever looks for it tells that.
+    Of a ``system`` that is not there whoever looks for it tells, if the package is there.
     """
     file = systems.find_asd(system)
     system_name = name.lower().replace("_", "-")
     if systems.is_provided(name.lower()) or systems.is_provided(system_name) or f"{system_name}.asd" in systems.libraries():
         return
-    if file is None and not systems.is_provided(system) or file is not None and name in [folder.name for folder in file.parents]:
+    if file is not None and name in [folder.name for folder in file.parents]:
         return
     if systems.find_package_folder(name) is not None or definition_files.package_folder(name) is not None:
         return
@@ -59,7 +59,9 @@ def _not_found(name, system, home):
         *dict(definition_files.packages()),
     }
     near = near_names(name, known)
-    hint = f"The system {system} is in the package {home}." if home else f"Did you mean {' or '.join(near)}?" if near else None
+    hint = f"No package {name} is below {definition_files.where_searched()}."
+    if home or near:
+        hint = f"The system {system} is in the package {home}." if home else f"Did you mean {' or '.join(near)}?"
     error(types.SimpleError(NOT_FOUND, name, name), hint=hint)
 
 

@@ -432,6 +432,8 @@ def find_system(name, required_by=None):
 def _why_missing(name, path, required_by):
     near = near_names(name, known_systems())
     hint = f" Did you mean {' or '.join(near)}?" if near else ""
+    if required_by in systems and systems[required_by].file is not None:
+        hint += f"\n{required_by} is defined in {systems[required_by].file}."
     if path is not None:
         there = ", ".join(sorted(system.name for system in systems.values() if system.file == really_at(path))) or "no system"
         return f"{path} defines {there}.{hint}"
@@ -439,7 +441,7 @@ def _why_missing(name, path, required_by):
         return f"{name} cannot be had in cramhy: {NOT_TO_BE_HAD[name]}."
     of_messages = missing_messages.advice(name, missing_messages.wanted_by(required_by, files_of))
     if of_messages is not None:
-        return of_messages + hint.replace(" ", "\n", 1)
+        return of_messages + (hint if hint.startswith("\n") else hint.replace(" ", "\n", 1))
     where = ", ".join(str(folder) for folder in [*central_registry(), *search_folders.search_folders()])
     return f"There is no file {name.partition('/')[0]}.asd below {where}.{hint}"
 

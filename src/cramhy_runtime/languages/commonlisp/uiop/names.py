@@ -15,7 +15,7 @@ from ..pathnames.pathname_objects import RELATIVE, WILD, WILD_INFERIORS, Pathnam
 from ..pathnames.pathnames import make_pathname
 from ..sbcl.atomics import define as define_macro
 from ..streams import streams as standard_streams
-from . import configuration, files, macros, packages, pathnames, processes, streams, utilities
+from . import building, configuration, files, macros, packages, pathnames, processes, settings, streams, utilities
 
 
 def call_with_muffled_conditions(thunk: Any, conditions: Any) -> Any:
@@ -73,6 +73,10 @@ _NAMED = {
     "version-deprecation": lambda version, *levels: None,
     "call-with-muffled-conditions": call_with_muffled_conditions,
     "compile-file-type": lambda: "fasl",
+    "compile-file*": building.compile_file_or_complain,
+    "load*": building.load_file_or_stream,
+    "timestamp*<": settings.times_rise,
+    **{name: building.not_here(name) for name in building.NOT_HERE},
     **dict.fromkeys(
         """call-image-restore-hook call-image-dump-hook register-image-restore-hook register-image-dump-hook setup-temporary-directory
         setup-stdin setup-stdout setup-stderr clear-configuration register-clear-configuration-hook proclaim-optimization-settings
@@ -82,7 +86,7 @@ _NAMED = {
     ),
 }
 """Functions whose names Python does not take, and those that stand for several."""
-_CONDITIONS = "subprocess-error parameter-error not-implemented-error process-info"
+_CONDITIONS = "subprocess-error parameter-error not-implemented-error process-info invalid-configuration " + building.CONDITIONS
 _CALLS = "package-defined"
 _WILD = {
     "*wild*": WILD,
@@ -112,6 +116,8 @@ def complete() -> None:
             **_functions(processes, processes.FUNCTIONS),
             **_functions(packages, packages.FUNCTIONS),
             **_functions(configuration, configuration.FUNCTIONS),
+            **_functions(building, building.FUNCTIONS),
+            **_functions(settings, settings.FUNCTIONS),
             **_NAMED,
         },
         variables={
@@ -142,6 +148,20 @@ def complete() -> None:
             "*unspecific-pathname-type*": keyword("UNSPECIFIC"),
             "*output-translation-function*": sym("IDENTITY"),
             "*resolve-symlinks*": True,
+            "*base-build-directory*": None,
+            "*clear-configuration-hook*": None,
+            "*encoding-detection-hook*": sym("UIOP::ALWAYS-DEFAULT-ENCODING"),
+            "*encoding-external-format-hook*": sym("UIOP::DEFAULT-ENCODING-EXTERNAL-FORMAT"),
+            "*here-directory*": None,
+            "*ignored-configuration-form*": None,
+            "*image-postlude*": None,
+            "*image-prelude*": None,
+            "*previous-optimization-settings*": None,
+            "*uiop-debug-utility*": None,
+            "*warnings-file-type*": None,
+            "+character-types+": sym("VECTOR").function(sym("BASE-CHAR"), sym("CHARACTER")),
+            "+max-character-type-index+": 1,
+            "+non-base-chars-exist-p+": True,
             "+cr+": "\r",
             "+lf+": "\n",
             "+crlf+": "\r\n",
@@ -150,7 +170,8 @@ def complete() -> None:
     )
     define_face("UIOP", functions={"package-defined": packages.define_package}, internal=_CALLS)
     home = find_package_or_error("UIOP")
-    for name, expand in macros.MACROS.items():
+    building.define_types()
+    for name, expand in {**macros.MACROS, **building.MACROS}.items():
         symbol = home.intern(name)
         home.export(symbol)
         define_macro(symbol, expand)

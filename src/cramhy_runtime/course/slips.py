@@ -1,0 +1,173 @@
+"""What the guide says of a slip: a line as Python writes it, parentheses for brackets, a form that needs another one which was passed over.
+
+Beginners come from Python, and they skip forms with ``:next``. The guide says one sentence below the answer of the prompt. It has the words
+of the student: after ``def area(x, y):`` a Hy learner reads ``(defn area [x y] ...)``.
+"""
+
+from __future__ import annotations
+
+import re
+
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+NAMED = {"lisp": "Lisp", "hy": "Hy"}
+_OPERATORS = r"[-+*/]"
+_OPERAND = r"[\w.]+"
+_INFIX = re.compile(rf"{_OPERAND}(?:\s*({_OPERATORS})\s*{_OPERAND})(?:\s*\1\s*{_OPERAND})*")
+_INFIX_CALL = re.compile(rf"\(({_OPERAND})\s+({_OPERATORS})\s+({_OPERAND})((?:\s+\2\s+{_OPERAND})*)\)")
+_NOT_CLOSED = re.compile(r"(?:defun|defn|defvar|defparameter|setf|setq|setv|def-fact-group|top-level|sleep)\s+\S.*", re.S)
+_ROUND = re.compile(r"\((?P<head>defn\s+\S+|for|let|lfor)\s+\((?P<inside>[^()]*(?:\([^()]*\)[^()]*)*)\)", re.S)
+
+
+def _arguments(text):
+    return " ".join(part.strip() for part in text.split(",") if part.strip())
+
+
+def _variable(name, language):
+    return f"*{name.strip('*')}*" if language == "lisp" else name
+
+
+def _import(found, language):
+    if language == "lisp":
+        return "It loads no modules of Python; the functions that a page needs are loaded by its forms."
+    names = f" [{_arguments(found['names'])}]" if found["names"] else ""
+    return f"(import {found['of'] or found['module']}{names})"
+
+
+def _def(found, language):
+    head, around = ("defun", "()") if language == "lisp" else ("defn", "[]")
+    return f"({head} {found['name']} {around[0]}{_arguments(found['arguments'])}{around[1]} ...)"
+
+
+def _for(found, language):
+    each, of = found["each"], found["of"].strip()
+    times = re.fullmatch(r"range\s*\(([^,()]*)\)", of)
+    if language == "hy":
+        return f"(for [{each} {f'(range {times[1].strip()})' if times else of}] ...)"
+    return f"(dotimes ({each} {times[1].strip()}) ...)" if times else f"(dolist ({each} {of}) ...)"
+
+
+def _condition(text):
+    found = re.fullmatch(r"(\S+)\s*(<=|>=|==|<|>)\s*(\S+)", text.strip())
+    return f"({'=' if found[2] == '==' else found[2]} {found[1]} {found[3]})" if found else text.strip()
+
+
+def _while(found, language):
+    condition = _condition(found["condition"])
+    return f"(loop while {condition} do ...)" if language == "lisp" else f"(while {condition} ...)"
+
+
+def _assignment(found, language):
+    name, value = _variable(found["name"], language), found["value"].strip()
+    return f"({'defvar' if language == 'lisp' else 'setv'} {name} {value})"
+
+
+_LIKE_PYTHON = [
+    (re.compile(r"(?:from\s+(?P<of>[\w.]+)\s+)?import\s+(?:(?<=import )(?P<module>[\w.]+)(?!.*,)|)(?P<names>.*)"), _import),
+    (re.compile(r"def\s+(?P<name>[\w-]+)\s*\((?P<arguments>[^()]*)\)\s*:?.*"), _def),
+    (re.compile(r"for\s+(?P<each>\w+)\s+in\s+(?P<of>[^:]*[^:\s])\s*:?.*"), _for),
+    (re.compile(r"while\s+(?P<condition>[^:]+):.*"), _while),
+    (re.compile(r"(?:if|elif)\s+(?P<condition>[^:]+):.*"), lambda found, language: f"(if {_condition(found['condition'])} this that)"),
+    (re.compile(r"(?P<name>[A-Za-z_*][\w*-]*)\s*=\s*(?P<value>[^=\s].*)"), _assignment),
+    (
+        re.compile(r"(?P<name>[A-Za-z][\w.-]*)\((?P<arguments>[^()]*)\)"),
+        lambda found, language: f"({' '.join([found['name'], *found['arguments'].replace(',', ' ').split()])})",
+    ),
+]
+"""How a line of Python looks, and what stands for it."""
+
+
+def of_line(text: str, language: str) -> str | None:
+    """What to say of a line that is written as in Python, or that lacks its parentheses; ``None`` of any other text."""
+    line = text.strip()
+    if not line or line.startswith(("(", ";", ":", "[", '"', "'")):
+        return None
+    name = NAMED[language]
+    if re.fullmatch(r"return\b.*", line):
+        return f"; {name} needs no return here: the last form of a function is its value."
+    if re.fullmatch(r"else\s*:.*", line):
+        return f"; In {name} the other case stands in the form, too: (if condition this that)"
+    infix = _INFIX.fullmatch(line)
+    if infix and not re.fullmatch(_OPERAND, line) and not re.fullmatch(r"[A-Za-z][\w.]*(?:-[\w.]+)+", line):
+        operands = re.split(rf"\s*{re.escape(infix[1])}\s*", line)
+        return f"; The name of a function comes first, in parentheses: ({infix[1]} {' '.join(operands)})"
+    for pattern, wording in _LIKE_PYTHON:
+        found = pattern.fullmatch(line)
+        if found:
+            written = wording(found, language)
+            return f"; In {name} this is written {written}" if written.startswith("(") else f"; This is not {name}. {written}"
+    if _NOT_CLOSED.fullmatch(line):
+        return f"; A form has parentheses around it: ({line})"
+    return None
+
+
+def of_failed_form(text: str, language: str) -> str | None:
+    """What to say of a form in parentheses that has failed, if it is written as in another language; else ``None``."""
+    if language != "hy":
+        return None
+    found = _INFIX_CALL.search(text)
+    if found:
+        more = "".join(re.findall(rf"\s{_OPERAND}", found[4]))
+        return f"; The name of the function comes first: ({found[2]} {found[1]} {found[3]}{more})"
+    found = _ROUND.search(text)
+    if found:
+        head, inside = " ".join(found["head"].split()), " ".join(found["inside"].split())
+        return f"; {'The arguments' if head.startswith('defn') else 'The names and values'} stand in brackets: ({head} [{inside}] ...)"
+    return None
+
+
+# ---------------------------------------------------------------------------------------------------------- what was passed over
+
+_DEFINES = re.compile(
+    r"\((?:defn|defun|defvar|defparameter|def-process-module|def-cram-function|define-condition|define-test|defclass(?:\s+\[[^\]]*\])?)"
+    r"\s+([^\s()\[\]]+)"
+)
+_LOADS = re.compile(r"\s*\((?:import|require|in-package|lisp-package|ros-load:load-system|load|defpackage)\s")
+
+
+class Form(NamedTuple):
+    """A form of a page: its text, and the number of its step."""
+
+    text: str
+    step: int
+
+
+def names(form: str) -> set[str]:
+    """The names, in lower case, that a form of a page defines."""
+    found = set(_DEFINES.findall(form))
+    if re.match(r"\(setv\s", form):
+        found.update(re.findall(r"\(setv\s+(\S+)", form))
+    if re.match(r"\(import\s", form):
+        found.update(re.findall(r":as\s+([^\s()]+)", form))
+        for group in re.findall(r"\[([^\]]*)\]", form):
+            found.update(group.split())
+    return {name.lower().replace("_", "-") for name in found}
+
+
+def of_missing(name: str, forms: Iterable[Form], here: int, page: int) -> str | None:
+    """What to say when ``name`` is not defined, and ``forms`` of the page were not typed; ``None`` if they have nothing to do with it.
+
+    here: the number of the step that is shown. page: the number of the page.
+    """
+    forms = list(forms)
+    wanted = name.lower().replace("_", "-")
+    for form in forms:
+        if wanted in names(form.text):
+            return _lack(form, here, page, f"{wanted} is defined by")
+    for form in forms:
+        if _LOADS.match(form.text):
+            return _lack(form, here, page, "What this page needs is loaded by")
+    return None
+
+
+def _lack(form, here, page, what):
+    shown = f"{form.text.splitlines()[0]}{' ...' if chr(10) in form.text else ''}"
+    if form.step == here:
+        return f"; {what} a form of this step that you have not typed yet: {shown}"
+    return f"; {what} a form that you have not typed: {shown} :page {page} {form.step} leads back to it."
+
+
+__all__ = ["Form", "names", "of_failed_form", "of_line", "of_missing"]
