@@ -10,11 +10,12 @@ where it is asked things and where its turtle drives (`performing`, `recording`)
 grader, which draws the run again (`replay`) and compares (`judging`). So the expected answers are never where the submission is, and what
 it prints is not looked at.
 
-Where the parts are: ``exercise``, ``expressions``, ``paths``, ``troubles`` (what an exercise says) · ``jobs``, ``processes``,
-``watcher``, ``messages``, ``fork_server``, ``sandbox`` (the process of a submission), ``here`` (without one), ``in_session`` (in the
-session that is there), ``noticing`` (what a plan does there on its way) · ``performing``, ``recording``, ``uses``, ``tests_inside`` (what happens in it) · ``schema``, ``told`` (what it
-says) · ``allowances``, ``replay``, ``drawings``, ``judging``, ``forms`` (the verdict) · ``sentences``, ``harmless`` (its words) ·
-``grader``, ``report``, ``formats`` (points and words) · ``similar`` (submissions that are alike) · ``problems`` (errors of exercises).
+Where the parts are: ``exercise``, ``expressions``, ``paths``, ``troubles`` (what an exercise says) · ``jobs``, ``processes``, ``watcher``,
+``messages``, ``fork_server``, ``sandbox`` (the process of a submission), ``here`` (without one), ``in_session`` (in the session that is
+there), ``noticing`` (what a plan does there on its way) · ``performing``, ``recording``, ``uses``, ``tests_inside`` (what happens in it) ·
+``schema``, ``told`` (what it says) · ``allowances``, ``replay``, ``drawings``, ``judging``, ``forms`` (the verdict) · ``sentences``,
+``harmless`` (its words) · ``grader``, ``report``, ``formats`` (points and words) · ``similar`` (submissions that are alike) · ``problems``
+(errors of exercises).
 """
 
 from .grader import Grader, grade
