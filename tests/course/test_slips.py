@@ -9,6 +9,9 @@ from cramhy_runtime.course.slips import Form, names, of_failed_form, of_line, of
 LINES = {
     "import math": ("In Hy this is written (import math)", "This is not Lisp. It loads no modules of Python"),
     "from math import pi, sin": ("In Hy this is written (import math [pi sin])", "This is not Lisp."),
+    "from math import pi": ("In Hy this is written (import math [pi])", "This is not Lisp."),
+    "import math, random": ("(import math random)", "This is not Lisp."),
+    "(defun f (x y) (* 2 + x y))": ("Each + has parentheses of its own: (* 2 (+ x y))", "Each + has parentheses of its own: (* 2 (+ x y))"),
     "def area(x, y):": ("In Hy this is written (defn area [x y] ...)", "In Lisp this is written (defun area (x y) ...)"),
     "def area(x): return x * x": ("(defn area [x] ...)", "(defun area (x) ...)"),
     "for i in range(4):": ("(for [i (range 4)] ...)", "(dotimes (i 4) ...)"),

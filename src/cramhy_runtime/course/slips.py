@@ -18,6 +18,9 @@ _OPERATORS = r"[-+*/]"
 _OPERAND = r"[\w.]+"
 _INFIX = re.compile(rf"{_OPERAND}(?:\s*({_OPERATORS})\s*{_OPERAND})(?:\s*\1\s*{_OPERAND})*")
 _INFIX_CALL = re.compile(rf"\(({_OPERAND})\s+({_OPERATORS})\s+({_OPERAND})((?:\s+\2\s+{_OPERAND})*)\)")
+_INFIX_INSIDE = re.compile(
+    rf"\((?P<head>{_OPERATORS})(?P<before>(?:\s+{_OPERAND})+)\s+(?P<operator>{_OPERATORS})(?P<behind>(?:\s+{_OPERAND})+)\)"
+)
 _NOT_CLOSED = re.compile(r"(?:defun|defn|defvar|defparameter|setf|setq|setv|def-fact-group|top-level|sleep)\s+\S.*", re.S)
 _ROUND = re.compile(r"\((?P<head>defn\s+\S+|for|let|lfor)\s+\((?P<inside>[^()]*(?:\([^()]*\)[^()]*)*)\)", re.S)
 
@@ -33,8 +36,8 @@ def _variable(name, language):
 def _import(found, language):
     if language == "lisp":
         return "It loads no modules of Python; the functions that a page needs are loaded by its forms."
-    names = f" [{_arguments(found['names'])}]" if found["names"] else ""
-    return f"(import {found['of'] or found['module']}{names})"
+    modules, names = found["modules"], found["names"]
+    return f"(import {_arguments(modules)}{f' [{_arguments(names)}]' if names else ''})"
 
 
 def _def(found, language):
@@ -66,7 +69,8 @@ def _assignment(found, language):
 
 
 _LIKE_PYTHON = [
-    (re.compile(r"(?:from\s+(?P<of>[\w.]+)\s+)?import\s+(?:(?<=import )(?P<module>[\w.]+)(?!.*,)|)(?P<names>.*)"), _import),
+    (re.compile(r"(?:from\s+(?P<modules>[\w.]+)\s+)import\s+(?P<names>.+)"), _import),
+    (re.compile(r"import\s+(?P<modules>[\w., ]+)(?P<names>)"), _import),
     (re.compile(r"def\s+(?P<name>[\w-]+)\s*\((?P<arguments>[^()]*)\)\s*:?.*"), _def),
     (re.compile(r"for\s+(?P<each>\w+)\s+in\s+(?P<of>[^:]*[^:\s])\s*:?.*"), _for),
     (re.compile(r"while\s+(?P<condition>[^:]+):.*"), _while),
@@ -81,8 +85,12 @@ _LIKE_PYTHON = [
 
 
 def of_line(text: str, language: str) -> str | None:
-    """What to say of a line that is written as in Python, or that lacks its parentheses; ``None`` of any other text."""
+    """What to say of a line that is written as in Python, or lacks parentheses, or has an operator among arguments; else ``None``."""
     line = text.strip()
+    found = _INFIX_INSIDE.search(line)
+    if found:
+        inside = f"({found['operator']}{' '.join(['', *found['behind'].split()])})"
+        return f"; Each {found['operator']} has parentheses of its own: ({found['head']} {' '.join(found['before'].split())} {inside})"
     if not line or line.startswith(("(", ";", ":", "[", '"', "'")):
         return None
     name = NAMED[language]
