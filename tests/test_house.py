@@ -498,3 +498,18 @@ def test_test_modules_outside_of_packages_have_names_of_their_own():
 def test_what_make_test_leaves_out_is_there():
     lines = [line for line in (ROOT / "tests/long_tests.txt").read_text().splitlines() if not line.startswith("#")]
     assert [line for line in lines if not list((ROOT / "tests").glob(line.partition("::")[0].split("*")[0] + "*"))] == []
+
+
+SINGLES = re.compile(r"single[-_]?float|new_single\b", re.I)
+NAMED_ONLY = {"floats.py": "the kinds of floats", "packages.py": "the names that COMMON-LISP exports"}
+
+
+def test_one_file_below_languages_knows_single_floats():
+    below = [room for floor in FLOORS[: FLOORS.index(["languages"])] for room in floor]
+    paths = [path for room in below for path in (SOURCE / room).rglob("*.py")] + [SOURCE / f"{room}.py" for room in below]
+    found = {path.relative_to(SOURCE).as_posix() for path in paths if path.exists() and SINGLES.search(path.read_text(encoding="utf-8"))}
+    assert found == {f"ground/{name}" for name in NAMED_ONLY}
+    listed = ast.parse((SOURCE / "ground" / "packages.py").read_text(encoding="utf-8"))
+    assert not [
+        name for name in ast.walk(listed) if isinstance(name, ast.Name | ast.alias) and SINGLES.search(getattr(name, "id", "") or name.name)
+    ]

@@ -137,3 +137,23 @@ def test_what_is_merely_large_or_circular_has_its_value(session, form):
     start = time.perf_counter()
     assert prin1_to_string(all_values(session.evaluate_text(form)[0])[0]) == ANSWERS[form]
     assert time.perf_counter() - start < MOST_SECONDS
+
+
+@pytest.mark.parametrize(
+    "form, value",
+    [
+        ("(macrolet ((m (&rest r) (declare (ignore r)) 2)) (m . #1=(a . #1#)))", 2),
+        ("(macrolet ((m (x &rest r) (declare (ignore r)) `(length ',(list x)))) (m . #1=(a . #1#)))", 1),
+        ("(let ((y 3)) (macrolet ((m (x) (declare (ignore x)) '(+ 1 2))) (+ y (m #1=(a b . #1#)))))", 6),
+        ("(flet ((f (x) (macrolet ((m (z) `(list ',(car z)))) (+ x (length (m #1=(q . #1#))))))) (f 5))", 6),
+        ("(macrolet ((m (x) (declare (ignore x)) 4)) (m #1=(n (m #1#))))", 4),
+    ],
+)
+def test_a_call_of_a_local_macro_may_contain_itself(session, form, value):
+    assert session.evaluate_text(form) == [value]
+
+
+def test_what_a_local_macro_makes_may_not_contain_itself(session):
+    session.evaluate_text("(defvar *round* (let ((l (list 'progn 1))) (setf (cddr l) (list l)) l))")
+    form = "(handler-case (eval '(macrolet ((m (x) (declare (ignore x)) *round*)) (m #1=(a . #1#)))) (error (e) (princ-to-string e)))"
+    assert session.evaluate_text(form) == [CIRCULAR]

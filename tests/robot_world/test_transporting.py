@@ -428,6 +428,15 @@ def test_what_is_held_or_lies_in_a_drawer_or_stands_apart_is_not_put_aside(ask):
     assert ask(f"(let ((pr2-fd-plans::*wanted* '(beside))) {names})") == "NIL"
 
 
+def test_what_was_found_for_arms_is_kept_by_arm_and_place(ask):
+    """CRAM's generate-training-data makes such a table anew."""
+    table = """(let ((table (make-hash-table :test 'cram-pr2-projection::arm-poses-equal-accurate)))
+      (setf (gethash (list :left (at 1 2 3)) table) 'found)
+      (list (gethash (list :left (at 1.0000001d0 2 3)) table) (gethash (list :right (at 1 2 3)) table) (gethash (list :left (at 1 2 3.1)) table)))"""
+    assert ask(table) == "(FOUND NIL NIL)"
+    assert ask("(hash-table-test pr2-proj::*ik-solution-cache*)") == "CRAM-PR2-PROJECTION::ARM-POSES-EQUAL-ACCURATE"
+
+
 def let_fall(ask):
     """Deliver a bottle to a place in the air, before the counter; what came of it."""
     spawn(ask, "bottle", "bottle", 1.42, 0.7)

@@ -46,3 +46,15 @@
 
 (demo-hard-coded)
 ;=> (?s)manipulation_pose_unreachable: .*0\.6000000.* is unreachable for EE\.
+
+(list (desig:desig-prop-value (pose-list->desig '((1 2 3) (0 0 0 1))) :pose)
+      (funcall (make-restricted-area-cost-function) 0.5 0.0)
+      (funcall (make-restricted-area-cost-function) 1.5 0.0)
+      (costmap:costmap-generator-name->score 'restricted-area))
+;=> \(#<CL-TRANSFORMS-STAMPED:POSE-STAMPED FRAME-ID: "map", .*\(1\.0d0 2\.0d0 3\.0d0\).*>> 1\.0 0\.0 5\)
+
+(generate-training-data)
+;=> NIL
+
+(mapcar #'btr:name (btr:objects btr:*current-bullet-world*))
+;=> \(:FLOOR :KITCHEN CRAM-PR2-DESCRIPTION:PR2\)

@@ -5,7 +5,18 @@
 (defvar *torso-step* 0.01
   "How far apart the heights of the torso are from which an arm tries to reach, in metres.")
 
-(defvar *ik-solution-cache* (make-hash-table :test 'equal)
+(defun arm-poses-equal-accurate (one other)
+  "Whether two lists (ARM POSE) mean the same: the same arm, and poses less than a micrometre and 1e-5 radians apart."
+  (and (eql (first one) (first other))
+       (cram-tf:poses-equal-p (second one) (second other) 1.0d-6 1.0d-5)))
+
+(defun arm-pose-hash-code (arm-and-pose)
+  "A number that is the same for lists (ARM POSE) that are `arm-poses-equal-accurate'."
+  (sxhash (first arm-and-pose)))
+
+(sb-ext:define-hash-table-test arm-poses-equal-accurate arm-pose-hash-code)
+
+(defvar *ik-solution-cache* (make-hash-table :test 'arm-poses-equal-accurate)
   "For programs that clear it: what was computed for arms is remembered by what computes it.")
 
 (defvar *frames-follow* t

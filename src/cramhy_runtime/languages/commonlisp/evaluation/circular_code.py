@@ -11,7 +11,7 @@ from cramhy_runtime.ground.conditions import CompileError, error
 from cramhy_runtime.ground.data import Cons, Symbol
 from cramhy_runtime.ground.packages import sym
 
-QUOTE = sym("QUOTE")
+QUOTE, MACROLET = sym("QUOTE"), sym("MACROLET")
 _OPEN, _DONE = 1, 2
 _MANY = 10_000  # conses: more than most forms have, fewer than one would wait for
 
@@ -26,7 +26,8 @@ def refuse_circular_code(form, place=lambda part: None):
         return False
     if _circle(form, _is_quoted) is None:
         return False
-    part = _circle(form, lambda cell: _is_quoted(cell) or _calls_user_macro(cell))
+    local = set()
+    part = _circle(form, lambda cell: _is_quoted(cell) or _calls_user_macro(cell) or _calls_local_macro(cell, local))
     if part is None:
         return True
     return error(CompileError("The form contains itself. Only a quoted list may be circular.", position=place(part) or place(form)))
@@ -38,6 +39,18 @@ def _is_quoted(cell):
 
 def _calls_user_macro(cell):
     return isinstance(cell.car, Symbol) and cell.car.macro is not None and not (cell.car.package and cell.car.package.built_in)
+
+
+def _calls_local_macro(cell, local):
+    """Whether ``cell`` is a call of one of the macros ``local``; those of a ``macrolet`` form come to them when the walk reaches it."""
+    if cell.car is MACROLET and cell.cdr.__class__ is Cons:
+        definitions, seen = cell.cdr.car, set()
+        while definitions.__class__ is Cons and id(definitions) not in seen:
+            seen.add(id(definitions))
+            if definitions.car.__class__ is Cons:
+                local.add(definitions.car.car)
+            definitions = definitions.cdr
+    return cell.car.__class__ is Symbol and cell.car in local
 
 
 def _circle(form, is_opaque):

@@ -15,6 +15,7 @@ from cramhy_runtime.ground.printing import princ_to_string
 from cramhy_runtime.kernel.typing_names import Any, NoReturn
 
 from ..format.format import format_
+from ..objects.classes import qualified
 from ..systems.program_files import compile_file, load
 from ..types.types import define_own_type
 from . import utilities
@@ -37,7 +38,8 @@ NOT_HERE = {
 """Functions that cannot be had, and why."""
 IGNORE, WARN, ERROR = keyword("IGNORE"), keyword("WARN"), keyword("ERROR")
 WARNINGS_FILES = {
-    "ACL": "allegro-warnings",
+    "ALLEGRO": "allegro-warnings",
+    "CLOZURE": "ccl-warnings",
     "CCL": "ccl-warnings",
     "CLISP": "clisp-warnings",
     "SBCL": "sbcl-warnings",
@@ -89,7 +91,8 @@ class DeprecatedFunction(Condition):
     name: Any = None
 
     def report(self) -> str:
-        return f"Using deprecated function {princ_to_string(self.name)} -- please update your code to use a newer API."
+        kind = self.lisp_name.partition("::")[2]
+        return f"{kind}: Using deprecated function {qualified(self.name)} -- please update your code to use a newer API."
 
 
 class DeprecatedFunctionStyleWarning(DeprecatedFunction, StyleWarning):

@@ -169,7 +169,7 @@ def _joined(parts: list[Any], first: Any, ensure_directory: Any, wilden: Any) ->
 
 def resolve_location(x: Any, *, ensure_directory: Any = None, wilden: Any = None, directory: Any = None) -> Any:
     """``uiop:resolve-location``: the pathname that a location of ASDF's settings means: a path, a keyword, or a list of parts."""
-    if x is True or x is None or configuration.location_function_p(x):
+    if x is None or configuration.location_function_p(x):
         return x
     return resolve_absolute_location(x, ensure_directory=True if truth(ensure_directory) else directory, wilden=wilden)
 
@@ -276,7 +276,7 @@ def package_definition_form(
 
 def reify_package(package: Any, package_context: Any = None) -> Any:
     """``uiop:reify-package``: what stands for a package in a form: T for the one of the context, nil, or the name."""
-    if package_context is not None and package is package_context:
+    if package is package_context:
         return True
     return package.name if isinstance(package, Package) else package
 
@@ -307,7 +307,7 @@ def parse_define_package_form(package: Any, clauses: Any) -> Any:
                 found.setdefault(name, []).extend(python_list(clause.cdr))
         else:
             error(SimpleError("unrecognized define-package keyword ~S", clause.car))
-    if "USE" not in found and "MIX" not in found:
+    if "USE" not in found:
         found["USE"] = [keyword("COMMON-LISP")]
     if "RECYCLE" not in found:
         found["RECYCLE"] = [package, *found.get("NICKNAMES", ())]
@@ -324,8 +324,6 @@ def parse_define_package_form(package: Any, clauses: Any) -> Any:
 
 def make_pathname_component_logical(x: Any) -> Any:
     """``uiop:make-pathname-component-logical``: a part of a pathname as a logical pathname has it; nil for :unspecific."""
-    if isinstance(x, Cons):
-        return list_from([make_pathname_component_logical(part) for part in python_list(x)])
     return None if x is keyword("UNSPECIFIC") else x
 
 
