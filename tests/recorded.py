@@ -112,7 +112,7 @@ RECORDINGS = [
     Recording(TESTS / "libraries" / "uiop.txt", (*SBCL, "record.lisp", "uiop"), comments=True),
     Recording(
         TESTS / "libraries" / "contributions.txt",
-        (*SBCL, "record.lisp", "sb-bsd-sockets", "sb-rotate-byte", "sb-rt", "sb-posix"),
+        (*SBCL, "record.lisp", "sb-bsd-sockets", "sb-rotate-byte", "sb-rt", "sb-posix", "sb-cltl2"),
         comments=True,
     ),
 ]

@@ -57,7 +57,6 @@ preferred: set = per_image(set())
 chosen: dict = per_image({})
 """Name of a system that cramhy contains, too → the ``.asd`` file that the user has loaded, or has put into the central registry."""
 NOT_TO_BE_HAD = {
-    "sb-cltl2": "it is part of SBCL and asks its compiler, which is another here",
     "usocket": "it opens sockets by functions of the system; Python's socket module does its work",
     "osicat": "it calls functions of C, which cramhy cannot; Python's os module does its work",
     "gsll": "it calls the GNU Scientific Library; cram-math, and numpy by (py:import numpy), do its work",
@@ -205,6 +204,7 @@ LIBRARY_PACKAGES = {
     "SB-RT": "sb-rt",
     "SB-CONCURRENCY": "sb-concurrency",
     "SB-QUEUE": "sb-queue",
+    "SB-CLTL2": "sb-cltl2",
     "SB-ROTATE-BYTE": "sb-rotate-byte",
     "FIVEAM": "fiveam",
     "5AM": "fiveam",
