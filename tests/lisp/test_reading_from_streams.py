@@ -145,6 +145,9 @@ def test_a_slot_of_a_users_stream_may_have_any_name(session, slot):
 
 WRITTEN = {
     '(write-string "hello" o :start 1 :end 4)': '((:STRING "hello" 1 4))',
+    '(write-string "a" o)': '((:STRING "a" 0 1))',
+    '(write-string "" o)': '((:STRING "" 0 0))',
+    '(write-line "" o)': '((:STRING "" 0 0) (:CHAR #\\Newline))',
     '(write-line "hello" o)': '((:STRING "hello" 0 5) (:CHAR #\\Newline))',
     '(write-line "hello" o :start 2)': '((:STRING "hello" 2 5) (:CHAR #\\Newline))',
     '(write-sequence "abc" o :start 1)': '((:STRING "abc" 1 3))',

@@ -39,7 +39,7 @@
     (when (and horizontal-position vertical-position
                (isinstance solution Vector3)
                (within-bounds-p solution.x solution.y))
-      "accept")))
+      :accept)))
 
 (register-location-validation-function
  5 navigation-goal-validator

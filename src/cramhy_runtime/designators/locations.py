@@ -15,7 +15,7 @@ from cramhy_runtime import kernel
 from ..cpl.task_variables import inherit
 from cramhy_runtime.ground.condition_types import SimpleTypeError
 from cramhy_runtime.ground.conditions import as_name, error, restart_case, type_error
-from cramhy_runtime.ground.data import Cons, UndefinedFunction, list_from, one, truth
+from cramhy_runtime.ground.data import Cons, UndefinedFunction, list_from, one, plain_truth, truth
 from cramhy_runtime.ground.dynamic import binding, special
 from cramhy_runtime.ground.source_places import circumstance
 from cramhy_runtime.ground.packages import is_symbol, keyword
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 ACCEPT, UNKNOWN, MAYBE_REJECT = keyword("ACCEPT"), keyword("UNKNOWN"), keyword("MAYBE-REJECT")
-_WORDS = {"accept": ACCEPT, "unknown": UNKNOWN, "maybe-reject": MAYBE_REJECT}
 PRINT_VERDICTS = special(sym("DESIG::*PRINT-LOCATION-VALIDATION-FUNCTION-RESULTS*"), None)
 MAX_RETRIES = special(sym("DESIG::*LOCATION-GENERATOR-MAX-RETRIES*"), 30)
 LOCATION_GROUNDING = sym("DESIG::LOCATION-GROUNDING")
@@ -295,8 +294,8 @@ def _verdict(name, designator, solution):
 def validate_location_designator_solution(designator, solution):
     """Whether the validators let ``solution`` pass: one accepts it, or all answer ``:unknown`` (designators.md 8.3).
 
-    Verdicts are keywords; a validator in Hy may say them as strings. Anything but ``:accept``, ``:unknown`` and ``:maybe-reject`` refuses
-    at once, also ``t``. If ``designator`` is not a location designator, it is a type error.
+    Anything but ``:accept``, ``:unknown`` and ``:maybe-reject`` refuses at once, also ``t``. If ``designator`` is not a location designator,
+    it is a type error.
     """
     if not isinstance(designator, LocationDesignator):
         return type_error(designator, "LOCATION-DESIGNATOR")
@@ -312,9 +311,7 @@ def _judge(designator, solution):
     def ask_all():
         verdict = UNKNOWN
         for name in names:
-            answer = _verdict(name, designator, solution)
-            if answer.__class__ is str:
-                answer = _WORDS.get(answer, answer)
+            answer = plain_truth(_verdict(name, designator, solution))  # a keyword of Hy is Lisp's
             if truth(PRINT_VERDICTS.value):
                 PORTS.output.stream("standard-output").write(f"validator {princ_to_string(name)} says: {princ_to_string(answer)}\n")
             if answer is ACCEPT:

@@ -72,6 +72,9 @@ def write_string(string, stream=None, *, start=0, end=None):
             stream.write_part(text, start, end)
             return string
         text = text[start:end]
+    elif stream.of_user:  # who gets one character, or none, by `stream-write-string`, too
+        stream.write_part(text, 0, len(text))
+        return string
     stream.write(text)
     return string
 
