@@ -294,8 +294,8 @@ def _verdict(name, designator, solution):
 def validate_location_designator_solution(designator, solution):
     """Whether the validators let ``solution`` pass: one accepts it, or all answer ``:unknown`` (designators.md 8.3).
 
-    Anything but ``:accept``, ``:unknown`` and ``:maybe-reject`` refuses at once, also ``t``. If ``designator`` is not a location designator,
-    it is a type error.
+    Anything but ``:accept``, ``:unknown`` and ``:maybe-reject`` refuses at once, also ``t``. If ``designator`` is not a location
+    designator, it is a type error.
     """
     if not isinstance(designator, LocationDesignator):
         return type_error(designator, "LOCATION-DESIGNATOR")
