@@ -29,6 +29,8 @@ _SHORT_LOG = "[... some lines of the log]\n"
 """What a step shows in the place of many lines of the log; they come when the form is typed."""
 ERROR = ("debugger invoked", "Traceback (most recent", "cramhy: ")
 """In the answer of a form that a page shows to fail."""
+_MARKS = re.compile(r"^ +[\^~]{40,}\n", re.M)
+"""A line of a traceback that marks a whole long line above it, which a step shows broken."""
 _OF_DEBUGGER = re.compile(r"\d+\] ")
 _BLOCKS = re.compile(r"^```.*?^```$|(?:^(?!```)[^\n]+\n?)+", re.M | re.S)
 _COMMENT = re.compile(r"^<!--.*?-->\n?", re.M | re.S)
@@ -70,7 +72,7 @@ def steps(page: Page, language: str) -> list[Step]:
 
 def answer_shown(typed: Typed) -> str:
     """The answer of a form as a step shows it: without many lines of the log, and without the middle of a long one."""
-    answer = _LOG.sub(_SHORT_LOG, typed.answer)
+    answer = _MARKS.sub("", _LOG.sub(_SHORT_LOG, typed.answer))
     most = min(LONGEST_ANSWER, MOST - _rows(f"{typed.prompt}{typed.form}"))
     if not answer or _rows(answer) <= most:
         return answer
