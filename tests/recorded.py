@@ -102,6 +102,7 @@ RECORDINGS = [
     ),
     *_of_forms("lisp/symbols", *sorted(path.name for path in (TESTS / "lisp" / "symbols").glob("*.txt"))),
     *_of_forms("lisp/printing", *(f"{name}.jsonl" for name in "code float_directives floats format random_data".split()), given="forms"),
+    Recording(TESTS / "lisp" / "sbcl" / "uiop.txt", (*SBCL, "record_uiop.lisp"), comments=True),
     Recording(TESTS / "lisp" / "sbcl" / "type_names.txt", (*SBCL, "type_names.lisp"), given=""),
     Recording(
         TESTS / "libraries" / "alexandria.txt",

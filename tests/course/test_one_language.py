@@ -24,7 +24,7 @@ OF_LISP = {
     r"\((?:defun|defvar|defparameter|setf|let\* \(|let \(\(|dotimes|dolist|loop|lambda|progn|declare|destructuring-bind|define-condition)\b": "a form of Lisp",
     r"\b(?:defun|defvar|defparameter|setf|dotimes|dolist|defstruct|destructuring-bind|unwind-protect|ecase|format nil|format t)\b": "an operator of Lisp",
     r"#'|~%|&optional|&rest|&key": "a mark of Lisp",
-    r"#<(?!3D-VECTOR)|\[[A-Z_]+-(?:MSG|SRV):": "a value as Lisp shows it",
+    r"#<(?!3D-VECTOR)": "a value as Lisp shows it",
     r"\(lisp[ )]": "data of Lisp, where a string of Hy does",
     r"\.lisp\b|\.asd\b|\bsrc/": "a file of the package in Lisp",
     r"\bUNBOUND-VARIABLE|UNDEFINED-FUNCTION|-ERROR:": "a condition of Lisp",

@@ -86,7 +86,7 @@ def test_plain_hy_at_the_prompt_of_hy_is_answered_as_lisp_is_by_roslisp_repl(lec
     for step, answer, expected in zip(steps, answers["hy"], answers["roslisp_repl"]):
         if step.ends is not None:
             assert answer.endswith(step.ends), step.hy
-        elif step.lisp is None:
+        elif step.lisp is None or (step.hy or "").startswith("(lisp-package "):  # Hy shows nothing of Lisp's packages
             assert answer == "=> ", step.hy
         elif (step.hy or "").startswith(SLIP):
             assert uniform(answer, in_hy=True) == "<and a bracket too many>> "

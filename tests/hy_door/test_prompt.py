@@ -203,10 +203,7 @@ SHOWN = {
     "(lisp drive)": "DRIVE",
     '(lisp (1 (drive) "a"))': '(1 (DRIVE) "a")',
     "(make-3d-vector 1 2 3)": "#<3D-VECTOR (1.0 2.0 3.0)>",
-    '(make-msg "std_msgs/String" :data "a")': "String(data='a')",
-    '(make-msg "geometry_msgs/Twist" (:x :linear) 2.5)': (
-        "Twist(linear=Vector3(x=2.5, y=0.0, z=0.0), angular=Vector3(x=0.0, y=0.0, z=0.0))"
-    ),
+    '(make-msg "std_msgs/String" :data "a")': '[STD_MSGS-MSG:STRING\n   DATA:\n     "a"]',
     "(reference (a motion (type halving)))": '("half" Half())',
     "(lisp-package :door)": None,
     '[1 2.5 "a" True None]': '[1 2.5 "a" True None]',

@@ -33,7 +33,7 @@ def test_which_forms_have_lenses(editor):
         ("Test", "relative-angle-to-look-back"),
         ("Test", "relative-angle-to-type-error"),
     ]
-    assert (55, "Run", "move-parallel") in lenses(editor, HY_MODULES)
+    assert (54, "Run", "move-parallel") in lenses(editor, HY_MODULES)
     hy_tests = ROOT / "turtlesim_in_hy" / "tests" / "test_simple_plans.hy"
     assert lenses(editor, hy_tests) and {title for _, title, _ in lenses(editor, hy_tests)} == {"Test"}
 

@@ -18,6 +18,7 @@ ERROR, WARNING, HINT = 1, 2, 4
 _MEANT = re.compile(r"Did you mean (\??[^?\n]+)\?")
 _ELSEWHERE = re.compile(r"There is (\S+:[^\s:]+) in another package")
 _NO_PACKAGE = re.compile(r'The name "([^"]+)" does not designate any package|[Pp]ackage "?([^\s"]+)"? (?:does not exist|not found)')
+_FAILED_MACRO = re.compile(r"The macro call .* fails, and will be an error when it is reached:", re.S)
 _WRONG_CALL = re.compile(r"^The function \S+(?: is)? called with|known argument keyword")
 _LONG_FORM = re.compile(r"(The \S+ form) (\(.*\)) is malformed: (.*)", re.S)
 _BLAMED = re.compile(
@@ -71,8 +72,8 @@ def of_condition(condition, text, filename):
 
 
 def _severity(condition, message):
-    """Style is a hint, but what will fail when it runs is a warning."""
-    if not isinstance(condition, Warning_):
+    """Style is a hint, but what will fail when it runs is a warning, and a call of a macro that has failed is an error."""
+    if not isinstance(condition, Warning_) or _FAILED_MACRO.match(message):
         return ERROR
     style = isinstance(condition, StyleWarning) and not getattr(condition, "undefined", None) and not _WRONG_CALL.search(message)
     return HINT if style else WARNING

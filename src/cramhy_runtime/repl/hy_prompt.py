@@ -344,9 +344,9 @@ class HyPrompt(Listener):
     def shown_in_hy(self, value):
         """The text that the REPL shows for ``value`` in Hy: what is ours as Lisp prints it in the package of the module.
 
-        Messages are shown as Hy shows objects, and so are objects of Python's classes in a list of Lisp.
+        Objects of Python's classes are shown as Hy shows them, in a list of Lisp, too. Messages look as on the slides.
         """
-        if not answer_lists.is_ours(value) or getattr(type(value), "ros_type", ""):
+        if not answer_lists.is_ours(value):
             return hy.repr(value)
         with binding(PACKAGE, package_of(self.repl.module.__name__)):
             text = prin1_to_string(value)

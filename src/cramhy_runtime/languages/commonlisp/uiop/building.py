@@ -209,10 +209,10 @@ def unreify_deferred_warnings(reified_deferred_warnings: Any) -> None:
 
 def save_deferred_warnings(warnings_file: Any) -> None:
     """``uiop:save-deferred-warnings``: a file with none, see `check_deferred_warnings`."""
+    from cramhy_runtime.storage.atomic_write import write_whole
     from ..files.files import path_of
 
-    with open(path_of(warnings_file), "w", encoding="utf-8") as file:
-        file.write("NIL\n")
+    write_whole(path_of(warnings_file), "NIL\n", durable=False)
 
 
 def warnings_file_type(implementation_type: Any = None) -> Any:
