@@ -170,6 +170,8 @@ kernel.run_blocking(sys.stdin.readline)
 from cramhy_runtime.repl.commands import run_line
 for line in ("rosnode list", "rostopic info /chatter", "rosnode info /turtlesim", "rosnode kill /talker"):
     run_line(line, lambda text: print(text, end="", flush=True))
+link.look()
+link.ask("/rosapi/get_time")  # answers come in the order of questions: by now the session knows
 print("done", flush=True)
 kernel.run_blocking(sys.stdin.readline)
 """
