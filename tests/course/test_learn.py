@@ -5,6 +5,8 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import sys
+import types as python_types
 
 import pytest
 from hypothesis import given
@@ -200,6 +202,13 @@ def test_a_later_page_has_the_files_of_the_earlier_ones(typed, tmp_path):
         "motion-designators.lisp",
     }
     assert "motion-designators" in (place / "cram-my-beginner-tutorial.asd").read_text()
+
+
+def test_a_module_from_elsewhere_does_not_stand_for_the_courses(typed, monkeypatch):
+    other = python_types.ModuleType("turtlesim_in_hy")
+    monkeypatch.setitem(sys.modules, "turtlesim_in_hy", other)
+    shown = typed(["(import turtlesim-in-hy.process-modules [init])", "(callable init)", ":quit"], "choosing-a-module", "hy")
+    assert "\nTrue\n" in shown and sys.modules["turtlesim_in_hy"] is other
 
 
 def test_a_page_begins_with_a_fresh_image(typed):

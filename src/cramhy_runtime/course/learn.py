@@ -254,12 +254,23 @@ def _in_work_folder(way, top):
         yield
         return
     sys.path.insert(0, str(place))
+    others = _modules(lambda name, module: (place / name.partition(".")[0]).exists())  # of that name from elsewhere, say a program's
+    for name in others:
+        del sys.modules[name]
     try:
         yield
     finally:
         os.chdir(before)
         sys.path.remove(str(place))
-        for name, module in list(sys.modules.items()):
-            places = [getattr(module, "__file__", None), *getattr(module, "__path__", [])]
-            if any(str(each).startswith(f"{place}{os.sep}") for each in places):
-                del sys.modules[name]
+        for name in _modules(lambda name, module: _stands_in(module, place)):
+            del sys.modules[name]
+        sys.modules.update(others)
+
+
+def _modules(wanted):
+    return {name: module for name, module in list(sys.modules.items()) if wanted(name, module)}
+
+
+def _stands_in(module, place):
+    places = [getattr(module, "__file__", None), *getattr(module, "__path__", [])]
+    return any(str(each).startswith(f"{place}{os.sep}") for each in places)
