@@ -456,6 +456,9 @@ def test_a_long_answer_is_shown_without_its_middle_and_an_error_from_its_beginni
         "[... 2 lines more when you type it]", "last",
     ]  # fmt: skip
     assert answer_shown(Typed("CL-USER> ", "(good)", "line\n" * 12)) == "line\n" * 12
+    short = "one line\n" * 20 + "debugger invoked on a BAD:\n  It is bad.\n"
+    told = "[... 20 lines more when you type it]\ndebugger invoked on a BAD:\n  It is bad.\n"
+    assert answer_shown(Typed("CL-USER> ", "(bad)", short)) == told
 
 
 def test_a_slip_is_told_below_the_answer_of_the_prompt(typed):

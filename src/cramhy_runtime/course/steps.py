@@ -80,10 +80,12 @@ def answer_shown(typed: Typed) -> str:
     first = next((number for number, line in enumerate(lines) if line.startswith(ERROR)), 0)
     begin = [f"[... {first} lines more when you type it]\n"] if first > 2 else lines[:first]
     number = first
-    while _rows("".join([*begin, lines[number]])) <= most - 2:
+    while number < len(lines) - 1 and _rows("".join([*begin, lines[number]])) <= most - 2:
         begin.append(lines[number])
         number += 1
-    return "".join([*begin, f"[... {len(lines) - number - 1} lines more when you type it]\n", lines[-1]])
+    left = len(lines) - number - 1
+    middle = [f"[... {left} lines more when you type it]\n"] if left else []
+    return "".join([*begin, *middle, lines[-1]])
 
 
 def session_shown(part: Code, language: str) -> str:
