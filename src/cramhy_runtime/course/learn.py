@@ -254,7 +254,8 @@ def _in_work_folder(way, top):
         yield
         return
     sys.path.insert(0, str(place))
-    others = _modules(lambda name, module: (place / name.partition(".")[0]).exists())  # of that name from elsewhere, say a program's
+    packages = {each.name for each in place.iterdir() if each.is_dir()}
+    others = _modules(lambda name, module: name.partition(".")[0] in packages)  # of these names from elsewhere, say a program's
     for name in others:
         del sys.modules[name]
     try:
