@@ -48,10 +48,24 @@ def test_questions_with_seeds_and_all_of_them_must_be_right(session):
         ("(nothing-here 1)", "There is no function nothing-here yet."),
         ("(list (nothing-here))", "There is no function nothing-here yet."),
         ("*nothing*", "There is no variable *nothing* yet."),
+        ("(1+ *nothing*)", "There is no variable *nothing* yet."),
+        ("(funcall #'nothing-here 1)", "There is no function nothing-here yet."),
     ],
 )
 def test_what_is_not_defined_yet_is_told_plainly(session, form, told):
     assert of(session, {"ask": [[form, "1"]]}) == [told]
+
+
+def test_a_function_that_is_counted_or_replaced_and_not_there_opens_no_debugger(turtle):
+    opened = []
+    debugger = conditions.install_debugger(opened.append)
+    try:
+        counted = of(turtle, {"do": "(nothing-here)", "calls": {"nothing-here": 1}})
+        replaced = of(turtle, {"ask": [["1", "1"]], "instead": {"nothing-here": "(lambda () 1)"}, "say": "No."})
+    finally:
+        conditions.install_debugger(debugger)
+    assert "There is no function nothing-here yet." in counted
+    assert replaced == ["There is no function nothing-here yet."] and not opened
 
 
 def test_an_error_below_the_function_is_told_with_its_place(session):
