@@ -83,6 +83,17 @@ def test_the_first_check_that_fails_is_told(session):
     assert of(session, {"ask": [["1", "1"]]}, {"ask": [["2", "1"]]}, {"ask": [["3", "1"]]}) == ["2 should give 1, and gave 2."]
 
 
+def test_of_many_wrong_answers_three_are_told_and_of_many_errors_one(session):
+    assert len(of(session, {"ask": [[str(number), "0"] for number in range(1, 7)]})) == 3
+    assert len(of(session, {"ask": [[f"(error {text})", "0"] for text in ('"one"', '"two"')]})) == 1
+
+
+def test_true_and_false_are_told_in_the_language_of_the_check(session):
+    table = {"ask": [["(> 1 2)", "T"]]}
+    assert faults("t", [table], session.evaluate_text, "lisp") == ["(> 1 2) should give T, and gave NIL."]
+    assert faults("t", [table], session.evaluate_text, "hy") == ["(> 1 2) should give True, and gave None."]
+
+
 def test_a_table_that_means_nothing_is_an_error_of_the_page(session):
     with pytest.raises(ExerciseError, match="has aks, which means nothing there"):
         of(session, {"ask": [["1", "1"]], "aks": 1})

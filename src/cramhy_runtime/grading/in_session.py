@@ -40,6 +40,10 @@ _MISSING = re.compile(
 """The report of a form with a name that may not have a meaning yet."""
 _TYPED = re.compile(r"\(typed(?:\s+([^\s()]+))?\)")
 """In a form of a check: stands for what the student has typed."""
+_ERROR = "ended with an error:"
+MOST_ANSWERS = 3
+"""So many wrong answers of a check are told, and of several errors one: they are mostly the same one."""
+_LISP_VALUE = re.compile(r"(should give |and gave )(NIL|T)(?=[.,])")
 NO_TURTLE = "There is no turtle yet. Start it as the page says, and check again."
 
 
@@ -169,10 +173,9 @@ def _tried(exercise: Exercise, check: Check, seed: int, evaluate, language, tell
     if told.error and told.doing == "before":
         return [f"{told.what} cannot be used:\n{told.error['text']}"]
     judge = judging.of_answers if check.kind == "ask" else judging.of_run
-    wrong = said(judge(check, work, values, told), answers=True)
+    wrong = [_plainer(_worded(sentence, language)) for sentence in said(judge(check, work, values, told), answers=True)]
     if not wrong or check.kind != "do":
-        return [_plainer(sentence) for sentence in wrong]
-    wrong = [_plainer(sentence) for sentence in wrong]
+        return wrong[: 1 if _ERROR in "".join(wrong[:1]) else MOST_ANSWERS]
     if tell_call and not any(work["do"] in sentence for sentence in wrong):
         wrong.append(f"The check called {work['do']}, {_place(work['start'])}.")
     return [*wrong, *_other_drivers(language)]
@@ -196,6 +199,13 @@ def _other_drivers(language):
         if node is not graph.active().lisp_node and not isinstance(getattr(node, "program", None), Teleop):
             end = f"rosnode kill {node.name}" if language == "lisp" else f"type (in-package :cl-user), and then rosnode kill {node.name}"
             yield f"The node {node.name} may drive the turtle, too. End it: {end}"
+
+
+def _worded(sentence, language):
+    """A sentence with true and false as the ``language`` writes them."""
+    if language == "lisp":
+        return sentence
+    return _LISP_VALUE.sub(lambda match: match[1] + {"NIL": "None", "T": "True"}[match[2]], sentence)
 
 
 def _plainer(sentence):
