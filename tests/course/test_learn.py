@@ -405,7 +405,7 @@ def test_another_node_that_drives_the_turtle_is_named(typed):
     shown = typed([*LOAD, step_with(1, "lisp", "first-square"), "(turtlesim:draw-square)", "(defun drive-square () 1)", ":check", ":quit"])
     assert "The node /draw_square may drive the turtle, too. End it: rosnode kill /draw_square" in shown
     assert "may drive the turtle" not in typed(
-        [*LOAD, step_with(1, "lisp", "first-square"), "(defun drive-square () 1)", ":check", ":quit"]
+        [*LOAD, step_with(1, "lisp", "first-square"), "(turtlesim:press :up)", "(defun drive-square () 1)", ":check", ":quit"]
     )
 
 
