@@ -49,6 +49,8 @@ def test_extending_without_permission_is_an_error():
         "Functor P is being redefined in fact-group G2.\n                Other definitions were in fact-groups (G1)."
     )
     assert ask("(p ?x)") == "(((?X . 1)))"
+    hint = hint_for(condition_of(lambda: group("g2", "((p 2))")))
+    assert hint == "The list behind the name of a group names the predicates of others that it may add to: p is missing there."
 
 
 @pytest.mark.parametrize("head", ["?x", "5", "nil", '"foo"'])
