@@ -511,7 +511,7 @@ def test_a_robot_that_was_not_started_is_told(typed, language):
     place = step_of_form(8, language, "(init)")
     shown = words(typed([place, ":next", *LOADING[language], DRIVE.format("driving"), ":quit"], "choosing-a-module", language))
     assert f"The robot is started by a form that you have not typed: (init) {place} leads back to it." in shown
-    value = "(turtlesim-msg:x (value *turtle-pose*))" if language == "lisp" else "(with-fields [x] turtle-pose.value x)"
+    value = "(with-fields (x) (value *turtle-pose*) x)" if language == "lisp" else "(with-fields [x] turtle-pose.value x)"
     more = [] if language == "lisp" else ["(import turtlesim-in-hy.control-turtlesim [turtle-pose])"]
     shown = words(typed([place, ":next", *LOADING[language], *more, value, ":quit"], "choosing-a-module", language))
     assert "No message is there yet" in shown and f"(init) {place} leads back to it." in shown
