@@ -125,7 +125,12 @@ def test_a_text_that_is_wrong_is_malformed(lisp, text, said):
     assert said in lisp(f'(handler-case (cl-urdf:parse-urdf "{text}") (cl-urdf:urdf-malformed (e) (princ-to-string e)))').replace("\\", "")
 
 
+def test_a_robot_as_an_element_of_s_xml(lisp):
+    assert lisp("(s-xml:xml-element-name (cl-urdf:generate-urdf-xml (arm)))") == ":|robot|"
+    again = "(cl-urdf:parse-urdf (s-xml:print-xml-string (cl-urdf:generate-urdf-xml (arm)) :input-type :xml-struct))"
+    assert lisp(f"(equal (cl-urdf:generate-urdf-string {again}) (cl-urdf:generate-urdf-string (arm)))") == "T"
+
+
 def test_what_is_missing_is_named(lisp):
     assert lisp.error('(cl-urdf:get-link-chain (arm) "odom" "hand")') == 'There is no link "hand" in #<ROBOT arm>.'
-    assert "s-xml" in lisp.error("(cl-urdf:generate-urdf-xml (arm))")
     assert "was not read from a description" in lisp.error('(in-world (make-instance \'cl-urdf:robot :name "r"))')

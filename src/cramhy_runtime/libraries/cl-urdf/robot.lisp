@@ -189,9 +189,9 @@
   (robot-world:description-file-text (description-of robot)))
 
 (defun generate-urdf-xml (robot)
-  "The original gives an object of the library s-xml, which is not here."
-  (declare (ignore robot))
-  (error "GENERATE-URDF-XML gives an object of the library s-xml, which cramhy does not have. GENERATE-URDF-STRING gives the text."))
+  "The element <robot> of ROBOT, as an XML-ELEMENT of the library s-xml, which is loaded for it."
+  (asdf:load-system :s-xml)
+  (uiop:symbol-call :s-xml '#:parse-xml-string (generate-urdf-string robot) :output-type :xml-struct))
 
 ;;; Chains.
 
