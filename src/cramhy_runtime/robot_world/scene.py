@@ -95,7 +95,8 @@ class Scene:
         for number, part in enumerate(self.parts):
             self._part_of_geom[part.geoms.start : part.geoms.stop] = number
         numbers = {id(thing): number for number, thing in enumerate(self.things)}
-        self._thing_of_geom = np.array([-1 if part < 0 else numbers[id(self.parts[part].thing)] for part in self._part_of_geom])
+        things = np.array([*(numbers[id(part.thing)] for part in self.parts), -1])  # the last one for geoms of no part
+        self._thing_of_geom = things[self._part_of_geom]
         self.is_plane = model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE
         self._middle = np.where(self.is_plane[:, None], 0.0, model.geom_aabb[:, :3])
         self._half = np.where(self.is_plane[:, None], 0.0, model.geom_aabb[:, 3:])
@@ -104,8 +105,11 @@ class Scene:
         machines = [part.body for part in self.parts if isinstance(part.thing, Machine)]
         self._of_machine = np.isin(model.geom_bodyid, machines)
         self._machines, self._items = [], []
+        parts_of = {id(thing): [] for thing in self.things}
+        for part in self.parts:
+            parts_of[id(part.thing)].append(part)
         for thing in self.things:
-            parts = [part for part in self.parts if part.thing is thing]
+            parts = parts_of[id(thing)]
             mocaps = [int(model.body_mocapid[part.body]) for part in parts]
             if isinstance(thing, Machine):
                 self._machines.append((thing, np.array(mocaps, int), np.array([thing.skeleton.links[part.link] for part in parts], int)))
