@@ -9,19 +9,27 @@ Law: a scene computes from where the things are now (`place`), and writes back o
 
 from __future__ import annotations
 
+from collections import deque
 from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import takewhile
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cramhy_runtime.kernel.active import checkpoint
 
+from .meshes import mesh_of
 from .mujoco_parts import add_shape, mujoco
 from .placements import Placement
 from .things import Item, Machine
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable, Iterator, Sequence
+
+    from .descriptions import Shape
+    from .meshes import Mesh
+    from .things import Colour
 
 FLOOR = "floor"
 TOUCHING = 1e-3
@@ -49,41 +57,79 @@ class Part:
         self.body, self.geoms = 0, range(0)
 
 
+def _add_body(spec: mujoco.MjSpec, shapes: Sequence[Shape], colour: Colour, mass: float = 0.0, free: bool = False) -> None:
+    body = spec.worldbody.add_body(mocap=not free)
+    if free:
+        body.add_freejoint()
+    masks = {"contype": _ITEM, "conaffinity": _ITEM | _STANDING} if free else {"contype": _STANDING, "conaffinity": _ITEM}
+    for shape in shapes:
+        add_shape(body, shape, spec, rgba=colour, mass=mass / len(shapes), friction=[0.9, 0.01, 0.001], **masks)
+
+
+@dataclass
+class _KeptSpec:
+    """A spec with the floor and the links of machines; ``meshes`` are held, since their names in the spec are their identities."""
+
+    height: float
+    links: list[tuple[Sequence[Shape], Colour]]
+    meshes: list[Mesh]
+    spec: mujoco.MjSpec
+
+    def fits(self, height: float, links: list[tuple[Sequence[Shape], Colour]]) -> bool:
+        """Whether it has a floor at that height, and links of the very same shapes, in the same colours."""
+        same = self.height == height and len(self.links) == len(links)
+        return same and all(shapes is known[0] and colour == known[1] for (shapes, colour), known in zip(links, self.links, strict=True))
+
+
+_kept_specs: deque[_KeptSpec] = deque(maxlen=4)
+
+
+def _spec_with(height: float, links: list[tuple[Sequence[Shape], Colour]]) -> mujoco.MjSpec:
+    """A new spec with a floor at ``height`` (metres) and a body for each of ``links``, which are the shapes and the colour of a link.
+
+    To add the shapes of a kitchen and a robot takes ten times as long as to copy the spec that has them, and a plan that carries things
+    makes a scene each time it grips one or lets it go.
+    """
+    for kept in _kept_specs:
+        if kept.fits(height, links):
+            return kept.spec.copy()
+    spec = mujoco.MjSpec()
+    spec.option.timestep = STEP
+    spec.worldbody.add_geom(
+        name=FLOOR, type=mujoco.mjtGeom.mjGEOM_PLANE, size=[20, 20, 1], pos=[0, 0, height], contype=_STANDING, conaffinity=_ITEM
+    )
+    for shapes, colour in links:
+        _add_body(spec, shapes, colour)
+    meshes = [mesh_of(shape) for shapes, _ in links for shape in shapes if shape.kind == "mesh"]
+    _kept_specs.appendleft(_KeptSpec(height, links, meshes, spec))
+    return spec.copy()
+
+
 class Scene:
     """Computes contacts, rays and falls of ``things``; ``held``: the names of the items that stay where they are."""
 
     def __init__(self, things: Iterable[Item | Machine], held: frozenset[Hashable] = frozenset()) -> None:
         self.things, self.held = list(things), held
-        spec = mujoco.MjSpec()
-        spec.option.timestep = STEP
         # who puts planes into a world says where its floor is
         height = _BELOW_ALL if any(shape.kind == "plane" for thing in self.things for shape in thing.all_shapes()) else 0.0
-        spec.worldbody.add_geom(
-            name=FLOOR, type=mujoco.mjtGeom.mjGEOM_PLANE, size=[20, 20, 1], pos=[0, 0, height], contype=_STANDING, conaffinity=_ITEM
-        )
-        self.parts = list(self._add_parts(spec))
+        first = list(takewhile(lambda thing: isinstance(thing, Machine), self.things))
+        self.parts = [Part(machine, link.name) for machine in first for link in machine.description.links.values() if link.shapes]
+        spec = _spec_with(height, [(part.thing.description.links[part.link].shapes, part.thing.colour) for part in self.parts])
+        self.parts += self._add_parts(spec, self.things[len(first) :])
         self.model = spec.compile()
         self.data = mujoco.MjData(self.model)
         self._find_parts()
 
-    def _add_parts(self, spec: mujoco.MjSpec) -> Iterator[Part]:
-        for thing in self.things:
+    def _add_parts(self, spec: mujoco.MjSpec, things: Iterable[Item | Machine]) -> Iterator[Part]:
+        for thing in things:
             if isinstance(thing, Item):
-                free = thing.mass > 0 and thing.name not in self.held
-                yield self._add(spec, Part(thing, None), thing.shapes, thing.mass, free)
+                _add_body(spec, thing.shapes, thing.colour, thing.mass, free=thing.mass > 0 and thing.name not in self.held)
+                yield Part(thing, None)
             else:
                 for link in thing.description.links.values():
                     if link.shapes:
-                        yield self._add(spec, Part(thing, link.name), link.shapes, 0.0, False)
-
-    def _add(self, spec: mujoco.MjSpec, part: Part, shapes: tuple, mass: float, free: bool) -> Part:
-        body = spec.worldbody.add_body(mocap=not free)
-        if free:
-            body.add_freejoint()
-        masks = {"contype": _ITEM, "conaffinity": _ITEM | _STANDING} if free else {"contype": _STANDING, "conaffinity": _ITEM}
-        for shape in shapes:
-            add_shape(body, shape, spec, rgba=part.thing.colour, mass=mass / len(shapes), friction=[0.9, 0.01, 0.001], **masks)
-        return part
+                        _add_body(spec, link.shapes, thing.colour)
+                        yield Part(thing, link.name)
 
     def _find_parts(self) -> None:
         model = self.model
@@ -95,7 +141,8 @@ class Scene:
         for number, part in enumerate(self.parts):
             self._part_of_geom[part.geoms.start : part.geoms.stop] = number
         numbers = {id(thing): number for number, thing in enumerate(self.things)}
-        self._thing_of_geom = np.array([-1 if part < 0 else numbers[id(self.parts[part].thing)] for part in self._part_of_geom])
+        things = np.array([*(numbers[id(part.thing)] for part in self.parts), -1])  # the last one for geoms of no part
+        self._thing_of_geom = things[self._part_of_geom]
         self.is_plane = model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE
         self._middle = np.where(self.is_plane[:, None], 0.0, model.geom_aabb[:, :3])
         self._half = np.where(self.is_plane[:, None], 0.0, model.geom_aabb[:, 3:])
@@ -104,8 +151,11 @@ class Scene:
         machines = [part.body for part in self.parts if isinstance(part.thing, Machine)]
         self._of_machine = np.isin(model.geom_bodyid, machines)
         self._machines, self._items = [], []
+        parts_of = {id(thing): [] for thing in self.things}
+        for part in self.parts:
+            parts_of[id(part.thing)].append(part)
         for thing in self.things:
-            parts = [part for part in self.parts if part.thing is thing]
+            parts = parts_of[id(thing)]
             mocaps = [int(model.body_mocapid[part.body]) for part in parts]
             if isinstance(thing, Machine):
                 self._machines.append((thing, np.array(mocaps, int), np.array([thing.skeleton.links[part.link] for part in parts], int)))

@@ -101,8 +101,11 @@ def same_atom(a, b):
     kind = a.__class__
     if kind is Symbol or kind is Cons:
         return False
-    if (kind is int or kind is str) and kind is b.__class__:
-        return a == b
+    if kind is b.__class__:
+        if kind is Keyword:
+            return False
+        if kind is int or kind is str:
+            return a == b
     if equality.equal(a, b) is not None:
         return True
     if a is None or a is False or a is NOTHING:

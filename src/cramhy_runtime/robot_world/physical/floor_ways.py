@@ -59,6 +59,7 @@ class _Floor:
         corners = np.vstack([ends, self._low[wide][:, :2], self._high[wide][:, :2]])
         self._origin = corners.min(axis=0) - _MARGIN
         self._size = tuple(np.ceil((corners.max(axis=0) + _MARGIN - self._origin) / CELL).astype(int))
+        self._padded = tuple(_next_smooth(int(cells)) for cells in self._size)
 
     def _robot_rectangles(self, scene, geoms: list[int], lowest: np.ndarray, highest: np.ndarray) -> list[tuple[np.ndarray, float, float]]:
         """(corners in the frame of the base, lowest, highest z) of the robot's shapes."""
@@ -76,7 +77,7 @@ class _Floor:
 
     def _taken(self) -> np.ndarray:
         """Turns x cells: where the robot would touch something, which is the correlation of what it covers with what stands there."""
-        shape = self._size
+        shape = self._padded
         spectra = np.zeros((TURNS, shape[0], shape[1] // 2 + 1), complex)
         for low, high in zip(_LAYERS, _LAYERS[1:], strict=False):
             grid = np.zeros(shape)
@@ -90,15 +91,15 @@ class _Floor:
                 spectrum, points = np.fft.rfft2(grid), np.concatenate(points)
                 for turn in range(TURNS):
                     spectra[turn] += spectrum * np.conj(np.fft.rfft2(self._print(points, turn)))
-        return np.fft.irfft2(spectra, shape) > 0.5
+        return np.fft.irfft2(spectra, shape)[:, : self._size[0], : self._size[1]] > 0.5
 
     def _print(self, points: np.ndarray, turn: int) -> np.ndarray:
         """The cells that the robot covers when it stands at cell (0, 0); negative ones are at the far ends."""
         angle = 2 * pi * turn / TURNS
         across = np.array([[cos(angle), -sin(angle)], [sin(angle), cos(angle)]])
         cells = np.floor(points @ across.T / CELL + 0.5).astype(int)
-        grid = np.zeros(self._size)
-        grid[cells[:, 0] % self._size[0], cells[:, 1] % self._size[1]] = 1
+        grid = np.zeros(self._padded)
+        grid[cells[:, 0] % self._padded[0], cells[:, 1] % self._padded[1]] = 1
         return grid
 
     def _cell(self, place: tuple[float, float, float]) -> tuple[int, int, int]:
@@ -181,6 +182,18 @@ class _Floor:
         around = np.abs(np.arange(TURNS) - last[2])
         turned = np.minimum(around, TURNS - around) * _TURN_COST
         return (far * CELL + turned[:, None, None]) * _GREED
+
+
+def _next_smooth(number: int) -> int:
+    """The least integer from ``number`` on that has no prime factor above 11: grids of such a size are transformed fast."""
+    while True:
+        rest = number
+        for prime in (2, 3, 5, 7, 11):
+            while rest % prime == 0:
+                rest //= prime
+        if rest == 1:
+            return number
+        number += 1
 
 
 def _back(before: dict[int, int], cell: int) -> list[int]:
