@@ -124,6 +124,21 @@ def test_a_task_is_checked_beside_the_prompt_and_the_answer_comes_later(ask):
     assert check("rectangle", "hy")["passed"]
 
 
+def test_a_number_that_was_typed_is_not_one_that_was_computed(ask):
+    answers = []
+    ask.desk._say = lambda text: answers.append(json.loads(text))
+
+    def told():
+        ask.desk.ask(json.dumps({"id": 1, "what": "check", "task": "around-a-square", "language": "lisp"}))
+        kernel.sleep(1)
+        return " ".join(answers.pop()["answer"]["told"])
+
+    ask.session.evaluate_text("(defvar *side* 4) (defvar *around* 16)")
+    assert "for another side it would be wrong" in told()
+    ask.session.evaluate_text("(setf *around* (* 4 *side*))")
+    assert "Well done" in told()
+
+
 def test_a_task_that_there_is_not_is_told(ask):
     answers = []
     ask.desk._say = lambda text: answers.append(json.loads(text))

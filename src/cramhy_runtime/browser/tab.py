@@ -24,7 +24,7 @@ from ..repl.console import Console
 from ..repl.line_input import BROKEN_OFF, Lines
 from ..ros import graph
 from ..session import requests
-from ..session.session import Session
+from ..session.session import Session, packages_above
 from . import debugging
 from .desk import Desk
 from .port import Port
@@ -147,6 +147,15 @@ class TabConsole(Console):
     def _begin_hy(self, repl):
         self.input.in_hy = lambda: not repl.lisp.in_lisp
         self.input.desk.hy_module = lambda: repl.module
+
+
+def _define_course():
+    from ..course import package
+
+    package.define()
+
+
+packages_above["COURSE"] = _define_course
 
 
 def _later(seconds, function):

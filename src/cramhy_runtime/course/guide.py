@@ -15,7 +15,6 @@ from .reading import PageError, page, pages
 from .replay import Replay
 from .shown import Style
 from .steps import ERROR, Step, file_shown, session_shown, steps, task_shown
-from .typed_forms import TypedForms
 
 COMMANDS = {
     "next": ("n", "the next step, or the next page"),
@@ -95,7 +94,6 @@ class Guide:
         self._text = ""  # what was typed last
         self._typed: set[str] = set()  # the forms of this page that were typed in this session, squeezed
         self.replay = Replay(self._typed_before())
-        self.forms = TypedForms()
         self._arrived()
 
     def _typed_before(self):
@@ -218,7 +216,6 @@ class Guide:
             forms = [slips.Form(text, step) for text, step in self._forms().items() if _squeezed(text) not in self._typed]
             self._cue = slips.of_missing(missing, forms, self.place + 1, contents.NAMES.index(self.page.name) + 1)
         self.replay.failed()
-        self.forms.failed()
         if self._read is not None and any(line.startswith(ERROR) for line in self._read.answer.splitlines()):  # as it should
             self._cue = None
             self._waiting.remove(self._read)
@@ -226,7 +223,6 @@ class Guide:
 
     def cue(self) -> str | None:
         """What to say before the next prompt, once."""
-        self.forms.answered()
         if self.replay.was_answered():
             self.progress.keep()
         some = bool(self._waiting)
@@ -373,7 +369,7 @@ class Guide:
         if not isinstance(part, Task):
             return "; Only tasks are checked, and this step is not one. :next goes on."
         self._checked = True
-        found = checking.check(part.name, language=self.language, evaluate=evaluate, typed=self.forms)
+        found = checking.check(part.name, language=self.language, evaluate=evaluate)
         if found["passed"]:
             self.progress.solved.add(part.name)
             self.progress.keep()
