@@ -170,6 +170,13 @@ def _interrupt():
         active.interrupt()
 
 
+def let_import() -> None:
+    """Let Hy import what stands in the user's folder, which is the current one, and the packages of the course."""
+    from ..course.files import tutorials
+
+    sys.path += [folder for folder in (os.getcwd(), str(tutorials())) if folder not in sys.path]
+
+
 def main(speed: float | None = 1.0) -> int:
     """Run the prompt until ``(quit)``. Returns the exit status. speed: plan seconds per second at first, ``None`` without a bound."""
     from pyodide.ffi import create_proxy
@@ -179,6 +186,7 @@ def main(speed: float | None = 1.0) -> int:
     sys.stderr.reconfigure(line_buffering=True)
     sys.stdin = PageInput()
     host.interrupt = create_proxy(_interrupt)
+    let_import()
     lines = PageLines()
 
     def make():
