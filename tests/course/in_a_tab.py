@@ -16,13 +16,12 @@ from pathlib import Path
 from cramhy_runtime import course, kernel
 from cramhy_runtime.browser import tab
 from cramhy_runtime.browser.desk import Desk
-from cramhy_runtime.course.steps import ERROR
 from cramhy_runtime.ground import conditions
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.session import requests
 from cramhy_runtime.session.session import Session
 
-from .walking import ENDINGS, solution
+from .walking import ENDINGS, fails, solution
 
 OF_PAGES = ("my_turtle", "turtlesim_in_hy", "cram_my_beginner_tutorial")
 """The beginnings of the names of modules that pages import: each process of a tab has its own."""
@@ -34,11 +33,6 @@ AT_MOST = 10_000
 def pages():
     """The pages as the tab gets them, by name."""
     return {page["name"]: page for page in course.as_json()["pages"]}
-
-
-def fails(text):
-    """Whether an answer shows an error."""
-    return any(line.startswith(ERROR) for line in text.splitlines())
 
 
 class Host:

@@ -155,3 +155,22 @@ def test_another_session_knows_nothing_of_it(session):
     other = Session(time="virtual", turtlesim=False)
     other.evaluate_text("(setf *side* 4)")
     assert CONSTANT not in told("around-a-square", other)
+
+
+PRINTED = "Printing is not answering: the answer of a function is the value of its last form."
+
+
+@pytest.mark.parametrize("body", ["(progn (print (* 2 (+ width height))) nil)", '(format t "~a" (* 2 (+ width height)))'])
+def test_that_printing_is_not_answering_is_told_in_lisp(session, body):
+    session.evaluate_text(f"(defun rectangle-around (width height) {body})")
+    assert told("rectangle", session).endswith(f"(rectangle-around 2 3) should give 10, and gave NIL. {PRINTED}")
+    session.evaluate_text("(defun rectangle-around (width height) (unless width height))")
+    assert told("rectangle", session).endswith("(rectangle-around 2 3) should give 10, and gave NIL.")
+
+
+@needs_processes
+def test_hy_speaks_of_none_and_true_when_a_check_does(run):
+    check = '(import cramhy-runtime.course.package [check])\n(check "rectangle" "hy")\n'
+    shown = run("repl", "--hy", text=f"(defn rectangle-around [width height] (print (* 2 (+ width height))))\n{check}")
+    assert "should give 10, and gave None." in shown and PRINTED in shown
+    assert "gave True." in run("repl", "--hy", text=f"(defn rectangle-around [width height] True)\n{check}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 
 from cramhy_runtime.grading import in_session
@@ -24,6 +25,9 @@ NOT_TAKEN = (
     "Your last definition of {} was not taken: it led to an error, and an older one still counts. "
     "Type the definition again, without the mistake."
 )
+PRINTED = "Printing is not answering: the answer of a function is the value of its last form."
+_NO_ANSWER = re.compile(r"\((?P<function>[^\s()]+)[^\n]* should give [^\n]+, and gave (?:NIL|None)\.")
+_PRINTS = re.compile(r"\((?:print|princ|prin1|format)\s", re.I)
 PASSED = "Well done: this task is solved."
 
 
@@ -58,6 +62,8 @@ def check(
         return {"passed": False, "told": [NOT_TAKEN.format(name_of)]}
     tables = [in_language(table, language) for table in wanted.checks]
     wrong = in_session.faults(wanted.title, tables, evaluate, language, typed.form)
+    if wrong and (match := _NO_ANSWER.match(wrong[0])) is not None and _PRINTS.search(typed.definition(match["function"]) or ""):
+        wrong.append(PRINTED)
     return {"passed": not wrong, "told": wrong or [PASSED]}
 
 

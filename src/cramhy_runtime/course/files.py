@@ -65,8 +65,8 @@ def earlier(page: Page, language: str) -> dict[str, str]:
 def settle(page: Page, language: str) -> None:
     """Make a session that goes on from page to page, in one folder, ready for ``page``: that of a tab. Errors: `OSError`.
 
-    The files of earlier pages are there. On the pages on which the student's own package grows, its system is that one, and on all others the
-    one that comes with cramhy, which has the same name.
+    The files of earlier pages are there. On the pages on which the student's own package grows, its system is that one. On all others it is
+    the one that comes with cramhy, which has the same name.
     """
     for name, text in earlier(page, language).items():
         provide(name, text)

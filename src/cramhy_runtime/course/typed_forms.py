@@ -54,6 +54,11 @@ class TypedForms:
                 refused[name] = None
         return next((name for name in reversed(refused) if name in defined), None)
 
+    def definition(self, name: str) -> str | None:
+        """The form that was answered last of those that define ``name``; ``None`` if there is none."""
+        found = (form for each in reversed(self.texts) for form in reversed(forms(each.text[: each.upto])))
+        return next((form for form in found if (match := _DEFINED.match(form)) is not None and match[1].lower() == name.lower()), None)
+
     def form(self, variable: str | None = None) -> str | None:
         """The form that was answered last, or that which gave ``variable`` its value; ``None`` if there is none."""
         for each in reversed(self.texts):

@@ -39,6 +39,8 @@ _MISSING = re.compile(
 """The report of a form with a name that may not have a meaning yet."""
 _TYPED = re.compile(r"\(typed(?:\s+([^\s()]+))?\)")
 """In a form of a check: stands for what the student has typed."""
+_OF_LISP = re.compile(r"\b(gave|give) (NIL|T)(?=[,.])")
+_IN_HY = {"NIL": "None", "T": "True"}
 NO_TURTLE = "There is no turtle yet. Start it as the page says, and check again."
 
 
@@ -92,6 +94,8 @@ def faults(
             with Noticing({key: table[key] for key in KEYS & set(table)}, evaluate, language) as noticing:
                 wrong = _tried(exercise, check, seed, evaluate, len(others) > 1 or varies)
             wrong = wrong or said(noticing.faults(), answers=True)
+            if language == "hy":
+                wrong = [_OF_LISP.sub(lambda match: f"{match[1]} {_IN_HY[match[2]]}", sentence) for sentence in wrong]
             if wrong:
                 return [table["say"]] if "say" in table else [*wrong, *([table["hint"]] if "hint" in table else [])]
     return []
