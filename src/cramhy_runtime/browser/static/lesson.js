@@ -82,9 +82,9 @@ export class Lesson {
 
   // ------------------------------------------------------------------------------------------------ the session and the pages
 
-  // Where something was typed since the user turned to this page, the session belongs to it.
+  // Where something was typed since the user turned to this page, the session belongs to it. The first prompt of all comes by itself.
   #note() {
-    if (tab.prompts > this.seen) this.owner = this.pages[this.number].name;
+    if (tab.prompts > Math.max(this.seen, 1)) this.owner = this.pages[this.number].name;
   }
 
   // A button that begins a session for this page, if that which is there belongs to another one.
