@@ -42,8 +42,8 @@ class CellDebugger:
     """The debugger of one cell.
 
     ask: a function of a prompt that gives the line typed, or ``None`` where nobody can be asked. write: a function that prints a text.
-    in_hy: a function that says whether the cell is one of Hy. ``told``: the `Told` of the first error that nobody handled; ``None`` if there
-    was none. It is made where the stack still stands.
+    in_hy: a function that says whether the cell is one of Hy. ``told``: the `Told` of the first error that nobody handled, or ``None``. It
+    is made where the stack still stands.
     """
 
     def __init__(self, session, write, ask=None, in_hy=lambda: False):
