@@ -1,7 +1,7 @@
 """Makes the recorded answers of other programs again: ``make recorded``, or ``python tests/recorded.py [NAME ...]``.
 
 `RECORDINGS` says which file holds answers of which program, and by which command they are made. A recording whose program (or library) is
-not installed is told and left as it is. ``git diff`` shows what has changed. Debian has what they need: apt install sbcl cl-alexandria.
+not installed is told and left as it is. ``git diff`` shows what has changed. Debian has what they need: apt install sbcl cl-alexandria roslisp.
 ``test_recorded.py`` makes a few of them again where SBCL is, as the tests of continuous integration do.
 """
 
@@ -109,6 +109,12 @@ RECORDINGS = [
         (*SBCL, "record.lisp", "alexandria"),
         comments=True,
         library="/usr/share/common-lisp/source/alexandria",
+    ),
+    Recording(
+        TESTS / "libraries" / "s_xml.txt",
+        (*SBCL, "record.lisp", "/usr/share/roslisp/s-xml/", "s-xml"),
+        comments=True,
+        library="/usr/share/roslisp/s-xml",
     ),
     Recording(TESTS / "libraries" / "uiop.txt", (*SBCL, "record.lisp", "uiop"), comments=True),
     Recording(

@@ -144,6 +144,24 @@ def test_cl_transforms_gives_what_that_of_roslisp_common_gives_on_sbcl():
         assert run(Session(time="virtual", turtlesim=False), "roslisp_common") == []
 
 
+def test_cl_urdf_gives_what_that_of_roslisp_common_gives_on_sbcl():
+    """As above, with the library s-xml. On SBCL a number of the file without a point is an integer; here all are floats."""
+    with Image():
+        assert run(Session(time="virtual", turtlesim=False), "cl_urdf") == []
+
+
+def test_roslisp_utilities_gives_what_that_of_roslisp_common_gives_on_sbcl():
+    """As above. There a node was a function that only notes that it runs; here it is one."""
+    with Image():
+        assert run(Session(time="virtual", turtlesim=False), "roslisp_utilities") == []
+
+
+@foreign
+def test_cl_utils_of_roslisp_common_gives_what_it_gives_on_sbcl(begin):
+    """Its systems cl-utils, extended-reals, data-structures, cl-graph and cl-probability are loaded from the checkout."""
+    assert run(begin(Path(CHECKOUTS) / "roslisp_common"), "cl_utils") == []
+
+
 LESSONS = {
     "01-Lesson_01_Lisp_Introduction": {"UnboundVariable": 2, "UndefinedFunction": 1},
     "02-Lesson_02_CRAM_Basics": {"DesignatorError": 1},

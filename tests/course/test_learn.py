@@ -405,7 +405,7 @@ def test_another_node_that_drives_the_turtle_is_named(typed):
     shown = typed([*LOAD, step_with(1, "lisp", "first-square"), "(turtlesim:draw-square)", "(defun drive-square () 1)", ":check", ":quit"])
     assert "The node /draw_square may drive the turtle, too. End it: rosnode kill /draw_square" in shown
     assert "may drive the turtle" not in typed(
-        [*LOAD, step_with(1, "lisp", "first-square"), "(defun drive-square () 1)", ":check", ":quit"]
+        [*LOAD, step_with(1, "lisp", "first-square"), "(turtlesim:press :up)", "(defun drive-square () 1)", ":check", ":quit"]
     )
 
 
@@ -480,3 +480,71 @@ def test_a_check_tells_no_warnings_of_the_compiler(typed):
     before, after = told.split("(defun rectangle-around (width height) (* 4", 1)
     assert "There is no function rectangle-around yet." in before and "STYLE-WARNING" not in before
     assert "The variable HEIGHT is defined but never used." in after
+
+
+# --------------------------------------------------------------------------------------------- errors in files of the course
+
+LOADING = {
+    "lisp": LOAD[:2],
+    "hy": ["(import turtlesim-in-hy.process-modules [init])", "(import turtlesim-in-hy.selecting-process-modules [perform-some-motion])"],
+}
+DRIVE = "(perform-some-motion (desig:a motion (type {}) (speed 3)))"
+
+
+def words(shown):
+    """The words of the guide's remarks, without the line ends that the width made."""
+    return " ".join(shown.replace("\n;", " ").split())
+
+
+@pytest.mark.parametrize("language", ["lisp", "hy"])
+def test_an_error_in_a_file_leads_to_the_line_of_the_student(typed, language):
+    name = {"lisp": "(defun dash ()", "hy": "(defn dash []"}[language]
+    lines = [":page 8 99", *LOADING[language], "(init)", name, f"  {DRIVE.format('drving')})", "(dash)", "q" if language == "lisp" else "1"]
+    shown = words(typed([*lines, ":quit"], "choosing-a-module", language))
+    assert f"In what you have typed, this leads there: {DRIVE.format('drving')})" in shown
+    direct = words(typed([*lines[:4], DRIVE.format("drving"), ":quit"], "choosing-a-module", language))
+    assert "No matching process module found" in direct and "this leads there" not in direct
+
+
+@pytest.mark.parametrize("language", ["lisp", "hy"])
+def test_a_robot_that_was_not_started_is_told(typed, language):
+    place = step_of_form(8, language, "(init)")
+    shown = words(typed([place, ":next", *LOADING[language], DRIVE.format("driving"), ":quit"], "choosing-a-module", language))
+    assert f"The robot is started by a form that you have not typed: (init) {place} leads back to it." in shown
+    value = "(with-fields (x) (value *turtle-pose*) x)" if language == "lisp" else "(with-fields [x] turtle-pose.value x)"
+    more = [] if language == "lisp" else ["(import turtlesim-in-hy.control-turtlesim [turtle-pose])"]
+    shown = words(typed([place, ":next", *LOADING[language], *more, value, ":quit"], "choosing-a-module", language))
+    assert "No message is there yet" in shown and f"(init) {place} leads back to it." in shown
+    shown = typed([place, ":next", *LOADING[language], "(init)", DRIVE.format("driving"), ":quit"], "choosing-a-module", language)
+    assert "The robot is started" not in shown
+
+
+def test_a_keyword_in_the_place_of_a_text_is_told_in_hy(typed):
+    shown = words(typed(["(defn go [where #^ int how] where)", "(go :right 7)", ":quit"], language="hy"))
+    assert 'In Hy a word behind a colon says which argument comes next. Write a text if it is a value: "right"' in shown
+
+
+def test_a_package_of_names_that_was_not_chosen_is_told(typed):
+    place = step_of_form(8, "hy", "(lisp-package :turtlesim-in-hy)")
+    plan = "(top-level (with-process-modules-running [turtlesim-navigation] (sleep 0)))"
+    shown = words(typed([place, ":next", *LOADING["hy"], plan, ":quit"], "choosing-a-module", "hy"))
+    told = (
+        f"The names of turtlesim-in-hy are there after a form that you have not typed: (lisp-package :turtlesim-in-hy) {place} leads back"
+    )
+    assert told in shown
+    shown = typed([place, "(lisp-package :turtlesim-in-hy)", *LOADING["hy"], plan, ":quit"], "choosing-a-module", "hy")
+    assert "that you have not typed" not in shown and "Unknown process module" not in shown
+
+
+@pytest.mark.parametrize("language", ["lisp", "hy"])
+def test_a_check_that_fails_names_what_the_page_begins_with(typed, language):
+    first = {"lisp": LOAD[0], "hy": "(lisp-package :turtlesim-in-hy)"}[language]
+    lines = [step_of_form(8, language, first), step_with(8, language, "dancing"), ":check", ":quit"]
+    assert f"This page begins with a form that you have not typed: {first}" in words(typed(lines, "choosing-a-module", language))
+
+
+def step_of_form(page, language, form):
+    """The command that leads to the first step of the page with that number that has the form."""
+    return step_with(
+        page, language, lambda part: isinstance(part, Code) and any(each.form == form for each in getattr(part, language) or ())
+    )

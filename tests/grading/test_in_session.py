@@ -48,10 +48,24 @@ def test_questions_with_seeds_and_all_of_them_must_be_right(session):
         ("(nothing-here 1)", "There is no function nothing-here yet."),
         ("(list (nothing-here))", "There is no function nothing-here yet."),
         ("*nothing*", "There is no variable *nothing* yet."),
+        ("(1+ *nothing*)", "There is no variable *nothing* yet."),
+        ("(funcall #'nothing-here 1)", "There is no function nothing-here yet."),
     ],
 )
 def test_what_is_not_defined_yet_is_told_plainly(session, form, told):
     assert of(session, {"ask": [[form, "1"]]}) == [told]
+
+
+def test_a_function_that_is_counted_or_replaced_and_not_there_opens_no_debugger(turtle):
+    opened = []
+    debugger = conditions.install_debugger(opened.append)
+    try:
+        counted = of(turtle, {"do": "(nothing-here)", "calls": {"nothing-here": 1}})
+        replaced = of(turtle, {"ask": [["1", "1"]], "instead": {"nothing-here": "(lambda () 1)"}, "say": "No."})
+    finally:
+        conditions.install_debugger(debugger)
+    assert "There is no function nothing-here yet." in counted
+    assert replaced == ["There is no function nothing-here yet."] and not opened
 
 
 def test_an_error_below_the_function_is_told_with_its_place(session):
@@ -67,6 +81,17 @@ def test_a_hint_is_added_and_say_replaces(session):
 
 def test_the_first_check_that_fails_is_told(session):
     assert of(session, {"ask": [["1", "1"]]}, {"ask": [["2", "1"]]}, {"ask": [["3", "1"]]}) == ["2 should give 1, and gave 2."]
+
+
+def test_of_many_wrong_answers_three_are_told_and_of_many_errors_one(session):
+    assert len(of(session, {"ask": [[str(number), "0"] for number in range(1, 7)]})) == 3
+    assert len(of(session, {"ask": [[f"(error {text})", "0"] for text in ('"one"', '"two"')]})) == 1
+
+
+def test_true_and_false_are_told_in_the_language_of_the_check(session):
+    table = {"ask": [["(> 1 2)", "T"]]}
+    assert faults("t", [table], session.evaluate_text, "lisp") == ["(> 1 2) should give T, and gave NIL."]
+    assert faults("t", [table], session.evaluate_text, "hy") == ["(> 1 2) should give True, and gave None."]
 
 
 def test_a_table_that_means_nothing_is_an_error_of_the_page(session):

@@ -46,6 +46,9 @@ def told_of(session, **table):
 SQUARE = {"way": "repeat 4 [ forward 1 left 90 ]"}
 AGAIN = "The lines of the drawing are right, but 1.0 m of them were drawn more than once."
 OTHER = "The lines of the drawing are right, but the turtle drew them in another order, or the other way round."
+COLOUR = "The lines of the drawing are right, but 1.1 m of them have another colour than they should, near x 4.0, y 4.0."
+MISSING = "2.0 m of the drawing are missing, the first near x 4.0, y 4.0."
+MUCH = "1.1 m of the drawing should not be there, the first near x 4.0, y 4.0."
 
 
 DRAWN = [
@@ -56,6 +59,8 @@ DRAWN = [
     ("(progn (left 1.5708) (square -1.5708))", {**SQUARE, "ordered": True}, [OTHER]),
     ("(pen)", {"way": "forward 1", "width": 7}, []),
     ("(pen)", {"way": "forward 1", "width": 3}, ["The lines are 7 pixels wide. They should be 3."]),
+    ("(ahead 1)", {"way": "colour 255 0 0 forward 1"}, [COLOUR]),
+    ("(ahead 1)", {"way": "colour 255 0 0 forward 2"}, [MISSING, MUCH]),
     ("(progn (ahead 1) (pen))", {"way": "forward 2", "width": 7}, ["The lines are 3 and 7 pixels wide. They should be 7."]),
 ]
 

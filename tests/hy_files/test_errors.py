@@ -265,6 +265,21 @@ def test_a_function_of_a_lisp_package_is_named_with_its_module(write, program):
 
 
 @pytest.mark.parametrize(
+    "text, told",
+    [
+        ("(retry)", "  (retry) stands inside (with-failure-handling [clause...] form...), in a clause or among the forms."),
+        ("(leave 3)", "  (leave value) stands inside (with-failure-handling [clause...] form...), in a clause."),
+        ('(make-msg "geometry_msgs/Vector3" :x 1)\n(print x)', "NameError: name 'x' is not defined"),
+        ("(defn go [?where] ?where)\n(go)", "  The function GO takes 1 argument."),
+    ],
+)
+def test_a_name_of_hy_is_told_in_words_of_hy(write, program, text, told):
+    write("plan.hy", f"(require cramhy *)\n{text}\n")
+    shown = program("hy", "plan.hy").stderr
+    assert shown.splitlines()[-1] == told and "hyx_" not in shown
+
+
+@pytest.mark.parametrize(
     "text, operator",
     [
         ("(par (print 1) (print 2))\n", "par"),

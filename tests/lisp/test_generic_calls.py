@@ -72,3 +72,18 @@ def test_the_next_method_gets_what_this_one_got(lisp, call):
     assert lisp("(moved *arm* 1)") == f"(T (:MOVED {7 if '7' in call else 1}) (1))"
     lisp("(remove-method #'move-to (find-method #'move-to nil '(base t)))")
     assert lisp("(handler-case (moved *arm* 1) (error () :none))") == ":NONE"
+
+
+def test_methods_on_the_class_of_conditions_classes(lisp):
+    """A class of conditions is an instance of SB-PCL::CONDITION-CLASS, be it ours or a user's, and no standard class, as on SBCL."""
+    lisp("(define-condition lost (error) ((place :initarg :place)))")
+    lisp("(defclass thing () ()) (defstruct part) (defgeneric kind (object class))")
+    lisp("(defmethod kind (object (class standard-class)) :standard)")
+    lisp("(defmethod kind (object (class structure-class)) :structure)")
+    kinds = "(mapcar (lambda (name) (ignore-errors (kind 1 (find-class name)))) '(lost division-by-zero thing error part integer warning))"
+    lisp("(defmethod kind (object (class sb-pcl::condition-class)) :condition)")
+    assert lisp(kinds) == "(:CONDITION :CONDITION :STANDARD :CONDITION :STRUCTURE NIL :CONDITION)"
+    lisp("(defmethod kind :around (object (class class)) (list (call-next-method)))")
+    assert lisp(kinds) == "((:CONDITION) (:CONDITION) (:STANDARD) (:CONDITION) (:STRUCTURE) NIL (:CONDITION))"
+    lisp("(defmethod kind ((object fixnum) (class sb-pcl::condition-class)) (list :small (call-next-method object class)))")
+    assert lisp("(list (kind 1 (find-class 'error)) (kind (expt 2 70) (find-class 'lost)))") == "(((:SMALL :CONDITION)) (:CONDITION))"

@@ -49,6 +49,10 @@ def test_extending_without_permission_is_an_error():
         "Functor P is being redefined in fact-group G2.\n                Other definitions were in fact-groups (G1)."
     )
     assert ask("(p ?x)") == "(((?X . 1)))"
+    with pytest.raises(BaseException) as refused:
+        group("g2", "((p 2))")
+    told = "The list behind the name of a group names the predicates of others that it may add to: p is missing there."
+    assert hint_for(condition_of(refused.value)).splitlines()[-1] == told
 
 
 @pytest.mark.parametrize("head", ["?x", "5", "nil", '"foo"'])
@@ -321,7 +325,10 @@ def test_an_error_in_a_definition_names_the_clause_and_its_place(fresh_kernel):
     session.evaluate_text("(defpackage :slips (:use :cl :prolog)) (in-package :slips)")
     with pytest.raises(BaseException) as problem:
         session.evaluate_text("(def-fact-group shelf ()\n  (<- (on cup shelf))\n  (<- (member cup shelf)))")
-    assert hint_for(condition_of(problem.value)) == "in the clause (<- (member cup shelf)) at <repl 2>:3:3"
+    assert hint_for(condition_of(problem.value)).splitlines() == [
+        "in the clause (<- (member cup shelf)) at <repl 2>:3:3",
+        "The list behind the name of a group names the predicates of others that it may add to: member is missing there.",
+    ]
 
 
 @pytest.mark.parametrize("result, datum", [("5", "5"), ("'(5)", "5"), ("'((?x . 1))", "(?X . 1)"), ("t", "T")])

@@ -125,7 +125,55 @@ def test_a_text_that_is_wrong_is_malformed(lisp, text, said):
     assert said in lisp(f'(handler-case (cl-urdf:parse-urdf "{text}") (cl-urdf:urdf-malformed (e) (princ-to-string e)))').replace("\\", "")
 
 
+NO_FILE = "there is no file of this name, and it is not the text of a description: that begins with <."
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("/missing.urdf", f"/missing.urdf: {NO_FILE}"),
+        ("missing.urdf", f"missing.urdf: {NO_FILE}"),
+        ("robots/missing.xacro", f"robots/missing.xacro: {NO_FILE}"),
+        ("package://nowhere/arm.urdf", f"package://nowhere/arm.urdf: {NO_FILE}"),
+        ("", "the description, line 1: this is no XML: it is empty."),
+        ("hello", "the description, line 1: this is no XML: syntax error, column 1."),
+    ],
+)
+def test_a_name_instead_of_a_text_is_told(lisp, text, said):
+    """In both readers of a text, of which the second looks for what worlds do not need."""
+    report = "(cl-urdf:urdf-malformed (e) (princ-to-string e))"
+    assert lisp(f'(handler-case (cl-urdf:parse-urdf "{text}") {report})') == f'"{said}"'
+    assert lisp.error(f'(robot-world:description-parts "{text}")') == said
+
+
+def test_a_file_that_is_there_is_given_as_a_pathname(lisp, tmp_path):
+    path = tmp_path / "arm.urdf"
+    path.write_text("<robot name='r'><link name='a'/></robot>")
+    said = lisp(f'(handler-case (cl-urdf:parse-urdf "{path}") (cl-urdf:urdf-malformed (e) (princ-to-string e)))').replace("\\", "")
+    assert said == (
+        f'"{path} is the name of a file, and PARSE-URDF takes a string for the text of a robot. '
+        f'A file is given as a pathname: (cl-urdf:parse-urdf #P"{path}")"'
+    )
+    assert lisp(f'(cl-urdf:name (cl-urdf:parse-urdf #p"{path}"))') == '"r"'
+    path.write_text("")
+    assert (
+        lisp(f'(handler-case (cl-urdf:parse-urdf #p"{path}") (cl-urdf:urdf-malformed (e) (princ-to-string e)))')
+        == f'"{path}, line 1: this is no XML: it is empty."'
+    )
+
+
+def test_a_file_that_is_missing_is_named(lisp):
+    assert "missing.urdf" in lisp.error('(cl-urdf:parse-urdf #p"/missing.urdf")')
+    assert "missing.xacro" in lisp.error('(cl-urdf:parse-urdf #p"/missing.xacro")')
+    assert "missing.urdf" in lisp.error('(robot-world:description-text "/missing.urdf")')
+
+
+def test_a_robot_as_an_element_of_s_xml(lisp):
+    assert lisp("(s-xml:xml-element-name (cl-urdf:generate-urdf-xml (arm)))") == ":|robot|"
+    again = "(cl-urdf:parse-urdf (s-xml:print-xml-string (cl-urdf:generate-urdf-xml (arm)) :input-type :xml-struct))"
+    assert lisp(f"(equal (cl-urdf:generate-urdf-string {again}) (cl-urdf:generate-urdf-string (arm)))") == "T"
+
+
 def test_what_is_missing_is_named(lisp):
     assert lisp.error('(cl-urdf:get-link-chain (arm) "odom" "hand")') == 'There is no link "hand" in #<ROBOT arm>.'
-    assert "s-xml" in lisp.error("(cl-urdf:generate-urdf-xml (arm))")
     assert "was not read from a description" in lisp.error('(in-world (make-instance \'cl-urdf:robot :name "r"))')

@@ -8,6 +8,8 @@ from __future__ import annotations
 import difflib
 import re
 
+from cramhy_runtime.kernel.typing_names import NamedTuple
+
 from . import checking, contents, files, shown, slips
 from .parts import Code, File, Task, Typed, text_in
 from .progress import Progress
@@ -72,6 +74,17 @@ def told_of_open_form(lines: list[str]) -> str | None:
     count = text.count("(") - text.count(")")
     close = f"Close it by {')' * count}" if 0 < count < 10 else "Close its parentheses"
     return f"; A form is open{taken}. {close}, or press Ctrl-C to begin anew."
+
+
+_NOT_STARTED = re.compile(r"No message is there yet|No ROS node runs here")
+
+
+class Failure(NamedTuple):
+    """What the guide is told of an error: its text, whether its place is in a file, and a remark on what the student typed before."""
+
+    told: str
+    in_a_file: bool
+    led_there: str | None
 
 
 class Guide:
@@ -203,18 +216,27 @@ class Guide:
             if not _OF_DEBUGGER.match(typed.prompt)
         }
 
+    def _untyped(self):
+        """The forms of the page up to here that were not typed, the number of the step, and that of the page."""
+        forms = [slips.Form(text, step) for text, step in self._forms().items() if _squeezed(text) not in self._typed]
+        return forms, self.place + 1, contents.NAMES.index(self.page.name) + 1
+
     def of_debugger(self) -> str:
         """What to say when the debugger has opened."""
         more = " You need not read the choices." if self.page.name in contents.NAMES[:3] else ""
         cue, self._cue = self._cue, None
         return "\n".join(filter(None, [cue, f"; q leads back to the prompt.{more}"]))
 
-    def failed(self, missing: str | None = None) -> None:
-        """What was typed last has failed, or was ended by Ctrl-C. missing: the name that was not defined."""
+    def failed(self, missing: str | None = None, error: Failure | None = None) -> None:
+        """What was typed last has failed, or was ended by Ctrl-C. missing: the name that was not defined. error: what is known of it."""
         self._cue = self._cue or slips.of_failed_form(self._text, self.language)
-        if missing is not None and self._cue is None:
-            forms = [slips.Form(text, step) for text, step in self._forms().items() if _squeezed(text) not in self._typed]
-            self._cue = slips.of_missing(missing, forms, self.place + 1, contents.NAMES.index(self.page.name) + 1)
+        if missing is not None:
+            self._cue = self._cue or slips.of_missing(missing, *self._untyped())
+        elif error is not None:
+            self._cue = self._cue or slips.of_error(error.told, self._text, self.language)
+            self._cue = self._cue or slips.of_unready(*self._untyped(), told=error.told)
+            if error.in_a_file or _NOT_STARTED.search(error.told):
+                self._cue = self._cue or slips.of_unready(*self._untyped()) or error.led_there
         self.replay.failed()
         if self._read is not None and any(line.startswith(ERROR) for line in self._read.answer.splitlines()):  # as it should
             self._cue = None
@@ -376,7 +398,8 @@ class Guide:
             return "\n".join([*self._filled(found["told"]), OVER])
         more = self._hints.get(self.place, 0) < len(part.hints)
         hint = "; :hint gives a hint." if more else "; :hint shows the hints again."
-        return "\n".join(["Not yet.", *self._filled(found["told"]), hint])
+        unprepared = slips.of_unprepared(*self._untyped())
+        return "\n".join(["Not yet.", *self._filled(found["told"]), *filter(None, [unprepared]), hint])
 
     def _filled(self, texts):
         return [shown.filled(line, self.style) for text in texts for line in text.split("\n")]
@@ -386,4 +409,4 @@ def _squeezed(form):
     return " ".join(form.split()).lower()
 
 
-__all__ = ["command", "COMMANDS", "Guide", "meant", "PageError"]
+__all__ = ["command", "COMMANDS", "Failure", "Guide", "meant", "PageError"]

@@ -15,10 +15,14 @@ from pathlib import Path
 import hy
 
 from cramhy_runtime import kernel
+from cramhy_runtime.ground import source_places
 from cramhy_runtime.ground.condition_types import UnboundVariable, UndefinedFunction
+from cramhy_runtime.ground.conditions import guarded
 from cramhy_runtime.ground.packages import is_symbol, symbol_name
+from cramhy_runtime.ground.python_exceptions import from_python
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.languages.commonlisp.streams import streams
+from cramhy_runtime.languages.commonlisp.tools.advice import explanation
 from cramhy_runtime.repl import hy_prompt, prompt_words
 from cramhy_runtime.repl.console import Console
 from cramhy_runtime.repl.line_input import BROKEN_OFF, Lines
@@ -28,7 +32,7 @@ from cramhy_runtime.session.session import Interruption
 
 from . import contents, files, guide
 from .checking import hy_evaluator, lisp_evaluator
-from .guide import Guide
+from .guide import Failure, Guide
 from .progress import Progress
 from .reading import PageError
 from .shown import Style, filled
@@ -58,7 +62,7 @@ class Guided(Listener):
             self._greeted = True
             self.tell(self.guide.greeting())
         if self.failed():
-            self.guide.failed(self.missing())
+            self.guide.failed(*self.failure())
         while not self.guide.over:
             if self._begins() and not self.level and (cue := self.guide.cue()):
                 self.tell(cue)
@@ -123,7 +127,7 @@ class Guided(Listener):
         self.guide.typed(text)
 
     def announce(self, condition: Any, restarts: list[Any]) -> None:
-        self.guide.failed(_name_of(condition))
+        self.guide.failed(_name_of(condition), _failure(condition))
         super().announce(condition, restarts)
         self.tell(self.guide.of_debugger())
         self._answered_there = None
@@ -136,9 +140,9 @@ class Guided(Listener):
         """Whether the text that was read last has failed without a debugger."""
         return False
 
-    def missing(self) -> str | None:
-        """The name whose value the text that was read last has not found, if it has failed because of that."""
-        return None
+    def failure(self) -> tuple[str | None, Failure | None]:
+        """Of the text that was read last and has failed: the name whose value it has not found, and what else is known of the error."""
+        return None, None
 
     def evaluator(self) -> Callable[[str], list[Any]]:
         """The function by which a check evaluates texts."""
@@ -177,8 +181,8 @@ class HyPrompt(Guided, hy_prompt.HyPrompt):
         before, self._error = self._error, self.repl.locals.get(hy_prompt.LAST_ERROR)
         return self._error is not before
 
-    def missing(self):
-        return _name_of(self._error)
+    def failure(self):
+        return _name_of(self._error), _failure(self._error)
 
 
 def _name_of(error: Any) -> str | None:
@@ -186,6 +190,18 @@ def _name_of(error: Any) -> str | None:
     if isinstance(error, NameError):
         return hy.unmangle(error.name) if error.name else None
     return symbol_name(error.name) if isinstance(error, (UnboundVariable, UndefinedFunction)) and is_symbol(error.name) else None
+
+
+def _failure(error: Any) -> Failure:
+    """What the guide is told of ``error``, which is being shown."""
+    place = getattr(error, "position", None) or source_places.exception_position(error)
+    led = source_places.typed_position(error, sys._getframe(1))
+    line = source_places.excerpt(led).splitlines()
+    return Failure(
+        guarded(lambda: explanation(from_python(error)), lambda problem: ""),
+        place is not None and not source_places.is_typed(place[0]),
+        f"; In what you have typed, this leads there: {line[0].strip()}" if line else None,
+    )
 
 
 def run(
@@ -226,6 +242,7 @@ def _go(way, make_session, lines):
             def __init__(self, repl, session):
                 super().__init__(repl, session)
                 self.input = lines or self.input
+                self.failed()  # an error of the page before is not one of this page
 
         return hy_prompt.run(make_session, "", kind=OfPage, farewell="")
     prompt = LispPrompt(make_session, lines)

@@ -127,6 +127,18 @@ def of_failed_form(text: str, language: str) -> str | None:
     return None
 
 
+_NAMED = re.compile(r"unexpected keyword argument '(\w+)'")
+
+
+def of_error(told: str, text: str, language: str) -> str | None:
+    """What to say of an error with the text ``told``, for the form ``text``: a keyword of Lisp where Hy wants a text; else ``None``."""
+    found = _NAMED.search(told) if language == "hy" else None
+    word = found and found[1].replace("_", "-")
+    if word and re.search(rf":{re.escape(word)}(?=[\s)])", text):
+        return f'; In Hy a word behind a colon says which argument comes next. Write a text if it is a value: "{word}"'
+    return None
+
+
 # ---------------------------------------------------------------------------------------------------------- what was passed over
 
 _DEFINES = re.compile(
@@ -134,6 +146,8 @@ _DEFINES = re.compile(
     r"\s+([^\s()\[\]]+)"
 )
 _LOADS = re.compile(r"\s*\((?:import|require|in-package|lisp-package|ros-load:load-system|load|defpackage)\s")
+_STARTS = re.compile(r"\s*\((?:[\w-]+\.)?(?:init|start-ros-node|init-ros-turtle)[\s)]")
+_LEADS_TO = re.compile(r"\s*\((?:lisp-package|in-package)\s+:([^\s()]+)\s*\)")
 
 
 class Form(NamedTuple):
@@ -171,6 +185,29 @@ def of_missing(name: str, forms: Iterable[Form], here: int, page: int) -> str | 
     return None
 
 
+def of_unready(forms: Iterable[Form], here: int, page: int, told: str = "") -> str | None:
+    """What to say of an error in a file, if one of ``forms``, which were not typed, starts the robot; else ``None``.
+
+    told: the text of an error at any place, instead. Then it is about a form that leads to the package of a name that the text guesses.
+    here, page: as of `of_missing`.
+    """
+    for form in forms:
+        package = _LEADS_TO.match(form.text)
+        if package and f"did you mean {package[1]}::" in told.lower():
+            return _lack(form, here, page, f"The names of {package[1]} are there after")
+        if not told and _STARTS.match(form.text):
+            return _lack(form, here, page, "The robot is started by")
+    return None
+
+
+def of_unprepared(forms: Iterable[Form], here: int, page: int) -> str | None:
+    """What to say of a task that is not solved, where one of ``forms``, which were not typed, loads or starts something."""
+    for form in forms:
+        if _LOADS.match(form.text) or _STARTS.match(form.text) or _LEADS_TO.match(form.text):
+            return _lack(form, here, page, "This page begins with")
+    return None
+
+
 def _lack(form, here, page, what):
     shown = f"{form.text.splitlines()[0]}{' ...' if chr(10) in form.text else ''}"
     if form.step == here:
@@ -178,4 +215,4 @@ def _lack(form, here, page, what):
     return f"; {what} a form that you have not typed: {shown} :page {page} {form.step} leads back to it."
 
 
-__all__ = ["Form", "names", "of_failed_form", "of_line", "of_missing"]
+__all__ = ["Form", "names", "of_error", "of_failed_form", "of_line", "of_missing", "of_unprepared", "of_unready"]

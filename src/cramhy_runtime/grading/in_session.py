@@ -19,6 +19,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.ros import graph
 from cramhy_runtime.session.session import Interruption
 from cramhy_runtime.turtlesim.node import running_simulator
+from cramhy_runtime.turtlesim.teleop import Teleop
 
 from . import judging, schema
 from .exercise import RUN_CRITERIA, Check, Exercise, of_checks
@@ -34,13 +35,15 @@ if TYPE_CHECKING:
 
 _MISSING = re.compile(
     r"(?P<form>[^\n]*) ended with an error:\n\s*"
-    r"(?:The (?:function|variable) (?P<lisp>\S+) is (?:undefined|unbound)|name '(?P<hy>\S+)' is not defined$)"
+    r"(?:The (?P<sort>function|variable) (?P<lisp>\S+) is (?:undefined|unbound)|name '(?P<hy>\S+)' is not defined$)"
 )
 """The report of a form with a name that may not have a meaning yet."""
 _TYPED = re.compile(r"\(typed(?:\s+([^\s()]+))?\)")
 """In a form of a check: stands for what the student has typed."""
-_OF_LISP = re.compile(r"\b(gave|give) (NIL|T)(?=[,.])")
-_IN_HY = {"NIL": "None", "T": "True"}
+_ERROR = "ended with an error:"
+MOST_ANSWERS = 3
+"""So many wrong answers of a check are told, and of several errors one: they are mostly the same one."""
+_LISP_VALUE = re.compile(r"(should give |and gave )(NIL|T)(?=[.,])")
 NO_TURTLE = "There is no turtle yet. Start it as the page says, and check again."
 
 
@@ -92,10 +95,10 @@ def faults(
         varies = "vary" in table or table.get("start") == "anywhere"
         for seed in [*range(1, check.seeds + 1), *([fresh_seed()] if varies else [])]:
             with Noticing({key: table[key] for key in KEYS & set(table)}, evaluate, language) as noticing:
-                wrong = _tried(exercise, check, seed, evaluate, len(others) > 1 or varies)
+                if noticing.absent:
+                    return [_no_function(noticing.absent[0])]
+                wrong = _tried(exercise, check, seed, evaluate, language, len(others) > 1 or varies)
             wrong = wrong or said(noticing.faults(), answers=True)
-            if language == "hy":
-                wrong = [_OF_LISP.sub(lambda match: f"{match[1]} {_IN_HY[match[2]]}", sentence) for sentence in wrong]
             if wrong:
                 return [table["say"]] if "say" in table else [*wrong, *([table["hint"]] if "hint" in table else [])]
     return []
@@ -142,7 +145,7 @@ def _looks(table):
     return not any(kind in table for kind in ("do", "ask", "tests", "source"))
 
 
-def _tried(exercise: Exercise, check: Check, seed: int, evaluate, tell_call):
+def _tried(exercise: Exercise, check: Check, seed: int, evaluate, language, tell_call):
     work, values = job(exercise, check, seed, {})
     reports = []
 
@@ -170,13 +173,12 @@ def _tried(exercise: Exercise, check: Check, seed: int, evaluate, tell_call):
     if told.error and told.doing == "before":
         return [f"{told.what} cannot be used:\n{told.error['text']}"]
     judge = judging.of_answers if check.kind == "ask" else judging.of_run
-    wrong = said(judge(check, work, values, told), answers=True)
+    wrong = [_plainer(_worded(sentence, language)) for sentence in said(judge(check, work, values, told), answers=True)]
     if not wrong or check.kind != "do":
-        return [_plainer(sentence) for sentence in wrong]
-    wrong = [_plainer(sentence) for sentence in wrong]
+        return wrong[: 1 if _ERROR in "".join(wrong[:1]) else MOST_ANSWERS]
     if tell_call and not any(work["do"] in sentence for sentence in wrong):
         wrong.append(f"The check called {work['do']}, {_place(work['start'])}.")
-    return [*wrong, *_other_drivers()]
+    return [*wrong, *_other_drivers(language)]
 
 
 def _place(start):
@@ -185,13 +187,25 @@ def _place(start):
     return f"with the turtle at x {x:.1f}, y {y:.1f}, looking to {math.degrees(heading):.0f} degrees"
 
 
-def _other_drivers():
-    """What to say of other nodes that may drive the turtle, too, such as the demonstration that draws squares."""
+def _other_drivers(language):
+    """What to say of other nodes that may drive the turtle, too, such as the demonstration that draws squares.
+
+    The arrow keys of the session are not meant: ``(turtlesim:press ...)`` of a page leaves their node behind, and it drives only
+    when it is told to.
+    """
     topic = graph.active().topics.get("/turtle1/cmd_vel")
     for publication in topic.visible_publications if topic is not None else ():
-        if publication.node is not graph.active().lisp_node:
-            name = publication.node.name
-            yield f"The node {name} may drive the turtle, too. End it: rosnode kill {name} (in Hy, after (in-package :cl-user))"
+        node = publication.node
+        if node is not graph.active().lisp_node and not isinstance(getattr(node, "program", None), Teleop):
+            end = f"rosnode kill {node.name}" if language == "lisp" else f"type (in-package :cl-user), and then rosnode kill {node.name}"
+            yield f"The node {node.name} may drive the turtle, too. End it: {end}"
+
+
+def _worded(sentence, language):
+    """A sentence with true and false as the ``language`` writes them."""
+    if language == "lisp":
+        return sentence
+    return _LISP_VALUE.sub(lambda match: match[1] + {"NIL": "None", "T": "True"}[match[2]], sentence)
 
 
 def _plainer(sentence):
@@ -201,10 +215,14 @@ def _plainer(sentence):
         return sentence
     missing = (match["hy"] or match["lisp"].rpartition(":")[2]).lower().replace("_", "-")
     form = match["form"].lower().replace("_", "-")
-    if form == missing:
-        return f"There is no variable {missing} yet."
-    called = re.search(rf"\({re.escape(missing)}[\s)]", form)
-    return sentence if called is None else f"There is no function {missing} yet."
+    if not re.search(rf"(?<![\w*-]){re.escape(missing)}(?![\w*-])", form):
+        return sentence  # the name stands in something that the form calls
+    called = match["sort"] == "function" if match["sort"] else re.search(rf"\({re.escape(missing)}[\s)]", form)
+    return _no_function(missing) if called else f"There is no variable {missing} yet."
+
+
+def _no_function(name):
+    return f"There is no function {name} yet."
 
 
 # ------------------------------------------------------------------------------------------------------------------- as it is

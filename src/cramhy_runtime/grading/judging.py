@@ -223,15 +223,28 @@ def _paper(table, values, replay, told):
         yield fault(EMPTY, EMPTY)
         return
     slack = paper.get("slack", SLACK)
-    found = drawings.difference(target, drawn, paper.get("tolerance", TOLERANCE))
+    tolerance = paper.get("tolerance", TOLERANCE)
+    found = drawings.difference(target, drawn, tolerance)
+    wrong = not (found.missing <= slack and found.much <= slack)
+    if wrong and _same_lines(target, drawn, tolerance, slack):
+        metres = found.missing or found.much
+        other = f"The lines of the drawing are right, but {metres:.1f} m of them have another colour than they should"
+        yield Fault("A part of the drawing has another colour.", f"{other}.", f"{other}, near {_point(found.missing_at or found.much_at)}.")
+        return
     if not found.missing <= slack:
         missing = f"{found.missing:.1f} m of the drawing are missing"
         yield Fault("A part of the drawing is missing.", f"{missing}.", f"{missing}, the first near {_point(found.missing_at)}.")
     if not found.much <= slack:
         much = f"{found.much:.1f} m of the drawing should not be there, the first near {_point(found.much_at)}."
         yield fault("There is too much in the drawing.", much)
-    if found.missing <= slack and found.much <= slack:
+    if not wrong:
         yield from _pen_and_order(paper, target, drawn, replay, values)
+
+
+def _same_lines(target, drawn, tolerance, slack):
+    """Whether two drawings are equal but for their colours."""
+    found = drawings.difference(*([(None, line) for _, line in drawing] for drawing in (target, drawn)), tolerance)
+    return found.missing <= slack and found.much <= slack
 
 
 def _pen_and_order(paper, target, drawn, replay, values):

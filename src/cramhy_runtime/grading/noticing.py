@@ -14,8 +14,10 @@ The process of a submission has none of this: it could forge it.
 from __future__ import annotations
 
 import re
+from contextlib import contextmanager, suppress
 
 from cramhy_runtime.cpl.hooks import on_fail
+from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.process_modules.modules import on_process_module_started
@@ -52,6 +54,16 @@ _COUNTED = {
 """Forms, by language, after which the calls of a function are counted, and those that give the number and count no longer."""
 
 
+@contextmanager
+def _no_debugger():
+    """In the block an error is raised, and opens no debugger: nobody has typed the form."""
+    debugger = conditions.install_debugger(None)
+    try:
+        yield
+    finally:
+        conditions.install_debugger(debugger)
+
+
 class Noticing:
     """A context in which is noticed what ``table`` of a check asks for. evaluate: as of `in_session.faults`. Raises `ExerciseError`."""
 
@@ -61,6 +73,8 @@ class Noticing:
         self.failures: set[str] = set()
         self.calls: dict[str, int] = {}
         self.replaced: list[str] = []
+        self.absent: list[str] = []
+        """Functions whose place another one should take, and which are not there."""
         for name, kind in (("motions", list), ("calls", dict), ("failure", str), ("instead", dict)):
             if name in table and not isinstance(table[name], kind):
                 raise ExerciseError(f"{name} is {table[name]!r}, and not a {kind.__name__}.")
@@ -71,14 +85,17 @@ class Noticing:
         if "failure" in self.table:
             on_fail.add(lambda datum: self._failure(datum), "check of a task")
         for name in self.table.get("calls", ()):
-            try:
+            with suppress(Exception), _no_debugger():  # there may be no such function yet; the plan tells of that
                 self.evaluate(_COUNTED[self.language][0].format(name=name))
-            except Exception:  # there is no such function yet, of which the plan tells
-                continue
-            self.calls[name] = 0
+                self.calls[name] = 0
         for name, form in self.table.get("instead", {}).items():
-            self.evaluate(_INSTEAD[self.language][0].format(name=name, form=form))
-            self.replaced.append(name)
+            try:
+                with _no_debugger():
+                    self.evaluate(_INSTEAD[self.language][0].format(name=name, form=form))
+            except Exception:
+                self.absent.append(name)
+            else:
+                self.replaced.append(name)
         return self
 
     def __exit__(self, *problem: object) -> None:

@@ -28,7 +28,7 @@ def lispify(function):
         return function
     positional = code.co_argcount
     names = code.co_varnames[positional : positional + code.co_kwonlyargcount]
-    known = {keyword(_keyword_name(name)): name for name in names}
+    known = {keyword(keyword_name(name)): name for name in names}
     takes_others = bool(code.co_flags & 0x08)
     takes_rest = bool(code.co_flags & 0x04)
     allow = keyword("ALLOW-OTHER-KEYS")
@@ -80,12 +80,20 @@ def takes_keywords(function, count, names):
         return False
     if "python_keys" in function.__dict__:
         return not count and function.python_keys.issuperset(names)
+    if not lisp_takes_keywords(function):
+        return False
     code = function.__code__
     positional, keys = code.co_argcount, code.co_kwonlyargcount
-    if code.co_flags & 0x0C != 0x0C or not code.co_varnames[positional + keys].startswith(GIVEN):
-        return False
     least = positional - len(function.__defaults__ or ())
     return least <= count <= positional and set(names) <= set(code.co_varnames[positional : positional + keys])
+
+
+def lisp_takes_keywords(function):
+    """Whether ``function`` was compiled from Lisp with ``&key``, and so takes keyword objects, and Python's keywords, too."""
+    if function.__class__ is not FunctionType or function.__code__.co_flags & 0x0C != 0x0C:
+        return False
+    code = function.__code__
+    return code.co_varnames[code.co_argcount + code.co_kwonlyargcount].startswith(GIVEN)
 
 
 class KeywordCalls:
@@ -125,7 +133,8 @@ def keyword_calls(symbol, count, *keys):
     return found
 
 
-def _keyword_name(name):
+def keyword_name(name):
+    """The name of the keyword for a parameter of Python: ``the_other`` is named by ``:the-other``."""
     if name.startswith("hyx_"):  # a parameter of Hy, such as ?x
         return hy_name(name).upper()
     return name.rstrip("_").replace("_", "-").upper()

@@ -17,6 +17,7 @@ _RUNTIME = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 _LIBRARIES = os.path.join(_RUNTIME, "libraries")
 
 
+_TYPED = ("<repl", "<stdin>", "stdin-")  # the last one is Hy 1.2's
 _called = {}  # the names of texts that are no files → the files that they were read from
 
 
@@ -44,15 +45,17 @@ def is_user_file(filename):
     if known is None:
         file = _called.get(filename, filename)
         known = _of_users[filename] = (
-            file.endswith((".lisp", ".hy", ".asd"))
-            and "hy_src" not in file
-            and not file.startswith(_LIBRARIES)
-            or file.startswith(("<repl", "<stdin>", "stdin-"))  # the last one is Hy 1.2's
+            file.endswith((".lisp", ".hy", ".asd")) and "hy_src" not in file and not file.startswith(_LIBRARIES) or file.startswith(_TYPED)
         )
     return known
 
 
 _of_users: dict[str, bool] = {}  # names of files → what `is_user_file` found: it is asked for each frame that a failure passes
+
+
+def is_typed(filename):
+    """Whether text of this file name was typed at a prompt, or piped into it."""
+    return _called.get(filename, filename).startswith(_TYPED)
 
 
 def is_lisp_text(filename):
@@ -110,6 +113,22 @@ def user_position(frame=None):
 def exception_position(exception):
     """The place of the innermost user frame that ``exception`` passed, or ``None``; of macros' own code as in `user_position`."""
     return _innermost_place(_passed(exception))
+
+
+def typed_position(exception, frame):
+    """The place of the innermost text that was typed in an earlier form than the one that runs, or ``None``.
+
+    exception: an error whose own place is in a file; of any other there is none. frame: where it is handled. The frames that the error
+    passed count, and then those that run.
+    """
+    place = getattr(exception, "position", None) or exception_position(exception)
+    if place is None or is_typed(place[0]):
+        return None
+    frames = [*_passed(exception), *circumstance.running(frame)]
+    typed = [each for each in frames if is_typed(each[0].f_code.co_filename)]
+    if not typed or typed[0][0].f_code.co_filename == typed[-1][0].f_code.co_filename:
+        return None
+    return _innermost_place(typed)
 
 
 def _innermost_place(frames):

@@ -24,6 +24,8 @@ MOST_BYTES = 256 * 1024 * 1024
 """Of a file. The Collada files of the robots that people publish have up to 40 MB."""
 MOST_WITHIN = 1_000
 """Elements around an element."""
+_NAME = "this is the name of a file, not the text in it."
+_NO_FILE = "there is no file of this name, and it is not the text of a description: that begins with <."
 _PIECE = 1 << 16  # bytes or characters that are parsed at once
 
 
@@ -103,8 +105,15 @@ def _feed(parser: expat.XMLParserType, text: str | bytes) -> None:
     parser.Parse(b"", True)
 
 
+def file_name(text: str | bytes) -> str | None:
+    """``text`` if it names a file rather than being one, such as ``robots/arm.urdf`` or ``package://arm/arm.urdf``; else ``None``."""
+    name = (text if isinstance(text, str) else text.decode("utf-8", "replace")).strip()
+    looks_so = "/" in name or name.endswith((".urdf", ".xacro", ".xml", ".mjcf", ".dae"))
+    return name if looks_so and len(name) < 1000 and not any(mark in name for mark in "<\n\0") else None
+
+
 def parsed(text: str | bytes, file: str) -> Element:
-    """The root element of an XML text; ``file`` stands in errors. Errors: `DescriptionError`."""
+    """The root element of an XML text; ``file`` stands in errors. Errors: `DescriptionError`, also for a file's name."""
     parser, stack, roots, count = expat.ParserCreate(), [], [], 0
     parser.buffer_text = True
 
@@ -129,6 +138,10 @@ def parsed(text: str | bytes, file: str) -> Element:
     try:
         _feed(parser, text)
     except expat.ExpatError as problem:
+        if not text.strip():
+            raise DescriptionError("this is no XML: it is empty.", file, 1) from None
+        if not file and (name := file_name(text)):
+            raise DescriptionError(_NAME if Path(name).exists() else _NO_FILE, name) from None
         within = stack[-1].name if stack else ""
         reason = f"this is no XML: {expat.ErrorString(problem.code)}, column {problem.offset + 1}."
         raise DescriptionError(reason, file, problem.lineno, within) from None

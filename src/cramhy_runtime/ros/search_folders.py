@@ -111,6 +111,7 @@ class Crawl:
     """
 
     def __init__(self, root: Path, whole: bool):
+        self.root = root
         self._whole = whole
         self._visited: set[str] = set()
         self._packages: list[tuple[Folder, str, int]] = []

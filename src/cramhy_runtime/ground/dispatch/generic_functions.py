@@ -28,7 +28,17 @@ from ..keyword_calls import lispify
 from .keyword_checks import checking_keys
 from .method_combination import STANDARD, Combination, find_combination
 from .reached_slots import ReachedSlots
-from .methods import EqlSpecializer, Method, Shape, class_for_dispatch, generic_lambda_list, is_sized, specializer_of
+from .methods import (
+    EqlSpecializer,
+    Method,
+    Shape,
+    class_by_value,
+    class_for_dispatch,
+    generic_lambda_list,
+    is_told_by_value,
+    may_be_told_by_value,
+    specializer_of,
+)
 from ..packages import is_symbol, keyword, our_own, redefined, sym, symbol_name
 from ..ports import PORTS
 from ..python_names import python_name
@@ -132,7 +142,7 @@ class GenericFunction(ReachedSlots, FunctionObject):
             for index in positions
         }
         self.eql_positions = tuple(index for index in positions if self.eql_keys[index])
-        self.sized = [index for index in positions if any(is_sized(method.specializers[index]) for method in self.methods)]
+        self.sized = [index for index in positions if any(is_told_by_value(method.specializers[index]) for method in self.methods)]
         self.minimum, self.maximum = self.shape.required, self.shape.maximum
         fixed = self.minimum == self.maximum
         if self.by_protocol:
@@ -161,7 +171,7 @@ class GenericFunction(ReachedSlots, FunctionObject):
         if found is None:
             # Only classes for which eql methods exist need the second look-up.
             relevant = [index for index in self.eql_positions if self._eql_possible(index, arguments[index])]
-            sized = [index for index in self.sized if arguments[index].__class__ is int]
+            sized = [index for index in self.sized if may_be_told_by_value(arguments[index].__class__)]
             found = (
                 self._by_values(relevant, sized) if sized else self._by_value(relevant) if relevant else self.effective_function(arguments)
             )
@@ -204,14 +214,15 @@ class GenericFunction(ReachedSlots, FunctionObject):
         return dispatch
 
     def _by_values(self, positions, sized=()):
-        """The dispatch on the values at ``positions``, and on whether the integers at the positions ``sized`` are fixnums."""
+        """The dispatch on the values at ``positions``, and on whether the integers at the positions ``sized`` are fixnums, or
+        the classes there classes of conditions."""
         table: dict = {}
         known = [(index, self.eql_keys[index]) for index in positions]
 
         def dispatch(*arguments, **keywords):
             key = tuple([value if value in keys else None for value, keys in [(eql_key(arguments[index]), keys) for index, keys in known]])
             if sized:
-                key += tuple([class_for_dispatch(arguments[index]) for index in sized])
+                key += tuple([class_by_value(arguments[index]) for index in sized])
             effective = table.get(key)
             if effective is None:
                 effective = self.effective_function(arguments)
@@ -228,7 +239,10 @@ class GenericFunction(ReachedSlots, FunctionObject):
     def applicable_methods(self, arguments):
         """The methods that apply to ``arguments``, most specific first."""
         required = arguments[: self.shape.required]
-        mros = [PORTS.classes.precedence(class_for_dispatch(argument)) for argument in required]
+        mros = [
+            PORTS.classes.precedence(class_by_value(argument) if index in self.sized else class_for_dispatch(argument))
+            for index, argument in enumerate(required)
+        ]
         keys = [eql_key(argument) if index in self.eql_positions else None for index, argument in enumerate(required)]
         order = self.precedence or range(len(required))
         found = [method for method in self.methods if method.applies(mros, keys)]

@@ -17,7 +17,7 @@ from ..data import Symbol, lisp_list, list_from, one, truth
 from ..packages import keyword, sym, symbol_name
 from ..ports import PORTS
 from .generic_errors import no_next_method_error, no_primary_method_error
-from .methods import class_for_dispatch, is_sized
+from .methods import class_by_value, class_for_dispatch, is_told_by_value, may_be_told_by_value
 
 DIRECTLY, CHANGED = keyword("DIRECTLY"), keyword("CHANGED")
 """What ``uses_next`` of a method is that takes the function of the next method itself, and gives it all arguments. With CHANGED it takes
@@ -86,10 +86,13 @@ class _Changed:
         kinds = tuple(map(type, arguments[: self.count]))
         function = self.known.get(kinds)
         if function is None:
-            classes = tuple(map(class_for_dispatch, arguments[: self.count]))
+            classes = tuple(
+                class_by_value(argument) if is_told_by_value(specializer) else class_for_dispatch(argument)
+                for argument, specializer in zip(arguments, self.method.specializers)
+            )
             self._check(arguments, classes)
             function = _step(self.method, classes, self.following, self.following)
-            if bool not in kinds and not (int in kinds and any(map(is_sized, self.method.specializers))):
+            if bool not in kinds and not (any(map(may_be_told_by_value, kinds)) and any(map(is_told_by_value, self.method.specializers))):
                 self.known[kinds] = function
         return function(*arguments, **keywords)
 

@@ -8,6 +8,7 @@ lambda list says about calls (how many arguments, which keywords) is a `Shape`; 
 from __future__ import annotations
 
 from ..classes import BigInteger, find_class_or_error
+from ..condition_types import Condition
 from ..data import Cons, Keyword, Symbol, lisp_list, list_from, python_list
 from ..equality import eql_key
 from ..packages import keyword, sym, symbol_name
@@ -159,6 +160,12 @@ class WriterMethod(AccessorMethod):
     lisp_name = "SB-MOP::STANDARD-WRITER-METHOD"
 
 
+class ConditionClass(type):
+    """The class of the classes of conditions, as SBCL has it. For Python these have other metaclasses."""
+
+    lisp_name = "SB-PCL::CONDITION-CLASS"
+
+
 def class_for_dispatch(argument):
     """The class that methods are chosen by: Python's own, but that integers beyond the fixnums have one of their own."""
     if argument.__class__ is int:
@@ -166,9 +173,21 @@ def class_for_dispatch(argument):
     return type(None) if argument is False else argument.__class__
 
 
-def is_sized(specializer):
-    """Whether instances of ``specializer`` are told by the size of an integer, not by its Python class."""
-    return getattr(specializer, "lisp_name", None) in ("FIXNUM", "BIGNUM")
+def class_by_value(argument):
+    """The same where a method `is_told_by_value`: classes of conditions have a class of their own."""
+    if isinstance(argument, type) and issubclass(argument, Condition):
+        return ConditionClass
+    return class_for_dispatch(argument)
+
+
+def is_told_by_value(specializer):
+    """Whether objects are instances of ``specializer`` by more than their Python class: integers by their size, classes of conditions."""
+    return specializer is ConditionClass or getattr(specializer, "lisp_name", None) in ("FIXNUM", "BIGNUM")
+
+
+def may_be_told_by_value(cls):
+    """Whether an object of the Python class ``cls`` may be one that `is_told_by_value`."""
+    return cls is int or issubclass(cls, type)
 
 
 def specializer_of(designator):

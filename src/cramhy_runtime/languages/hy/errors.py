@@ -44,6 +44,7 @@ from .malformed import MalformedForm, retold, unreadable
 
 _HY = os.path.dirname(os.path.abspath(hy.__file__)) + os.sep
 _GOES_ON = malformed.evaluate.__code__.co_filename, malformed.evaluate.__name__  # the frames before it are those of the program so far
+_MANGLED = re.compile(r"\bhyx_\w+")
 _AT_A_PROMPT = re.compile(r"-\d+\Z")  # how Hy's prompt ends the name of each text that it reads
 
 
@@ -178,9 +179,12 @@ def _leave_out(told, seen):
 
 
 def _as_written(line, exception):
-    """A line of the traceback of ``exception``, with the name that is missing as it is written in Hy."""
+    """A line of the traceback of ``exception``, with the name that is missing, and all that Hy has mangled, as they are written in Hy."""
+    if line.startswith(" "):
+        return line
+    line = _MANGLED.sub(lambda found: hy.unmangle(found[0]), line)
     name = getattr(exception, "name", None)
-    if line.startswith(" ") or not isinstance(exception, (NameError, AttributeError)) or not name:
+    if not isinstance(exception, (NameError, AttributeError)) or not name:
         return line
     return line.replace(f"'{name}'", f"'{_spelling(name, exception)}'")
 

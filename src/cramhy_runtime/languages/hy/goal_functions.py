@@ -19,8 +19,9 @@ from hy import models
 
 from cramhy_runtime.ground.conditions import unknown_key
 from cramhy_runtime.ground.data import Cons, Keyword, Symbol
-from cramhy_runtime.ground.keyword_calls import lispify
+from cramhy_runtime.ground.keyword_calls import keyword_name, lisp_takes_keywords, lispify
 from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.ground.python_names import python_name
 from cramhy_runtime.prolog.builtins import function_calls
 
 from . import answer_lists, lisp_data
@@ -62,7 +63,7 @@ def calling(fact, symbol, function):
 
     Where there is nothing, or Python's own of that name, it calls what the symbol names in Lisp.
     """
-    found = _meant(function)
+    found = _meant(symbol, function)
     if found is None:
         return fact
     if "<locals>" in getattr(found, "__qualname__", ""):
@@ -76,7 +77,7 @@ def calling(fact, symbol, function):
 
 def asking(goal, symbol, function):
     """``goal``, whose ``(lisp-fun symbol ...)`` calls what ``function()`` gives now, as `calling` does."""
-    found = _meant(function)
+    found = _meant(symbol, function)
     return goal if found is None else _with_called(goal, symbol, called(found, symbol.name))
 
 
@@ -89,13 +90,13 @@ def called(value, name=None):
     return symbol
 
 
-def _meant(function):
+def _meant(symbol, function):
     try:
         found = function()
     except (NameError, AttributeError):
         return None
-    python = getattr(builtins, getattr(found, "__name__", None) or "", None)
-    return found if callable(found) and python is not found and not isinstance(found, Symbol) else None
+    pythons_own = getattr(builtins, hy.mangle(symbol.name.lower()), None) is found
+    return found if callable(found) and not pythons_own and not isinstance(found, Symbol) else None
 
 
 class Late:
@@ -149,38 +150,55 @@ function_calls.FINDERS.append(of_a_module)
 
 
 def as_lisp_calls(function_):
-    """``function_``, a function or a class of Hy, called with keyword objects among its arguments: those that name its parameters."""
-    lispified = lispify(function_)
-    if lispified is not function_:
-        return lispified
-    known = None
+    """``function_``, anything that Hy calls, with keyword objects among its arguments: from the first that names a parameter on.
 
-    def call(*arguments):
-        nonlocal known
+    In a pair at the end, a keyword is a name as in a call of Hy. It is data where it names no parameter and one without a name may stand.
+    Raises a program-error for a keyword that is neither.
+    """
+    if lisp_takes_keywords(function_):
+        return lispify(function_)
+    names = None
+
+    def call(*arguments, **keywords):
+        nonlocal names
         for place, argument in enumerate(arguments[:-1]):
             if argument.__class__ is Keyword and (len(arguments) - place) % 2 == 0:
-                if known is None:
-                    known = _parameters(function_)
-                if argument not in known:
-                    continue
-                rest = arguments[place:]
-                unknown = [key for key in rest[::2] if key not in known]
-                if unknown:
-                    return unknown_key(unknown[0], known)
-                return function_(*arguments[:place], **{known[key]: value for key, value in zip(rest[::2], rest[1::2])})
-        return function_(*arguments)
+                if names is None:
+                    names = _Parameters(function_)
+                if names.has(argument, place):
+                    return function_(*arguments[:place], **names.of(arguments[place:]), **keywords)
+        return function_(*arguments, **keywords)
 
     return functools.update_wrapper(call, function_, updated=())
 
 
-def _parameters(function):
-    """Keyword object → the parameter of ``function`` that it names."""
-    try:
-        parameters = inspect.signature(function).parameters.items()
-    except (TypeError, ValueError):
-        return {}
-    names = (name for name, parameter in parameters if parameter.kind is inspect.Parameter.POSITIONAL_OR_KEYWORD)
-    return {keyword(name.rstrip("_").replace("_", "-").upper()): name for name in names}
+class _Parameters:
+    """The parameters of a function: ``known`` by keyword object, ``others`` if it takes more names, and how many have places."""
+
+    def __init__(self, function):
+        try:
+            parameters = inspect.signature(function).parameters
+        except (TypeError, ValueError):  # of some that are written in C
+            parameters = {"others": inspect.Parameter("others", inspect.Parameter.VAR_KEYWORD)}
+        kinds = [parameter.kind for parameter in parameters.values()]
+        named = (name for name, kind in zip(parameters, kinds) if kind in (kind.POSITIONAL_OR_KEYWORD, kind.KEYWORD_ONLY))
+        self.known = {keyword(keyword_name(name)): name for name in named}
+        self.others = inspect.Parameter.VAR_KEYWORD in kinds
+        rest = inspect.Parameter.VAR_POSITIONAL in kinds
+        self.places = float("inf") if rest else sum(kind.name.startswith("POSITIONAL") for kind in kinds)
+
+    def has(self, key, place):
+        """Whether ``key``, the argument number ``place``, is a name and not data."""
+        return key in self.known or self.others or place >= self.places
+
+    def of(self, pairs):
+        """Python's keyword arguments for keyword objects, each with its value behind it. Raises a program-error for unknown ones."""
+        found = {}
+        for key, value in zip(pairs[::2], pairs[1::2]):
+            if key not in self.known and not (self.others and key.__class__ is Keyword):
+                return unknown_key(key, self.known)
+            found.setdefault(self.known.get(key) or python_name(key.name), value)
+        return found
 
 
 __all__ = ["as_lisp_calls", "asking", "called", "calling", "named"]

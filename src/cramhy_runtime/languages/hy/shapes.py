@@ -77,6 +77,12 @@ LISP = {
 _WHERE_LISP_IS = "Common Lisp begins after (in-package name)."
 
 _LISP = {hy.mangle(name): name for name in LISP}
+_OF_MESSAGES = ("-MSG", "-SRV")
+_INSIDE = {
+    "retry": "(retry) stands inside (with-failure-handling [clause...] form...), in a clause or among the forms.",
+    "leave": "(leave value) stands inside (with-failure-handling [clause...] form...), in a clause.",
+}
+"""Names that mean something only in a certain place."""
 
 
 def message(text, name):
@@ -99,6 +105,8 @@ def hint_for_name(name, known):
     if name in _LISP:
         return f"{_LISP[name]} is Common Lisp. In Hy it is written {LISP[_LISP[name]]}. {_WHERE_LISP_IS}"
     written = hy.unmangle(name)
+    if written in _INSIDE:
+        return _INSIDE[written]
     if hy.mangle(name) in builtins._hy_macros and not any(map(str.isalnum, written)):
         return f"{written} stands at the head of its form, as in ({written} 1 2)."
     if written.upper() in COMMON_LISP.external:
@@ -119,9 +127,10 @@ def hint_for_name(name, known):
 
 
 def _lisp_package_with(name):
-    """The name of a package of the user's whose function ``name`` names, or ``None``."""
+    """The name of a package of the user's whose function ``name`` names, or ``None``. Readers of messages' fields are seldom meant."""
     for package in all_packages():
-        symbol = None if package.built_in else package.external.get(name) or package.internal.get(name)
+        strange = package.built_in or package.name.endswith(_OF_MESSAGES)
+        symbol = None if strange else package.external.get(name) or package.internal.get(name)
         if isinstance(symbol, Symbol) and symbol.package is package and not isinstance(symbol.function, UndefinedFunction):
             return package.name
     return None

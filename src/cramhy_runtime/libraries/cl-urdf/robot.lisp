@@ -15,7 +15,12 @@
 
 (defgeneric parse-urdf (input)
   (:documentation "The robot that a text, a file or a stream of URDF tells of. A text that is wrong is an `urdf-malformed' error.")
-  (:method ((input string)) (read-robot input ""))
+  (:method ((input string))
+    (if (and (plusp (length input)) (not (find #\< input)) (ignore-errors (probe-file input)))
+        (error 'urdf-malformed :format-control "~a is the name of a file, and PARSE-URDF takes a string for the text of a robot. ~
+                                                A file is given as a pathname: (cl-urdf:parse-urdf ~s)"
+                               :format-arguments (list input (pathname input)))
+        (read-robot input "")))
   (:method ((input pathname))
     (if (equalp (pathname-type input) "xacro")
         (read-robot (robot-world:description-text (namestring (truename input))) (namestring input))
@@ -189,9 +194,9 @@
   (robot-world:description-file-text (description-of robot)))
 
 (defun generate-urdf-xml (robot)
-  "The original gives an object of the library s-xml, which is not here."
-  (declare (ignore robot))
-  (error "GENERATE-URDF-XML gives an object of the library s-xml, which cramhy does not have. GENERATE-URDF-STRING gives the text."))
+  "The element <robot> of ROBOT, as an XML-ELEMENT of the library s-xml, which is loaded for it."
+  (asdf:load-system :s-xml)
+  (uiop:symbol-call :s-xml '#:parse-xml-string (generate-urdf-string robot) :output-type :xml-struct))
 
 ;;; Chains.
 

@@ -24,6 +24,7 @@ from cramhy_runtime.utilities.patterns import rename_vars
 
 _groups: dict = per_image({})
 _ARROW = sym("CRAM-PROLOG::<-")
+EXTENDABLE = "The list behind the name of a group names the predicates of others that it may add to: {} is missing there."
 
 
 def _tell_fact(here):
@@ -75,7 +76,8 @@ def define_fact_group(name, extendable, facts, origins=()):
                     functor,
                     name,
                     list_from(others),
-                )
+                ),
+                hint=EXTENDABLE.format(functor.name.lower()),
             )
         fact = rename_vars(fact, gensym_var_names=None)
         clauses.setdefault(functor, []).append((fact, Clause(fact.car, python_list(fact.cdr) or None, name, origin)))

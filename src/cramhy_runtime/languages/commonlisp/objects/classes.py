@@ -13,6 +13,7 @@ from cramhy_runtime.ground.condition_types import shown, shown_with
 from cramhy_runtime.ground.conditions import CellError, Condition, SimpleProgramError, SimpleTypeError, TypeError_, error, type_error
 from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.dispatch.generic_functions import FunctionObject, no_method_for
+from cramhy_runtime.ground.dispatch.methods import ConditionClass
 from cramhy_runtime.ground.packages import ensure_package, find_package, is_symbol, sym
 from cramhy_runtime.ground.plain_answers import registered as _classes
 from .builtin_classes import CLASSES, STRUCTURES, BuiltInClass, lisp_mro, system_class
@@ -216,10 +217,6 @@ _EXPORTING = ("SB-EXT", "SB-INT", "SB-KERNEL", "SB-SYS", "SB-MOP")  # all class 
 
 
 # ------------------------------------------------------------------------------------------------------------ kinds of classes
-
-
-class ConditionClass(type):
-    lisp_name = "SB-PCL::CONDITION-CLASS"
 
 
 class StructureClass(type):

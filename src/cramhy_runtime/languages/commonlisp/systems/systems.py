@@ -25,7 +25,7 @@ from ..files.files import lisp_path
 from ..reader.dispatch_macros import FEATURES
 from ..streams.streams import ERROR_OUTPUT, output_stream
 from cramhy_runtime.ground.packages import Package, find_package, near_names, register, string_designator, sym
-from . import loader, missing_messages, package_inferred, performing
+from . import loader, missing_messages, package_inferred, passed_over, performing
 from .component_order import files_of
 from .for_sbcl import lacking, read_for_sbcl, speaks_of_sbcl
 from cramhy_runtime.storage.dependencies import file_state, unchanged
@@ -118,7 +118,7 @@ def prefer(name):
 def choose_file(path):
     """Take the systems that the ``.asd`` file ``path`` defines from there, also those that cramhy contains; of these a line is told."""
     for name in [system.name for system in systems.values() if system.file == path]:
-        if (name in built_in or f"{name}.asd" in libraries()) and chosen.get(name) != path:
+        if _contains(name) and chosen.get(name) != path:
             preferred.add(name)
             chosen[name] = path
             stream = output_stream(ERROR_OUTPUT.value)
@@ -127,7 +127,7 @@ def choose_file(path):
             stream.flush()
 
 
-OF_ALL_LISPS = {"alexandria", "cl-utilities", "split-sequence"}
+OF_ALL_LISPS = {"alexandria", "cl-utilities", "s-xml", "split-sequence"}
 """Libraries that know nothing of CRAM, of which cramhy contains a rewritten form: a real one on ROS_PACKAGE_PATH comes first. All others
 depend on how cramhy is made; `prefer` takes them from there."""
 
@@ -142,9 +142,18 @@ SIGN_OF_DEVEL = "cram-manipulation-interfaces.asd"
 """A system that devel has, and master has not."""
 
 
+def _contains(name):
+    """Whether cramhy contains a system ``name``, be it in a file or not."""
+    return name in built_in or f"{name}.asd" in libraries()
+
+
+def _is_ours(system):
+    return system.file is None or is_library(str(system.file))
+
+
 def _ask_registry(name):
     """If the user's central registry or ROS_PACKAGE_PATH has a system ``name`` that cramhy contains, too, take that one."""
-    if name in preferred or not (name in built_in or f"{name}.asd" in libraries()):
+    if name in preferred or not _contains(name):
         return
     path = next((folder / f"{name}.asd" for folder in central_registry() if os.path.isfile(folder / f"{name}.asd")), None)
     if path is None and (name in OF_ALL_LISPS or name in OF_EACH_GENERATION and _find_below(SIGN_OF_DEVEL, True)):
@@ -205,6 +214,7 @@ LIBRARY_PACKAGES = {
     "SB-CONCURRENCY": "sb-concurrency",
     "SB-QUEUE": "sb-queue",
     "SB-CLTL2": "sb-cltl2",
+    "S-XML": "s-xml",
     "SB-ROTATE-BYTE": "sb-rotate-byte",
     "FIVEAM": "fiveam",
     "5AM": "fiveam",
@@ -474,6 +484,9 @@ def load_system(name, force=False, version=None):
 def _load_system(name, force=False, required_by=None, version=None):
     name = string_designator(name).lower()
     _ask_registry(name)
+    if _contains(name) and name not in preferred and not (required_by in systems and _is_ours(systems[required_by])):
+        ours = "cramhy itself" if name in built_in else LIBRARIES / name
+        passed_over.warn_of_another(name, str(ours), _contains)
     if is_provided(name):
         return name
     if name in _loading:

@@ -40,6 +40,8 @@ SHOWN_PLACES = 3
 """So many further places of the same thing are named."""
 WRONG_PACKAGE = 4
 """So many unknown functions that other packages have are one mistake."""
+OF_TOOLS = ("SB-", "ASDF", "UIOP")
+"""How packages begin whose names are seldom meant: ``exe:perform`` is, and ``asdf:perform`` is not."""
 SHOWN_METHODS = 4
 """A generic function with more methods than these does not list them."""
 
@@ -259,12 +261,12 @@ def is_operator(symbol):
 
 
 def elsewhere(symbol):
-    """The operator of the same name that another package exports to users, or ``None``. SBCL's packages come last."""
+    """The operator of the same name that another package exports to users, or ``None``. Packages of tools, such as ASDF, come last."""
     last = None
     for package in all_packages():
         other = package.external.get(symbol.name)
         if isinstance(other, Symbol) and other is not symbol and is_operator(other) and package.name != "CRAMHY":
-            if not package.name.startswith("SB-"):
+            if not package.name.startswith(OF_TOOLS):
                 return other
             last = last or other
     return last

@@ -46,14 +46,17 @@ def _print_quaternion(obj, stream):
 
 
 def parts_printer(*parts):
-    """A printer for an object with parts: each on a line of its own, three spaces from the margin wherever the object stands."""
+    """A printer for an object with parts: each on a line of its own, three spaces from the margin wherever the object stands.
+
+    The parts are printed as PRINC does, so without packages.
+    """
 
     def print_parts(obj, stream):
         head(obj, stream)
         stream.write(" ")
         for attribute, label in parts:
             stream.write("\n   " + label)
-            write(getattr(obj, attribute), stream)
+            write(getattr(obj, attribute), stream, escape=False)
         stream.write(">")
 
     return print_parts

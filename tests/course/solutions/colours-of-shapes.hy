@@ -1,0 +1,3 @@
+(def-fact-group colours []
+  (<- (colour house red))
+  (<- (colour castle grey)))
