@@ -10,7 +10,7 @@ import io
 from pathlib import Path
 
 from cramhy_runtime.course import learn, reading
-from cramhy_runtime.course.steps import steps
+from cramhy_runtime.course.steps import ERROR, steps
 from cramhy_runtime.course.parts import Code, Task
 from cramhy_runtime.course.progress import Progress
 from cramhy_runtime.course.shown import Style
@@ -41,13 +41,19 @@ class Script(Lines):
         return contextlib.nullcontext()
 
 
+def fails(text):
+    """Whether an answer shows an error."""
+    return any(line.startswith(ERROR) for line in text.splitlines())
+
+
 class Walk:
-    """What came of a walk. ``verdicts``: (task, "nothing", "start" or "solution") → whether the check passed. ``text``: the screen."""
+    """What came of a walk. ``verdicts``: (task, "nothing", "start" or "solution") → whether the check passed. ``text``: the screen.
+    ``wrong``: forms with errors that the page does not show, or without those that it shows."""
 
     def __init__(self, page, language, folder):
-        self.verdicts, self.progress = {}, Progress()
+        self.verdicts, self.progress, self.wrong = {}, Progress(), []
         self.page, self.language = reading.page(page), language
-        out = io.StringIO()
+        out = self.out = io.StringIO()
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(out):
             self.status = learn.run(
                 lambda closings: Session(time="virtual"), language, page, folder, self.progress, Style(), Script(self._lines())
@@ -58,7 +64,11 @@ class Walk:
         for step in steps(self.page, self.language):
             if isinstance(step.part, Code):
                 for typed in getattr(step.part, self.language):
+                    before = len(self.out.getvalue())
                     yield from typed.form.split("\n")
+                    shown = self.out.getvalue()[before:]
+                    if fails(shown) != fails(typed.answer):
+                        self.wrong.append(shown)
             elif isinstance(step.part, Task):
                 yield from self._task(step.part)
             yield ":next"

@@ -87,7 +87,8 @@ def cells(text, language="lisp"):
                 elif COMMAND.match(typed):
                     found.append(["markdown", f"```\n{typed}\n```\n", False])
                 else:
-                    found.append(["code", typed, any(line.startswith(ERROR) for line in whole.splitlines())])
+                    indent = "\n" + " " * whole.index(typed)  # below the prompt, which a cell has not
+                    found.append(["code", typed.replace(indent, "\n"), any(line.startswith(ERROR) for line in whole.splitlines())])
         else:
             found.append(["markdown", f"```{part.language}\n{part.text}```\n", False])
     joined = []

@@ -37,3 +37,34 @@ def test_a_plan_that_never_ends_ends_the_check_and_not_the_notebook(cells):
     assert "was not over when the turtle's time was" in cells.run('(course:check "turn-left")').printed
     cells.run("(defun turn-left () (send-vel-cmd 0 1.57) (sleep 1))")
     assert "Well done" in cells.run('(course:check "turn-left")').printed
+
+
+CHECK = {
+    "lisp": '(course:check "around-a-square")',
+    "hy": '%%hy\n(import cramhy-runtime.course.package [check])\n(check "around-a-square" "hy")',
+}
+AROUND_A_SQUARE = {
+    "lisp": ("(defparameter *side* 4) (defparameter *around* {})", "(* 4 *side*)"),
+    "hy": ("%%hy\n(setv side 4)\n(setv around {})", "(* 4 side)"),
+}
+
+
+@pytest.mark.parametrize("language", ["lisp", "hy"])
+def test_a_number_that_was_typed_is_not_one_that_was_computed(cells, language):
+    cell, computed = AROUND_A_SQUARE[language]
+    cells.run(cell.format(16))
+    assert "for another side it would be wrong" in cells.run(CHECK[language]).printed
+    cells.run(cell.format(computed))
+    assert "Well done" in cells.run(CHECK[language]).printed
+    whole = f"{cell.format(16)}\n{CHECK[language].removeprefix('%%hy')}"
+    assert "for another side it would be wrong" in cells.run(whole).printed
+
+
+@pytest.mark.parametrize("language", ["lisp", "hy"])
+def test_a_definition_in_vain_is_told(cells, language):
+    define, check = AROUND[language]
+    cells.run(define.format(2))
+    cells.run(define.format("2 (undefined-here) #<" if language == "lisp" else "2 ]"))
+    assert "Your last definition of rectangle-around was not taken" in cells.run(check).printed
+    cells.run(define.format(2))
+    assert "Well done" in cells.run(check).printed

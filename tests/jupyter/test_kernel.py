@@ -247,7 +247,14 @@ def test_a_cell_that_asks(cells, code, typed, value):
 
 @pytest.mark.parametrize("code", ['%%hy\n(input "x? ")', '(y-or-n-p "x? ")', "(py:input)", "(read-line)"])
 def test_a_cell_that_asks_where_nobody_can_answer_fails(cells, code):
-    assert cells.run(code).reply["ename"] in ("END-OF-FILE", "PYTHON:EOF-ERROR")
+    assert cells.run(code).reply["ename"] in ("END-OF-FILE", "PYTHON:EOF-ERROR", "EOFError")
+
+
+def test_an_error_in_a_cell_of_hy_has_its_name_of_python(cells):
+    for code, name in (("(+ 1 two)", "NameError"), ("(/ 1 0)", "ZeroDivisionError"), ("(top-level (get [] 3))", "IndexError")):
+        answer = cells.run(f"%%hy\n{code}")
+        assert answer.reply["ename"] == name and answer.of("error")[0]["traceback"][0] == name
+    assert cells.run("%%lisp\n(+ 1 two)").reply["ename"] == "UNBOUND-VARIABLE"
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import pytest
+
+from cramhy_runtime.course import package
+from cramhy_runtime.swank.wire import write
+
 
 def test_the_first_words(emacs):
     import os
@@ -174,3 +179,30 @@ def test_slys_names_of_the_same_calls(emacs):
     emacs.call("(swank:init-presentations)")
     emacs.repl("1")
     assert emacs.call("(slynk:inspect-object 1 t)")[1] == "1"
+
+
+@pytest.mark.parametrize("way", ["repl", "eval", "compile", "load", "compile and load"])
+def test_a_check_of_the_course_knows_what_emacs_has_sent(emacs, tmp_path, way):
+    file = tmp_path / "answer.lisp"
+    package.define()
+
+    def send(text):
+        file.write_text(text)
+        written = write(text)
+        if way == "repl":
+            return emacs.repl(text)
+        if way == "compile and load":
+            result = emacs.call(f'(swank:compile-file-for-emacs "{file}" t)')
+            return emacs.call(f"(swank:load-file {write(result[5])})")
+        return emacs.call(
+            {
+                "eval": f"(swank:interactive-eval {written})",
+                "compile": f"(swank:compile-string-for-emacs {written} \"buffer\" '((:position 1) (:line 1 1)) nil 'nil)",
+                "load": f'(swank:load-file "{file}")',
+            }[way]
+        )
+
+    send("(defparameter *side* 4) (defparameter *around* 16)")
+    assert "for another side it would be wrong" in emacs.repl('(course:check "around-a-square")')
+    send("(defparameter *side* 4) (defparameter *around* (* 4 *side*))")
+    assert "Well done" in emacs.repl('(course:check "around-a-square")')

@@ -124,6 +124,37 @@ def test_a_task_is_checked_beside_the_prompt_and_the_answer_comes_later(ask):
     assert check("rectangle", "hy")["passed"]
 
 
+def test_a_number_that_was_typed_is_not_one_that_was_computed(ask):
+    answers = []
+    ask.desk._say = lambda text: answers.append(json.loads(text))
+
+    def told():
+        ask.desk.ask(json.dumps({"id": 1, "what": "check", "task": "around-a-square", "language": "lisp"}))
+        kernel.sleep(1)
+        return " ".join(answers.pop()["answer"]["told"])
+
+    ask.session.evaluate_text("(defvar *side* 4) (defvar *around* 16)")
+    assert "for another side it would be wrong" in told()
+    ask.session.evaluate_text("(setf *around* (* 4 *side*))")
+    assert "Well done" in told()
+
+
+def test_a_page_finds_the_files_of_pages_before_it_and_the_package_that_it_speaks_of(ask, tmp_path):
+    mine = tmp_path / "cram_my_beginner_tutorial"
+    assert ask("page", page="choosing-a-module") is None and not mine.exists()
+    assert ask("page", page="simple-plans") is None and (mine / "src" / "control-turtlesim.lisp").is_file()
+
+    def found():
+        return ask.session.evaluate_text('(namestring (asdf:system-source-directory "cram-my-beginner-tutorial"))')[0]
+
+    assert found().startswith(str(mine))
+    ask("page", page="choosing-a-module")
+    assert not found().startswith(str(mine))
+    ask("page", page="motion-designators", language="hy")
+    assert (tmp_path / "my_turtle" / "simple_plans.hy").is_file()
+    assert ask("page", page="nowhere")[0] == "refused"
+
+
 def test_a_task_that_there_is_not_is_told(ask):
     answers = []
     ask.desk._say = lambda text: answers.append(json.loads(text))

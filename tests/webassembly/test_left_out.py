@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import ast
+import contextlib
+import importlib.util
+from pathlib import Path
+
 import importlib
 import importlib.util
 import sys
@@ -56,3 +61,31 @@ def test_a_room_that_is_left_out_says_why(monkeypatch):
     assert str(refused.value) == (
         f"cramhy_runtime.swank is not there in a browser's tab: it talks with other programs, and there are none in a tab. {ADVICE}"
     )
+
+
+def imported_by(name):
+    """The modules of ours that a module imports as soon as it is imported itself."""
+    spec = importlib.util.find_spec(name)
+    if spec is None or spec.origin is None or not spec.origin.endswith(".py"):
+        return
+    home = name if spec.submodule_search_locations is not None else name.rpartition(".")[0]
+    for node in ast.parse(Path(spec.origin).read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = importlib.util.resolve_name("." * node.level + (node.module or ""), home) if node.level else node.module
+            yield base
+            yield from (f"{base}.{alias.name}" for alias in node.names)
+
+
+def test_the_prompt_of_a_tab_imports_nothing_that_is_left_out():
+    known, waiting = set(), ["cramhy_runtime.browser.tab"]
+    while waiting:
+        name = waiting.pop()
+        if name in known or not name.startswith("cramhy_runtime"):
+            continue
+        known.add(name)
+        with contextlib.suppress(ModuleNotFoundError):  # a name in a module, or what is left out
+            waiting += imported_by(name)
+    assert len(known) > 300
+    assert sorted(name for name in known if left_out.is_left_out(name.removeprefix("cramhy_runtime.").replace(".", "/") + ".py")) == []

@@ -173,3 +173,21 @@ def test_what_is_typed_into_a_form_that_is_open_has_no_place_in_a_file(type_in, 
     monkeypatch.chdir(tmp_path)
     type_in("(list", ("(car 1))", json.dumps({"path": "plans.lisp", "line": 9, "column": 1})), "0")
     assert "at <repl 1>:2:1" in type_in.shown
+
+
+def test_a_check_knows_what_was_typed_in_both_languages(type_in):
+    host = type_in(
+        "(defvar *side* 4) (defvar *around* 16)",
+        '(course:check "around-a-square")',
+        "(setf *around* (* 4 *side*))",
+        '(course:check "around-a-square")',
+        "(in-hy)",
+        "(import cramhy-runtime.course.package [check])",
+        "(setv side 4 around 16)",
+        '(check "around-a-square" "hy")',
+        "(setv around (* 4 side))",
+        '(check "around-a-square" "hy")',
+    )
+    assert host.errors == []
+    told = [line for line in type_in.shown.splitlines() if "Well done" in line or "would be wrong" in line]
+    assert ["Well done" in line for line in told] == [False, True, False, True]

@@ -41,7 +41,14 @@ COURSE = {
                 SQUARE,
             ],
         },
-        {"name": "second", "title": "2. Plans", "parts": [{"kind": "text", "html": "<p>Plans.</p>"}]},
+        {
+            "name": "second",
+            "title": "2. Plans",
+            "parts": [
+                {"kind": "text", "html": "<p>Plans.</p>"},
+                {"kind": "code", "lisp": "(top-level)", "hy": "(top-level)", "answer": "", "answer_hy": ""},
+            ],
+        },
     ]
 }
 
@@ -306,6 +313,43 @@ def test_the_lesson_is_read_typed_copied_and_its_task_is_hinted_at_and_checked(v
     page.locator("body[data-prompt=waits]").wait_for()
     page.locator("#lesson-page h2", has_text="2. Plans").wait_for()
     assert page.locator("#lesson-done").get_attribute("title") == "1 of 1 tasks are solved"
+
+
+def test_a_button_of_another_page_begins_a_session_and_to_look_at_it_costs_nothing(visit):
+    page = visit()
+    new = "This page begins a new session."
+
+    def turn(to):
+        page.get_by_role("button", name=f"The {to}").click()
+
+    def see(text, times):
+        page.locator("#repl-out", has_text=re.compile(rf"({re.escape(text)}.*){{{times}}}", re.S)).wait_for()
+
+    def begin():
+        page.get_by_role("button", name="Type it for me").first.click()
+
+    begin()
+    wait_for(page, "#repl-out", "(start-ros-node")
+    turn("next page")  # and back: only looked at
+    assert page.get_by_role("button", name="Begin this page anew").count() == 1
+    turn("page before")
+    begin()
+    see("(start-ros-node", 2)
+    assert new not in transcript(page)
+    turn("next page")
+    begin()
+    wait_for(page, "#repl-out", "(top-level)")
+    assert transcript(page).count(new) == 1 and page.get_by_role("button", name="Begin this page anew").count() == 0
+    turn("page before")
+    page.locator("#repl-in").press_sequentially("(by-hand)")
+    page.keyboard.press("Enter")
+    wait_for(page, "#repl-out", "(by-hand)\n")
+    begin()
+    see("(start-ros-node", 3)
+    assert transcript(page).count(new) == 1
+    turn("next page")
+    page.get_by_role("button", name="Begin this page anew").click()
+    see(new, 2)
 
 
 @pytest.mark.parametrize(

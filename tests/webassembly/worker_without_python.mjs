@@ -43,6 +43,7 @@ const asked = {
     files.set("my_plans/src/a.lisp", ";; imported\n");
     return { files: ["my_plans/package.xml", "my_plans/src/a.lisp"] };
   },
+  page: () => null,
   check: ({ task }) => ({ passed: true, told: [`${task} is right.`] }),
 };
 

@@ -55,6 +55,7 @@ class Desk:
             "export": self._export,
             "import": self._import,
             "check": self._check,
+            "page": self._page,
         }
 
     def ask(self, text: str) -> None:
@@ -166,6 +167,13 @@ class Desk:
             return {"there": problem.args[0]}
 
     # ---------------------------------------------------------------------------------------------------------------- tasks
+
+    def _page(self, number, page, language="lisp"):
+        """The user has turned to the page of that name, for this language: what it needs of the pages before is there."""
+        from cramhy_runtime.course import files
+        from cramhy_runtime.course.reading import page as page_of
+
+        files.settle(page_of(page), language)
 
     def _check(self, number, task, language="lisp"):
         """{"passed": bool, "told": [texts]} of the lesson's task of that name, solved in that language."""

@@ -43,7 +43,6 @@ WHY = {
     "rosbridge.http": _PROGRAMS,
     "rosbridge.outbound_queue": _PROGRAMS,
     "rosbridge.processes": _PROGRAMS,
-    "rosbridge.remote_types": _PROGRAMS,
     "rosbridge.server": _PROGRAMS,
     "rosbridge.service_proxies": _PROGRAMS,
     "rosbridge.uplink": _PROGRAMS,

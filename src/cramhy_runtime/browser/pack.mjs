@@ -33,7 +33,10 @@ def main():
 
 main
 `);
-const [packed, boot] = await main.callPromising();
+const [packed, boot] = await main.callPromising().catch((problem) => {
+  console.error(problem.message); // without the line of Pyodide's own, of a megabyte
+  process.exit(1);
+});
 const params = { [constants.ZSTD_c_compressionLevel]: 22, [constants.ZSTD_c_windowLog]: 25 };
 writeFileSync(target, zstdCompressSync(packed.toJs(), { params }));
 writeFileSync(library, boot.toJs());

@@ -24,7 +24,7 @@ from ..repl.console import Console
 from ..repl.line_input import BROKEN_OFF, Lines
 from ..ros import graph
 from ..session import requests
-from ..session.session import Session
+from ..session.session import Session, packages_above
 from . import debugging
 from .desk import Desk
 from .port import Port
@@ -149,6 +149,15 @@ class TabConsole(Console):
         self.input.desk.hy_module = lambda: repl.module
 
 
+def _define_course():
+    from ..course import package
+
+    package.define()
+
+
+packages_above["COURSE"] = _define_course
+
+
 def _later(seconds, function):
     from pyodide.ffi import create_once_callable
 
@@ -161,6 +170,13 @@ def _interrupt():
         active.interrupt()
 
 
+def let_import() -> None:
+    """Let Hy import what stands in the user's folder, which is the current one, and the packages of the course."""
+    from ..course.files import tutorials
+
+    sys.path += [folder for folder in (os.getcwd(), str(tutorials())) if folder not in sys.path]
+
+
 def main(speed: float | None = 1.0) -> int:
     """Run the prompt until ``(quit)``. Returns the exit status. speed: plan seconds per second at first, ``None`` without a bound."""
     from pyodide.ffi import create_proxy
@@ -170,6 +186,7 @@ def main(speed: float | None = 1.0) -> int:
     sys.stderr.reconfigure(line_buffering=True)
     sys.stdin = PageInput()
     host.interrupt = create_proxy(_interrupt)
+    let_import()
     lines = PageLines()
 
     def make():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 
 from cramhy_runtime.grading import in_session
@@ -11,18 +12,22 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 from .parts import Task
 from .reading import PageError, pages
+from .typed_forms import TypedForms
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from cramhy_runtime.session.session import Session
+    from types import FrameType
 
-    from .typed_forms import TypedForms
+    from cramhy_runtime.session.session import Session
 
 NOT_TAKEN = (
     "Your last definition of {} was not taken: it led to an error, and an older one still counts. "
     "Type the definition again, without the mistake."
 )
+PRINTED = "Printing is not answering: the answer of a function is the value of its last form."
+_NO_ANSWER = re.compile(r"\((?P<function>[^\s()]+)[^\n]* should give [^\n]+, and gave (?:NIL|None)\.")
+_PRINTS = re.compile(r"\((?:print|princ|prin1|format)\s", re.I)
 PASSED = "Well done: this task is solved."
 
 
@@ -40,22 +45,25 @@ def check(
     session: Session | None = None,
     language: str = "lisp",
     evaluate: Callable[[str], list[Any]] | None = None,
-    typed: TypedForms | None = None,
+    caller: FrameType | None = None,
 ) -> dict[str, Any]:
     """Whether the task ``name`` is solved: ``{"passed": bool, "told": [str, ...]}``. It is called by the session's main task.
 
     session: the student's; ``None``: the current one. language: "lisp" or "hy", in which the solution is written. evaluate: gives the
     values of a text in that language, for Hy in the module where the student types; by default the session evaluates Lisp in its package,
-    and Hy in the module of the prompt. typed: what the student has typed, ``None`` if nobody knows. Raises `PageError` for an unknown
-    name, and `Interruption` after Ctrl-C.
+    and Hy in the module of ``caller``, or of the prompt. caller: a frame of the program that asks, if one does. Raises `PageError` for an
+    unknown name, and `Interruption` after Ctrl-C.
     """
     wanted = task(name)
     if evaluate is None:
-        evaluate = _hy_evaluator() if language == "hy" else _lisp_evaluator(session)
-    if typed is not None and (name_of := typed.refused()) is not None:
+        evaluate = _hy_evaluator(caller) if language == "hy" else _lisp_evaluator(session)
+    typed = TypedForms.of_session(language, caller)
+    if (name_of := typed.refused()) is not None:
         return {"passed": False, "told": [NOT_TAKEN.format(name_of)]}
     tables = [in_language(table, language) for table in wanted.checks]
-    wrong = in_session.faults(wanted.title, tables, evaluate, language, typed.form if typed is not None else None)
+    wrong = in_session.faults(wanted.title, tables, evaluate, language, typed.form)
+    if wrong and (match := _NO_ANSWER.match(wrong[0])) is not None and _PRINTS.search(typed.definition(match["function"]) or ""):
+        wrong.append(PRINTED)
     return {"passed": not wrong, "told": wrong or [PASSED]}
 
 
@@ -81,12 +89,15 @@ def lisp_evaluator(session: Session) -> Callable[[str], list[Any]]:
 
     def evaluate(text):
         with binding(MUFFLED, (sym("WARNING"),)):
-            return session.evaluate_text(text)
+            return session.evaluate_text(text, typed=False)
 
     return evaluate
 
 
-def _hy_evaluator():
+def _hy_evaluator(caller=None):
+    home = sys.modules.get(caller.f_globals.get("__name__")) if caller is not None else None
+    if home is not None and vars(home) is caller.f_globals:  # and not a form of Lisp
+        return hy_evaluator(home)
     cells = sys.modules.get("cramhy_runtime.jupyter.cells")  # if this is a notebook; a tab of a browser is without that room
     for name in (*([cells.MODULE] if cells else []), "__console__", "__main__"):
         module = sys.modules.get(name)

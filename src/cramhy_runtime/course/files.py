@@ -10,11 +10,14 @@ from pathlib import Path
 
 from cramhy_runtime import storage
 from cramhy_runtime.grading.exercise import own_exercises
+from cramhy_runtime.languages.commonlisp.systems import systems
 
 from . import contents
 from .parts import Code, File, Page
 from .reading import page as page_of
 
+PACKAGE, SYSTEM = "cram_my_beginner_tutorial", "cram-my-beginner-tutorial"
+"""The course's package, and its system: that of cramhy, and that which the student writes on the pages that grow."""
 HY_PACKAGE = "turtlesim_in_hy"
 """The course's package in plain Hy, which the later pages import."""
 
@@ -27,7 +30,7 @@ def work_folder(page: Page, language: str, top: Path) -> Path | None:
     place = top / ("lectures" if page.name in contents.GROWING else "turtle")
     place.mkdir(parents=True, exist_ok=True)
     if imports and not (place / HY_PACKAGE).exists():
-        _copy(_tutorials() / HY_PACKAGE, place / HY_PACKAGE)
+        _copy(tutorials() / HY_PACKAGE, place / HY_PACKAGE)
     return place
 
 
@@ -45,7 +48,8 @@ def _imports_hy_package(page):
     return any(written in typed.form for part in page.parts if isinstance(part, Code) for typed in part.hy)
 
 
-def _tutorials():
+def tutorials() -> Path:
+    """The folder with the packages that come with cramhy."""
     return next(iter(own_exercises().values())).parents[1]
 
 
@@ -56,6 +60,22 @@ def earlier(page: Page, language: str) -> dict[str, str]:
         for name in contents.GROWING[: contents.GROWING.index(page.name)]:
             found |= dict(_files(page_of(name), language))
     return found
+
+
+def settle(page: Page, language: str) -> None:
+    """Make a session that goes on from page to page, in one folder, ready for ``page``: that of a tab. Errors: `OSError`.
+
+    The files of earlier pages are there. On the pages on which the student's own package grows, its system is that one. On all others it is
+    the one that comes with cramhy, which has the same name.
+    """
+    for name, text in earlier(page, language).items():
+        provide(name, text)
+    own = None if page.name in contents.GROWING else tutorials() / PACKAGE / f"{SYSTEM}.asd"
+    if systems.chosen.get(SYSTEM) != own:
+        systems.forget_system(SYSTEM)
+        systems.chosen.pop(SYSTEM, None)
+        if own is not None:
+            systems.chosen[SYSTEM] = own
 
 
 def _files(page, language):

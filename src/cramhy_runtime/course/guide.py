@@ -17,7 +17,6 @@ from .reading import PageError, page, pages
 from .replay import Replay
 from .shown import Style
 from .steps import ERROR, Step, file_shown, session_shown, steps, task_shown
-from .typed_forms import TypedForms
 
 COMMANDS = {
     "next": ("n", "the next step, or the next page"),
@@ -108,7 +107,6 @@ class Guide:
         self._text = ""  # what was typed last
         self._typed: set[str] = set()  # the forms of this page that were typed in this session, squeezed
         self.replay = Replay(self._typed_before())
-        self.forms = TypedForms()
         self._arrived()
 
     def _typed_before(self):
@@ -240,7 +238,6 @@ class Guide:
             if error.in_a_file or _NOT_STARTED.search(error.told):
                 self._cue = self._cue or slips.of_unready(*self._untyped()) or error.led_there
         self.replay.failed()
-        self.forms.failed()
         if self._read is not None and any(line.startswith(ERROR) for line in self._read.answer.splitlines()):  # as it should
             self._cue = None
             self._waiting.remove(self._read)
@@ -248,7 +245,6 @@ class Guide:
 
     def cue(self) -> str | None:
         """What to say before the next prompt, once."""
-        self.forms.answered()
         if self.replay.was_answered():
             self.progress.keep()
         some = bool(self._waiting)
@@ -395,7 +391,7 @@ class Guide:
         if not isinstance(part, Task):
             return "; Only tasks are checked, and this step is not one. :next goes on."
         self._checked = True
-        found = checking.check(part.name, language=self.language, evaluate=evaluate, typed=self.forms)
+        found = checking.check(part.name, language=self.language, evaluate=evaluate)
         if found["passed"]:
             self.progress.solved.add(part.name)
             self.progress.keep()

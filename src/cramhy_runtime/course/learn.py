@@ -122,7 +122,6 @@ class Guided(Listener):
         super().remember(text)
         if not self.level:
             self.guide.replay.was_read(text)
-            self.guide.forms.read(text)
         elif self._answered_there is None:
             self._answered_there = True
         self.guide.typed(text)

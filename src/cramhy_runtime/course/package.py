@@ -8,6 +8,8 @@ In Hy it is the function `check` of this module.
 
 from __future__ import annotations
 
+import sys
+
 from cramhy_runtime.ground.packages import on_demand, registered
 from cramhy_runtime.languages.commonlisp.packages.face_definition import define_face
 from cramhy_runtime.languages.commonlisp.streams import streams
@@ -22,8 +24,9 @@ def check(name, language="lisp"):
 
     language: :lisp or :hy, in which the solution is written. Source: the pages in docs/tutorials.
     """
-    found = checking.check(str(getattr(name, "name", name)).lower(), language=str(getattr(language, "name", language)).lower())
-    output = streams.CONSOLE_OUTPUT
+    called, wanted = (str(getattr(word, "name", word)).lower() for word in (name, language))
+    found = checking.check(called, language=wanted, caller=sys._getframe(1))
+    output = streams.STANDARD_OUTPUT.value
     output.fresh_line()
     output.write("".join(f"{line}\n" for line in ([] if found["passed"] else ["Not yet."]) + found["told"]))
     output.flush()

@@ -53,21 +53,14 @@ def _data(part):
 
 
 def _code(part):
-    """One piece for each form, if both languages have as many; else one for all of them."""
+    """One piece for each form: of both languages, if they have as many, and else of one."""
     none = Typed("", "", "")
-    if len(part.lisp) == len(part.hy) or not (part.lisp and part.hy):
-        count = max(len(part.lisp), len(part.hy))
-        pieces = zip(*(([(each,) for each in typed] or [(none,)] * count) for typed in (part.lisp, part.hy)))
+    if len(part.lisp) == len(part.hy):
+        pieces = list(zip(part.lisp, part.hy))
     else:
-        pieces = [(part.lisp, part.hy)]
+        pieces = [*((each, none) for each in part.lisp), *((none, each) for each in part.hy)]
     for lisp, hy in pieces:
-        yield {
-            "kind": "code",
-            "lisp": "\n".join(each.text for each in lisp),
-            "hy": "\n".join(each.text for each in hy),
-            "answer": "".join(each.answer for each in lisp),
-            "answer_hy": "".join(each.answer for each in hy),
-        }
+        yield {"kind": "code", "lisp": lisp.text, "hy": hy.text, "answer": lisp.answer, "answer_hy": hy.answer}
 
 
 def _file(file):

@@ -18,6 +18,7 @@ from cramhy_runtime.ground.packages import COMMON_LISP_USER
 from cramhy_runtime.ground.printing import speak
 from cramhy_runtime.session.session import value_text
 from cramhy_runtime.ground.source_places import keep_text
+from cramhy_runtime.languages import answered_texts
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.languages.commonlisp.reader.reader import incomplete
@@ -133,14 +134,18 @@ class Notebook:
         self.session.texts += 1
         name = f"<notebook {self.session.texts}>"
         keep_text(name, text)
-        value = None
-        for model in hy.read_many(text, name):
-            if isinstance(model, models.Expression) and model and model[0] == models.Symbol("in-package"):
-                self.language = LISP
-                lines = text.split("\n")
-                line, column = model.start_line - 1, model.start_column - 1
-                return self._lisp("\n" * line + "\n".join([" " * column + lines[line][column:], *lines[line + 1 :]]))
-            value = self._evaluated_in_hy(model, module, name)
+        noted, lines, value = answered_texts.note(text, HY), text.split("\n"), None
+        try:
+            for model in hy.read_many(text, name):
+                if isinstance(model, models.Expression) and model and model[0] == models.Symbol("in-package"):
+                    self.language = LISP
+                    line, column = model.start_line - 1, model.start_column - 1
+                    return self._lisp("\n" * line + "\n".join([" " * column + lines[line][column:], *lines[line + 1 :]]))
+                value = self._evaluated_in_hy(model, module, name)
+                noted.upto = sum(len(line) + 1 for line in lines[: model.end_line - 1]) + model.end_column
+        except BaseException:
+            noted.end(good=False)
+            raise
         if kernel.current() is kernel.active().main:
             kernel.settle()
         setattr(module, hy.mangle("*1"), value)  # as at a prompt of Hy

@@ -17,11 +17,14 @@ from cramhy_runtime.session.session import signalled_here
 
 
 class Told:
-    """An error as a cell tells it: ``name`` its type, ``text`` what it says, ``lines`` all that is shown, ``condition`` itself."""
+    """An error as a cell tells it: ``name`` its type, ``text`` what it says, ``lines`` all that is shown, ``condition`` itself.
 
-    def __init__(self, condition, restarts=()):
+    in_hy: whether the cell is one of Hy, where an exception of Python keeps its name."""
+
+    def __init__(self, condition, restarts=(), in_hy=False):
         self.condition = condition
-        self.name = str(condition_type(condition))
+        cause = condition.__cause__ if in_hy else None
+        self.name = type(cause).__name__ if isinstance(cause, Exception) else str(condition_type(condition))
         self.text = report_text(condition)
         self.restarts = [f"[{symbol_name(each.name) if each.name is not None else ''}] {report_of(each)}" for each in restarts]
         self.lines = [self.name, *explanation(condition).splitlines(), *backtrace.lines(condition)]
@@ -30,27 +33,28 @@ class Told:
             self.lines += [f"  {number}: {each}" for number, each in enumerate(self.restarts)]
 
 
-def told_of(failure):
-    """The `Told` of an exception that ended a cell, whose stack has gone."""
-    return Told(condition_of(failure))
+def told_of(failure, in_hy=False):
+    """The `Told` of an exception that ended a cell, whose stack has gone. in_hy: see `Told`."""
+    return Told(condition_of(failure), in_hy=in_hy)
 
 
 class CellDebugger:
     """The debugger of one cell.
 
     ask: a function of a prompt that gives the line typed, or ``None`` where nobody can be asked. write: a function that prints a text.
-    ``told``: the `Told` of the first error that nobody handled; ``None`` if there was none. It is made where the stack still stands.
+    in_hy: a function that says whether the cell is one of Hy. ``told``: the `Told` of the first error that nobody handled, or ``None``. It
+    is made where the stack still stands.
     """
 
-    def __init__(self, session, write, ask=None):
-        self.session, self.write, self.ask = session, write, ask
+    def __init__(self, session, write, ask=None, in_hy=lambda: False):
+        self.session, self.write, self.ask, self.in_hy = session, write, ask, in_hy
         self.told = None
         self.level = 0
 
     def __call__(self, condition):
         signalled_here(condition)
         restarts = conditions.compute_restarts(condition)
-        told = Told(condition, restarts)
+        told = Told(condition, restarts, self.in_hy())
         if self.told is None:
             self.told = told
         if self.ask is None or not restarts:

@@ -55,7 +55,7 @@ def cramhy(line, cell):
         return
     opened = notebook()
     opened.language = word
-    debugger = CellDebugger(opened.session, sys.stderr.write)
+    debugger = CellDebugger(opened.session, sys.stderr.write, in_hy=lambda: opened.answered_in == HY)
     opened.watcher.begin()
     conditions.install_debugger(debugger)
     bundle, told = None, None
@@ -67,7 +67,7 @@ def cramhy(line, cell):
         except Aborted:
             pass
         except (Exception, Condition) as problem:
-            told = debugger.told or told_of(problem)
+            told = debugger.told or told_of(problem, opened.answered_in == HY)
         finally:
             conditions.install_debugger(None)
             speak(lisp=False)  # the other cells are Python

@@ -24,7 +24,7 @@ from cramhy_runtime.session import requests
 from cramhy_runtime.session.requests import Mailbox, Request
 
 from . import asking, controls, rich, settings, streams
-from .cells import Aborted, Notebook
+from .cells import HY, Aborted, Notebook
 from .failures import CellDebugger, told_of
 from .guard import Guarded, Wrong
 from .live import Displays, Live
@@ -197,7 +197,7 @@ class CramhyKernel(Guarded):
         if (said := settings.parsed(code)) is not None:
             return await self._set(*said, silent)
         ask = (lambda prompt: self.read_line(prompt)) if self.asks and allow_stdin else None
-        debugger = CellDebugger(self.made, lambda text: self.write("stderr", text), ask)
+        debugger = CellDebugger(self.made, lambda text: self.write("stderr", text), ask, self._in_hy)
         live = self.live and self._may_ask and not silent
         request = await self.ask(lambda: self._evaluated(code, silent, live), "a cell", debugger, cell=True)
         self._send_printed(self.parent_of_cell)
@@ -211,7 +211,10 @@ class CramhyKernel(Guarded):
         return self._error(told.name, told.text, told.lines, silent)
 
     async def _told(self, failure):
-        return (await self.ask(lambda: told_of(failure), "the report of an error")).result
+        return (await self.ask(lambda: told_of(failure, self._in_hy()), "the report of an error")).result
+
+    def _in_hy(self):
+        return self.notebook.answered_in == HY
 
     def _evaluated(self, code, silent, looked_at):
         displays = Displays(self.say if not silent else lambda kind, content: None, f"cell-{self.ident}-{self.execution_count}")

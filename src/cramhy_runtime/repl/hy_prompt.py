@@ -38,6 +38,7 @@ from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of, report
 from cramhy_runtime.session import time_setting
+from cramhy_runtime.languages import answered_texts
 from cramhy_runtime.languages.hy import answer_lists, malformed, module_names, program_texts
 from cramhy_runtime.languages.hy.lisp_data import package_of
 from cramhy_runtime.languages.hy.program_texts import TypedName, name_as_later_releases
@@ -270,17 +271,28 @@ class HyPrompt(Listener):
         with self._goes_on():
             forms, refused = self._forms(source, filename)
             while forms and not self.in_lisp:
-                errors = self.repl.locals.get(LAST_ERROR)
-                type(self.repl).runsource(self.repl, forms.pop(0), filename, symbol)
-                if self.repl.locals.get(LAST_ERROR) is not errors:
+                if not self._answered(forms.pop(0), filename, symbol)[0]:
                     self.tell_not_evaluated(" ".join(" ".join(forms).split()))
                     break
             else:
                 if forms:
                     self.hear("\n".join(forms))
                 elif refused:
-                    return type(self.repl).runsource(self.repl, source, filename, symbol)
+                    return self._answered(source, filename, symbol)[1]
         return False
+
+    def _answered(self, source, filename, symbol):
+        """Let the REPL answer ``source``, and note that, unless Lisp notes it. Whether there was no error, and whether it wants more."""
+        lisp = self.in_lisp or source.lstrip().startswith(f"({_IN_PACKAGE}")
+        noted = answered_texts.note(source, "hy") if not lisp else None
+        errors, good = self.repl.locals.get(LAST_ERROR), False
+        try:
+            more = type(self.repl).runsource(self.repl, source, filename, symbol)
+            good = self.repl.locals.get(LAST_ERROR) is errors
+        finally:
+            if noted is not None:
+                noted.end(good)
+        return good, more
 
     def _forms(self, source, filename):
         """The texts of the forms of ``source`` that are answered one by one, and whether the REPL then has to refuse ``source``.

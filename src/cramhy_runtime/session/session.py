@@ -24,6 +24,7 @@ from cramhy_runtime.languages.commonlisp.compiler.compilation_unit import signal
 from cramhy_runtime.ground.conditions import Condition
 from cramhy_runtime.ground.data import all_values, list_from
 from cramhy_runtime.ground.printing import class_text, prin1_to_string, speak
+from cramhy_runtime.languages import answered_texts
 from cramhy_runtime.languages.which_language import goes_on_in_lisp
 from cramhy_runtime.languages.commonlisp.packages.face_definition import define_face
 from cramhy_runtime.languages.commonlisp.pathnames.namestrings import parse_native
@@ -139,6 +140,7 @@ class Session:
                 variable.value = None
         DEFAULTS.value = parse_native(os.getcwd() + "/")
         self.texts = 0
+        answered_texts.forget()
         quiet_collector()
 
     @property
@@ -281,31 +283,45 @@ class Session:
             return unit_tests.load_asd_tests(path)
         return unit_tests.load_system_tests(path)
 
-    def reader(self, text, name=None):
-        """A reader of a text typed at the prompt. It knows the places of its forms."""
+    def reader(self, text, name=None, typed=True):
+        """A reader of a text typed at the prompt. It knows the places of its forms. typed: whether the user has typed it."""
         from cramhy_runtime.languages.commonlisp.reader.reader import Reader
 
         self.texts += 1
         name = name or f"<repl {self.texts}>"
         typed_texts.keep(name, text)
-        return Reader(text, filename=name)
+        return self._noted(Reader(text, filename=name)) if typed else Reader(text, filename=name)
 
     @staticmethod
-    def reader_in_file(text, path, line, column):
+    def _noted(reader):
+        reader.noted = answered_texts.note(reader.text)
+        return reader
+
+    @classmethod
+    def reader_in_file(cls, text, path, line, column):
         """A reader of a text that an editor has sent from the file ``path``, where it begins in that line and column, counted from 1."""
         import linecache  # it imports the tokenizer
 
         from cramhy_runtime.languages.commonlisp.reader.reader import Reader
 
         linecache.checkcache(path)  # errors show the lines of now
-        return Reader(text, filename=path, line=line, column=column)
+        return cls._noted(Reader(text, filename=path, line=line, column=column))
 
     @staticmethod
     def forms(reader):
         """The forms that ``reader`` reads."""
         end = object()
-        while (form := reader.read(eof_error=False, eof_value=end)) is not end:
+        while (form := Session._read(reader, end)) is not end:
             yield form
+
+    @staticmethod
+    def _read(reader, end):
+        try:
+            return reader.read(eof_error=False, eof_value=end)
+        except BaseException:
+            if reader.noted is not None:
+                reader.noted.end(good=False)
+            raise
 
     def evaluate(self, form: object, reader: Any = None, top: bool | None = None) -> list[Any]:
         """The values of ``form`` as a list. Conditions that nobody handles are raised, with their place if it is known.
@@ -314,6 +330,7 @@ class Session:
         plan's task.
         """
         THIS_FORM.value = form
+        answered = False
         try:
             if reader is None:
                 values = all_values(evaluator.evaluate(form))
@@ -321,6 +338,7 @@ class Session:
                 values = all_values(evaluator.evaluate(form, reader.filename, reader.positions))
             if top if top is not None else kernel.current() is kernel.active().main:
                 kernel.settle()
+            answered = True
         except kernel.Terminated:
             raise
         except (kernel.Interrupted, kernel.Abandoned):
@@ -330,15 +348,17 @@ class Session:
             raise
         finally:
             kernel.interrupt_over()
+            if reader is not None and reader.noted is not None:
+                reader.noted.upto, reader.noted.failed = (reader.offset, False) if answered else (reader.noted.upto, True)
             LAST_FORMS[0].value, LAST_FORMS[1].value, LAST_FORMS[2].value = form, LAST_FORMS[0].value, LAST_FORMS[1].value
         if values:
             HISTORY[0].value, HISTORY[1].value, HISTORY[2].value = values[0], HISTORY[0].value, HISTORY[1].value
         LAST_VALUES[0].value, LAST_VALUES[1].value, LAST_VALUES[2].value = list_from(values), LAST_VALUES[0].value, LAST_VALUES[1].value
         return list(values)
 
-    def evaluate_text(self, text: str, name: str | None = None, top: bool | None = None) -> list[Any]:
-        """The values of the last form of ``text``. top: see `evaluate`."""
-        values, reader = [], self.reader(text, name)
+    def evaluate_text(self, text: str, name: str | None = None, top: bool | None = None, typed: bool = True) -> list[Any]:
+        """The values of the last form of ``text``. top: see `evaluate`. typed: see `reader`."""
+        values, reader = [], self.reader(text, name, typed)
         for form in self.forms(reader):
             values = self.evaluate(form, reader, top)
         return values

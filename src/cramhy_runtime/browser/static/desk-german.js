@@ -27,6 +27,10 @@ export const GERMAN = {
   "Text of the lesson": "Text der Lektion",
   "{done} of {all} tasks are solved": "{done} von {all} Aufgaben sind gelöst",
   "Type it for me": "Für mich eintippen",
+  "The session is that of the page “{title}”.": "Die Sitzung ist die der Seite „{title}“.",
+  "Begin this page anew": "Diese Seite neu beginnen",
+  "This page begins a new session. What was defined is gone; files are kept.":
+    "Diese Seite beginnt eine neue Sitzung. Was definiert war, ist weg; Dateien bleiben.",
   "Copy into the editor": "In den Editor kopieren",
   "Answer": "Antwort",
   "Write it for me": "Für mich schreiben",

@@ -1,5 +1,9 @@
 // The lesson: pages of text, code to type, and tasks with hints and a check. `course.json` has them, as the room `course` tells them; see
 // `cramhy_runtime.course.as_json`. What was read and solved is kept in the browser.
+//
+// A page is written for a session that begins with it: its turtle stands in the middle, and a package that the user writes on other pages has
+// the name of one that comes with the course. So the session belongs to the page on which something was typed last, and another page's first
+// button begins a new one. Those who only look at another page lose nothing, and neither do those who type there by hand.
 
 import { byId, el, setText } from "./dom.js";
 import { keep, kept } from "./settings.js";
@@ -14,6 +18,8 @@ export class Lesson {
   constructor({ code, show }) {
     Object.assign(this, { code, show, pages: [], number: 0, hints: new Map(), tellings: new Map() });
     this.progress = remembered();
+    this.owner = this.settled = null; // the page to which the session belongs, and for which page and language its files are there
+    this.seen = tab.prompts; // prompts that there had been when the user turned to this page
     byId("lesson-before").addEventListener("click", () => this.turn(this.number - 1));
     byId("lesson-after").addEventListener("click", () => this.turn(this.number + 1));
     byId("lesson-pages").addEventListener("change", ({ target }) => this.turn(target.selectedIndex));
@@ -35,7 +41,9 @@ export class Lesson {
 
   turn(number) {
     if (!this.pages[number]) return;
+    this.#note();
     this.number = number;
+    this.seen = tab.prompts;
     this.progress.page = this.pages[number].name;
     this.#remember();
     this.render();
@@ -69,7 +77,48 @@ export class Lesson {
       task: (part) => this.#task(part),
     };
     const parts = page.parts.map((part) => kinds[part.kind](part)).filter(Boolean);
-    byId("lesson-page").replaceChildren(el("h2", {}, page.title), ...parts);
+    byId("lesson-page").replaceChildren(el("h2", {}, page.title), ...this.#anew(), ...parts);
+  }
+
+  // ------------------------------------------------------------------------------------------------ the session and the pages
+
+  // Where something was typed since the user turned to this page, the session belongs to it. The first prompt of all comes by itself.
+  #note() {
+    if (tab.prompts > Math.max(this.seen, 1)) this.owner = this.pages[this.number].name;
+  }
+
+  // A button that begins a session for this page, if that which is there belongs to another one.
+  #anew() {
+    if (!this.owner || this.owner === this.pages[this.number].name) return [];
+    const { title } = this.pages.find(({ name }) => name === this.owner);
+    const begin = () => this.#claim().catch((problem) => this.code.files.fail(problem));
+    return [
+      el(
+        "div",
+        { class: "choices" },
+        el("span", {}, t("The session is that of the page “{title}”.", { title })),
+        el("button", { type: "button", class: "chip", on: { click: begin } }, t("Begin this page anew")),
+      ),
+    ];
+  }
+
+  // Let the session be that of this page, and let the files of the pages before it be there.
+  async #claim() {
+    this.#note();
+    const { language } = this.progress;
+    const { name } = this.pages[this.number];
+    const before = tab.prompts;
+    const other = this.owner && this.owner !== name;
+    this.owner = name;
+    if (other) {
+      this.settled = null;
+      tab.restart(t("This page begins a new session. What was defined is gone; files are kept."));
+      this.render();
+    }
+    if (other || !before) await this.#prompted(before);
+    if (this.settled === `${name} ${language}`) return;
+    this.settled = `${name} ${language}`;
+    await tab.ask("page", { page: name, language });
   }
 
   // ----------------------------------------------------------------------------------------------------------------- parts
@@ -118,9 +167,14 @@ export class Lesson {
     }
   }
 
-  #type(text, language) {
+  async #type(text, language) {
     this.show("repl");
-    tab.run(text, { language });
+    try {
+      await this.#claim();
+      tab.run(text, { language });
+    } catch (problem) {
+      this.code.files.fail(problem);
+    }
   }
 
   async #copy(text, language) {
@@ -187,6 +241,7 @@ export class Lesson {
     told.className = "told";
     told.replaceChildren(t("checking …"));
     try {
+      await this.#claim();
       if (file) await this.#load(file);
       const { passed, told: texts } = await tab.ask("check", { task: name, language });
       told.className = `told ${passed ? "passed" : "missed"}`;

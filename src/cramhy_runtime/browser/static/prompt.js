@@ -46,8 +46,7 @@ export class Prompt {
     byId("repl-prompt").addEventListener("click", () => this.input.focus());
     byId("repl-stop").addEventListener("click", () => tab.interrupt());
     byId("repl-restart").addEventListener("click", () => {
-      tab.restart();
-      this.note(t("Started anew. What was defined is gone; files are kept."));
+      tab.restart(t("Started anew. What was defined is gone; files are kept."));
     });
     new ResizeObserver(() => this.atEnd && this.#toEnd()).observe(this.out); // a debugger takes room from it
     this.out.addEventListener("scroll", () => this.#scrolled());
@@ -65,6 +64,7 @@ export class Prompt {
     tab.on("python", () => this.say(t("Python is there; unpacking …")));
     tab.on("imported", () => this.say(t("making the session …")));
     tab.on("text", (text) => this.print(text));
+    tab.on("anew", (why) => this.note(why));
     tab.on("prompt", ({ text, language = "lisp" }) => {
       byId("repl-prompt").textContent = text;
       byId("repl-title").textContent = language === "hy" ? "Hy" : "Lisp";

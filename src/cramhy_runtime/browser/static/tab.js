@@ -23,7 +23,7 @@ class Tab {
   }
 
   // CALL is called with the value of each news of that kind: "state", "python", "imported", "ready", "files", "text", "prompt", "debug",
-  // "unkept", "ended", "failed", "deaf".
+  // "anew", "unkept", "ended", "failed", "deaf".
   on(kind, call) {
     if (!this.listeners.has(kind)) this.listeners.set(kind, []);
     this.listeners.get(kind).push(call);
@@ -65,14 +65,15 @@ class Tab {
     this.spare.onerror = forget;
   }
 
-  // A new session. What was defined is gone.
-  restart() {
+  // A new session. What was defined is gone. why: what the prompt tells of it.
+  restart(why) {
     clearTimeout(this.deaf);
     this.worker.terminate();
     for (const socket of [...this.sockets]) this.leave(socket);
     for (const { reject } of this.questions.values()) reject(new Error("The session was started anew."));
     this.questions.clear();
     this.#tell("debug", null);
+    this.#tell("anew", why);
     this.begin();
   }
 

@@ -18,6 +18,7 @@ from hy.reader import HyReader
 
 from cramhy_runtime.ground.condition_types import Condition
 
+from .. import answered_texts
 from . import brackets, module_names, program_texts, shapes
 
 BRACKET_TOO_MANY = re.compile(r"Ran into a '(.)' where it wasn't expected")
@@ -97,6 +98,8 @@ def check(reader):
         return
     if reader._source is not None:  # and not one of `evaluate`, whose text is kept already
         program_texts.keep(filename, reader._source)
+        if program_texts.before_the_prompt(filename) is not None:
+            answered_texts.note(reader._source, "hy", filename).end()
 
     def try_parse_one_form():
         if reader._filename != filename:  # the reader of a prompt, which came after the program

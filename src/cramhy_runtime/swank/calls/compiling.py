@@ -14,7 +14,6 @@ from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.languages.commonlisp.compiler import compilation_unit
 from cramhy_runtime.languages.commonlisp.compiler.generate_functions import DEBUGGED
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
-from cramhy_runtime.languages.commonlisp.reader.reader import Reader
 from cramhy_runtime.languages.commonlisp.systems import program_files
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for, report_text
 
@@ -123,12 +122,10 @@ def compile_string_for_emacs(call, source, buffer, position, filename=None, poli
         return [Name(":location"), [Name(":buffer"), buffer], [Name(":offset"), start, max(0, offset)], None]
 
     notes, began = Notes(where), time_now()
-    if path is None:
-        call.session.reader(whole, name)  # which keeps the text for errors
-    reader, end = Reader(whole, filename=name), object()
+    reader = call.session.reader(whole, name) if path is None else call.session.reader_in_file(whole, path, 1, 1)
 
     def run():
-        while (form := reader.read(eof_error=False, eof_value=end)) is not end:
+        for form in call.session.forms(reader):
             _caught(notes, lambda form=form: call.session.evaluate(form, reader, top=call.debugger is None))
 
     with noted(notes), binding(evaluator.PACKAGE, call.package, DEBUGGED, debugged(policy)):

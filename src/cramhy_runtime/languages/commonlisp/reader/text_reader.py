@@ -40,7 +40,10 @@ class Reader(InputStream, FdStream):
 
     strict: an unmatched ``)`` is an error, as for programs that call ``read``; otherwise it is warned about and ignored.
     A reader is an input stream of Lisp, because reader macro functions get it as one.
+    ``noted``: the `Answered` of its text, if somebody notes how far its forms were evaluated.
     """
+
+    noted = None
 
     def __init__(self, text, filename="<repl>", line=1, column=1, *, strict=False):
         self.text = text

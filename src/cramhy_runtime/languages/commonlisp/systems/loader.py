@@ -14,6 +14,7 @@ cramhy itself and Python; and only if this user or root has written it and its c
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
 import re
 import sys
@@ -33,10 +34,11 @@ from cramhy_runtime.ground.data import Cons, all_values
 from cramhy_runtime.ground.dynamic import binding, special
 from ..compiler.compilation_unit import compilation_unit, current as compilation_unit_of_load
 from ..evaluation.evaluator import PACKAGE, Unit, new_namespace
-from cramhy_runtime.ground.source_places import file_of_text, locate as locate_by_traceback
+from cramhy_runtime.ground.source_places import file_of_text, is_user_file, locate as locate_by_traceback
 from ..files.files import lisp_path
 from cramhy_runtime.ground.packages import symbol_name
 from ..reader.readtables import READTABLE
+from ... import answered_texts
 from ...compiler_stamp import stamp
 from .code_dependencies import Expectations, Notes, Wanted, reading_state
 
@@ -146,27 +148,43 @@ class _KeptForm(NamedTuple):
 
 def _load_or_compile(path, fingerprint, text, show=None, as_source=False):
     """Run the code that is kept for ``path`` as far as it is what the compiler would make; compile the rest of ``text``, and keep that."""
+    noted = answered_texts.note(text.text, name=text.filename) if is_user_file(text.filename) else None
+    good = False
+    try:
+        _load_noted(path, fingerprint, text, show, as_source, noted)
+        good = True
+    finally:
+        if noted is not None:
+            noted.end(good)
+
+
+def _load_noted(path, fingerprint, text, show, as_source, noted):
     _not_used.pop(str(path), None)
     kept = _kept(path, fingerprint, text.filename) if show is None else None
     if kept is None:
         forms, used = [], 0
     else:
         forms = [_KeptForm(*parts) for parts in kept]
-        used = _run_kept(forms, text.filename)
+        used = _run_kept(forms, text.filename, noted)
         if used == len(forms):
             return
         _not_used[str(path)] = Unusable("outdated", f"something that {text.filename} uses has changed since it was compiled")
     offset, line, column = forms[used].place if used else (0, text.line, text.column)
     with compilation_unit("file"):
         place = {"line": line, "column": column}
-        rest = load_text(text.text[offset:], text.filename, stored=True, show=show, as_source=as_source, **place)
+        coming = functools.partial(_come_to, noted, offset) if noted is not None else None
+        rest = load_text(text.text[offset:], text.filename, stored=True, show=show, as_source=as_source, coming=coming, **place)
     if rest is not None:
         units = forms[used - 1].unit + 1 if used else 0
         rest = [form._replace(place=(offset + form.place[0], *form.place[1:]), unit=units) for form in rest]
         kept_code.keep(path, fingerprint, (text.filename, [tuple(form) for form in [*forms[:used], *rest]]))
 
 
-def _run_kept(forms, filename):
+def _come_to(noted, begin, offset):
+    noted.upto = begin + offset
+
+
+def _run_kept(forms, filename, noted):
     """Run kept code, form by form, until one was made for other definitions than there are now. How many were run."""
     expectations, unit, namespace = Expectations(lambda: _loads.number), None, None
     trace = current_trace()
@@ -177,6 +195,8 @@ def _run_kept(forms, filename):
             return number
         if form.unit != unit:
             unit, namespace = form.unit, new_namespace(filename)
+        if noted is not None:
+            noted.upto = form.place[0]
         if trace is not None:  # of a file that is compiled, and loads this one for that
             trace.include(form.facts)
         with untraced():
@@ -186,10 +206,11 @@ def _run_kept(forms, filename):
     return len(forms)
 
 
-def load_text(text, filename, stored=False, show=None, line=1, column=1, as_source=False):
+def load_text(text, filename, stored=False, show=None, line=1, column=1, as_source=False, coming=None):
     """Load the forms of ``text``; with ``stored`` return them as a list of `_KeptForm`, or ``None`` if they cannot be kept.
 
-    show: called with the values of each form. line, column: where in ``filename`` the text begins. as_source: as of `load_file`.
+    show: called with the values of each form. line, column: where in ``filename`` the text begins. as_source: as of `load_file`. coming:
+    called with the offset of each form before it is run.
     """
     from ..reader.reader import Reader
 
@@ -205,14 +226,16 @@ def load_text(text, filename, stored=False, show=None, line=1, column=1, as_sour
 
         lisp_questions.install()
     with tracing() if stored else contextlib.nullcontext() as trace:
-        return _load_forms(reader, unit, notes, trace, show)
+        return _load_forms(reader, unit, notes, trace, show, coming)
 
 
-def _load_forms(reader, unit, notes, trace, show):
+def _load_forms(reader, unit, notes, trace, show, coming):
     """Load the forms that ``reader`` gives. Result: as of `load_text`, whose parts the arguments are."""
     end, forms, filename, stored = object(), [], unit.filename, unit.stored
     while True:
         start = reader.offset
+        if coming is not None:
+            coming(start)
         form = reader.read(eof_error=False, eof_value=end)
         if form is end:
             return None if reader.positions.left_out else forms  # so that it is told the next time, too

@@ -14,6 +14,7 @@ from pathlib import Path
 from cramhy_runtime import storage
 from cramhy_runtime.storage import kept_code
 from cramhy_runtime.storage.checksummed_code import Unusable, sealed, unsealed
+from ... import answered_texts
 from ..compiler.constants import NotStorable
 from cramhy_runtime.ground.function_codes import note_code
 from cramhy_runtime.ground.conditions import Error, SimpleFileError, StyleWarning, Warning_, error, handler_bind, type_error
@@ -175,9 +176,16 @@ def _load_compiled(path):
     with binding(
         PACKAGE, PACKAGE.value, READTABLE, READTABLE.value, LOAD_PATHNAME, lisp_path(path), LOAD_TRUENAME, lisp_path(os.path.realpath(path))
     ):
-        for code in codes:
-            note_code(code)
-            exec(code, namespace)
+        noted = answered_texts.note(decoded(Path(source)), name=source) if os.path.isfile(source) else None
+        good = False
+        try:
+            for code in codes:
+                note_code(code)
+                exec(code, namespace)
+            good = True
+        finally:
+            if noted is not None:
+                noted.end(good)
 
 
 # ------------------------------------------------------------------------------------------------------------- compiling
