@@ -145,12 +145,32 @@ class Scene:
 
     def bounds(self, thing: Item | Machine, link: str | None = None) -> tuple[np.ndarray, np.ndarray]:
         """The corners of the box along the axes around a thing, or around one of its links."""
-        geoms = [geom for part in self.parts if part.thing is thing and link in (None, part.link) for geom in part.geoms]
+        geoms = self._geoms_in(thing, link)
         if not geoms:
             place = thing.placement.position if link is None else thing.link(link).position
             return place.copy(), place.copy()
         lowest, highest = self.boxes()
         return lowest[geoms].min(axis=0), highest[geoms].max(axis=0)
+
+    def lengths(self, thing: Item | Machine, link: str | None, rotation: np.ndarray) -> np.ndarray:
+        """The lengths of the box along the axes that would be around a thing, or around one of its links, if it were turned so.
+
+        rotation: a quaternion (w, x, y, z).
+        """
+        geoms = self._geoms_in(thing, link)
+        if not geoms:
+            return np.zeros(3)
+        now = thing.placement if link is None else thing.link(link)
+        turn = np.zeros(9)
+        mujoco.mju_quat2Mat(turn, (Placement(np.zeros(3), rotation) @ now.inverse()).rotation)
+        turn = turn.reshape(3, 3)
+        turned = turn @ self.data.geom_xmat[geoms].reshape(-1, 3, 3)
+        middle = self.data.geom_xpos[geoms] @ turn.T + np.einsum("gij,gj->gi", turned, self._middle[geoms])
+        reach = np.einsum("gij,gj->gi", np.abs(turned), self._half[geoms])
+        return (middle + reach).max(axis=0) - (middle - reach).min(axis=0)
+
+    def _geoms_in(self, thing: Item | Machine, link: str | None) -> list[int]:
+        return [geom for part in self.parts if part.thing is thing and link in (None, part.link) for geom in part.geoms]
 
     # ------------------------------------------------------------------------------------------------------------------- rays
 
