@@ -197,6 +197,21 @@ def test_a_copy_goes_its_own_way(world):
     assert "kitchen" in world.things
 
 
+def test_a_copy_sees_with_a_model_that_is_there_but_where_its_own_things_are(world):
+    world.add_item("bottle", BOTTLE, placement(TABLE))
+    world.simulate(5)
+    contacts = [part.thing.name for part, _ in world.contacts()]
+    copied = world.copy()
+    assert copied.scene.model is world.scene.model
+    assert [part.thing.name for part, _ in copied.contacts()] == contacts
+    copied.put("bottle", placement((-2.0, -0.9, 1.5)))
+    assert copied.touching("bottle") == [] and [thing.name for thing in world.touching("bottle")] == ["kitchen"]
+    assert all(part.thing.world is copied for part in copied.scene.parts)
+    copied.attach("pr2", "bottle", "r_wrist_roll_link")
+    copied.simulate(5)
+    assert copied.item("bottle").placement.position[2] == 1.5 and copied.scene.model is not world.scene.model
+
+
 def test_the_same_falls_are_the_same_to_the_bit(world):
     world.add_item("bottle", BOTTLE, placement(TABLE, turned(0.3, 0.2, 0.1)))
     other = world.copy()

@@ -10,6 +10,7 @@ Law: a scene computes from where the things are now (`place`), and writes back o
 from __future__ import annotations
 
 from contextlib import contextmanager
+from copy import copy
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -47,6 +48,12 @@ class Part:
     def __init__(self, thing: Item | Machine, link: str | None) -> None:
         self.thing, self.link = thing, link
         self.body, self.geoms = 0, range(0)
+
+    def of_copy(self, thing: Item | Machine) -> Part:
+        """The same part of a copy of the thing."""
+        part = Part(thing, self.link)
+        part.body, part.geoms = self.body, self.geoms
+        return part
 
 
 class Scene:
@@ -113,6 +120,18 @@ class Scene:
                 joint = model.body_jntadr[parts[0].body]
                 self._items.append((thing, mocaps[0], -1 if mocaps[0] >= 0 else int(model.jnt_qposadr[joint])))
         self._free = [part for part in self.parts if model.body_mocapid[part.body] < 0]
+
+    def of_copies(self, copies: Sequence[Item | Machine]) -> Scene:
+        """A scene of copies of its things, in the same order, which need no model of their own: that is what takes the time."""
+        new = copy(self)
+        new.things, new.data = list(copies), mujoco.MjData(self.model)
+        of = {id(thing): copied for thing, copied in zip(self.things, copies, strict=True)}
+        new.parts = [part.of_copy(of[id(part.thing)]) for part in self.parts]
+        new._machines = [(of[id(machine)], *others) for machine, *others in self._machines]
+        new._items = [(of[id(item)], *others) for item, *others in self._items]
+        free = {part.body for part in self._free}
+        new._free = [part for part in new.parts if part.body in free]
+        return new
 
     # ----------------------------------------------------------------------------------------------------------------- places
 

@@ -316,6 +316,8 @@ class World:
         for name, thing in self.things.items():
             new.things[name] = copied = thing.copy()
             copied.world = new
+        if self._scene is not None and self._scene.held == new._held() and self._scene.things == self.solids():
+            new._scene = self._scene.of_copies(new.solids())
         if into is not None:
             into._tell()
         return new
