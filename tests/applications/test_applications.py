@@ -132,6 +132,12 @@ def test_applications_of_crams_branch_devel_run(begin, application, capsys):
 
 
 @foreign
+def test_the_household_demo_of_devel_sets_the_table_and_clears_it(begin):
+    """With the milk: from the fridge to the table, and from there into the trash drawer; afterwards all doors are shut."""
+    assert run(begin(Path(CHECKOUTS) / "cram-devel"), "devel/cram_projection_demos") == []
+
+
+@foreign
 def test_the_tutorials_of_roslisp_run(begin, capsys):
     """Its programs are typed at one prompt, the talker in a thread, since each waits for another terminal."""
     assert run(begin(Path(CHECKOUTS) / "roslisp_tutorials"), "roslisp_tutorials") == []

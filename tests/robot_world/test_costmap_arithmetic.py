@@ -108,11 +108,11 @@ def test_of_one_name_the_first_registered_counts_and_of_merged_maps_the_last_map
 def test_cells_are_drawn_as_often_as_their_values_say():
     made = a_map(lambda x, y: (1 + x) * (1 + 2 * y))  # 1 2 / 3 6
     draw = random.Random(1)
-    counts = collections.Counter(made.draw(draw.random()) for _ in range(12_000))
+    counts = collections.Counter(made.draw(draw.random) for _ in range(12_000))
     assert set(counts) == {(0, 0), (1, 0), (0, 1), (1, 1)}
     for (column, row), count in counts.items():
         assert abs(count - 1000 * (1 + column) * (1 + 2 * row)) < 200
-    assert made.draw(0.0) == (0, 0) and made.draw(math.nextafter(1, 0)) == (1, 1)
+    assert made.draw(lambda: 0.0) == (0, 0) and made.draw(lambda: math.nextafter(1, 0)) == (1, 1)
 
 
 def test_a_drawn_place_is_in_the_cell_it_was_drawn_from():

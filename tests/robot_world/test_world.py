@@ -119,6 +119,38 @@ def test_a_hand_that_has_let_go_does_not_push(world, without):
     assert stays == (without == "pr2")
 
 
+def test_an_item_between_fingers_that_let_go_falls_straight_until_they_are_away(world):
+    """As a bowl whose rim a hand has held: the fingers would throw it away. A hand that is beside it later is a hand again."""
+    hand = world.link("pr2", "r_gripper_palm_link")
+    world.add_item("bowl", BOX, Placement(hand.position, np.array((1.0, 0.0, 0.0, 0.0))))
+    world.attach("pr2", "bowl", "r_wrist_roll_link")
+    world.detach("pr2", "bowl")
+    before = world.item("bowl").placement
+    ahead = world.copy()
+    for seen in (world, ahead):
+        seen.simulate(10)
+        now = seen.item("bowl").placement
+        assert now.position[:2] == pytest.approx(before.position[:2], abs=5e-3)
+        assert now.position[2] == pytest.approx(0.1, abs=5e-3) and now.near(Placement(now.position, before.rotation), 1, 0.05)
+    world.put("bowl", Placement(hand.position + (0, 0, 0.2), before.rotation))
+    world.simulate(10)
+    assert world.item("bowl").placement.position[2] > 0.3  # it lies on the arm, or fell off it to the floor on a side
+
+
+def test_lengths_are_those_of_the_box_around_a_copy_that_is_turned(world):
+    world.add_item("bottle", BOTTLE, placement((1.0, 2.0, 0.5), (0.5, 0.1, -0.7, 0.2)))
+    turns = [placement(rotation=turn).rotation for turn in ((1, 0, 0, 0), (0.7, 0.7, 0, 0), (0.3, -0.2, 0.8, 0.1))]
+    links = [name for name, link in world.machine("kitchen").description.links.items() if link.shapes]
+    for turn in turns:
+        for thing, link in [("bottle", None), ("pr2", None), *(("kitchen", name) for name in links[::7])]:
+            copied = world.copy()
+            whole = copied.thing(thing).placement
+            part = whole if link is None else copied.link(thing, link)
+            copied.put(thing, Placement(np.zeros(3), turn) @ (part.inverse() @ whole))
+            lowest, highest = copied.bounds(thing, link)
+            assert world.lengths(thing, link, turn) == pytest.approx(highest - lowest, abs=1e-9)
+
+
 def test_the_firm_grip_decides_where_an_item_goes(world):
     right, left = "r_wrist_roll_link", "l_wrist_roll_link"
     world.add_item("tray", BOX, world.link("pr2", right).moved(0.2))
@@ -163,6 +195,21 @@ def test_a_copy_goes_its_own_way(world):
     assert world.machine("pr2").joint("torso_lift_joint") == 0.0
     assert world.holders("bottle")
     assert "kitchen" in world.things
+
+
+def test_a_copy_sees_with_a_model_that_is_there_but_where_its_own_things_are(world):
+    world.add_item("bottle", BOTTLE, placement(TABLE))
+    world.simulate(5)
+    contacts = [part.thing.name for part, _ in world.contacts()]
+    copied = world.copy()
+    assert copied.scene.model is world.scene.model
+    assert [part.thing.name for part, _ in copied.contacts()] == contacts
+    copied.put("bottle", placement((-2.0, -0.9, 1.5)))
+    assert copied.touching("bottle") == [] and [thing.name for thing in world.touching("bottle")] == ["kitchen"]
+    assert all(part.thing.world is copied for part in copied.scene.parts)
+    copied.attach("pr2", "bottle", "r_wrist_roll_link")
+    copied.simulate(5)
+    assert copied.item("bottle").placement.position[2] == 1.5 and copied.scene.model is not world.scene.model
 
 
 def test_the_same_falls_are_the_same_to_the_bit(world):

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections import deque
 from contextlib import contextmanager
+from copy import copy
 from dataclasses import dataclass
 from itertools import takewhile
 from typing import TYPE_CHECKING
@@ -55,6 +56,12 @@ class Part:
     def __init__(self, thing: Item | Machine, link: str | None) -> None:
         self.thing, self.link = thing, link
         self.body, self.geoms = 0, range(0)
+
+    def of_copy(self, thing: Item | Machine) -> Part:
+        """The same part of a copy of the thing."""
+        part = Part(thing, self.link)
+        part.body, part.geoms = self.body, self.geoms
+        return part
 
 
 def _add_body(spec: mujoco.MjSpec, shapes: Sequence[Shape], colour: Colour, mass: float = 0.0, free: bool = False) -> None:
@@ -164,6 +171,18 @@ class Scene:
                 self._items.append((thing, mocaps[0], -1 if mocaps[0] >= 0 else int(model.jnt_qposadr[joint])))
         self._free = [part for part in self.parts if model.body_mocapid[part.body] < 0]
 
+    def of_copies(self, copies: Sequence[Item | Machine]) -> Scene:
+        """A scene of copies of its things, in the same order, which need no model of their own: that is what takes the time."""
+        new = copy(self)
+        new.things, new.data = list(copies), mujoco.MjData(self.model)
+        of = {id(thing): copied for thing, copied in zip(self.things, copies, strict=True)}
+        new.parts = [part.of_copy(of[id(part.thing)]) for part in self.parts]
+        new._machines = [(of[id(machine)], *others) for machine, *others in self._machines]
+        new._items = [(of[id(item)], *others) for item, *others in self._items]
+        free = {part.body for part in self._free}
+        new._free = [part for part in new.parts if part.body in free]
+        return new
+
     # ----------------------------------------------------------------------------------------------------------------- places
 
     def place(self) -> None:
@@ -195,12 +214,32 @@ class Scene:
 
     def bounds(self, thing: Item | Machine, link: str | None = None) -> tuple[np.ndarray, np.ndarray]:
         """The corners of the box along the axes around a thing, or around one of its links."""
-        geoms = [geom for part in self.parts if part.thing is thing and link in (None, part.link) for geom in part.geoms]
+        geoms = self._geoms_in(thing, link)
         if not geoms:
             place = thing.placement.position if link is None else thing.link(link).position
             return place.copy(), place.copy()
         lowest, highest = self.boxes()
         return lowest[geoms].min(axis=0), highest[geoms].max(axis=0)
+
+    def lengths(self, thing: Item | Machine, link: str | None, rotation: np.ndarray) -> np.ndarray:
+        """The lengths of the box along the axes that would be around a thing, or around one of its links, if it were turned so.
+
+        rotation: a quaternion (w, x, y, z).
+        """
+        geoms = self._geoms_in(thing, link)
+        if not geoms:
+            return np.zeros(3)
+        now = thing.placement if link is None else thing.link(link)
+        turn = np.zeros(9)
+        mujoco.mju_quat2Mat(turn, (Placement(np.zeros(3), rotation) @ now.inverse()).rotation)
+        turn = turn.reshape(3, 3)
+        turned = turn @ self.data.geom_xmat[geoms].reshape(-1, 3, 3)
+        middle = self.data.geom_xpos[geoms] @ turn.T + np.einsum("gij,gj->gi", turned, self._middle[geoms])
+        reach = np.einsum("gij,gj->gi", np.abs(turned), self._half[geoms])
+        return (middle + reach).max(axis=0) - (middle - reach).min(axis=0)
+
+    def _geoms_in(self, thing: Item | Machine, link: str | None) -> list[int]:
+        return [geom for part in self.parts if part.thing is thing and link in (None, part.link) for geom in part.geoms]
 
     # ------------------------------------------------------------------------------------------------------------------- rays
 

@@ -49,6 +49,7 @@ class World:
         self.things: dict[Hashable, Thing] = {}
         self.ignored: list[tuple[Hashable, Hashable]] = []  # pairs of names whose contacts do not count
         self.stuck: list[tuple[Item, Thing | None]] = []  # items that the last `simulate` could not free, and what they are in
+        self.let_go: list[tuple[Hashable, Hashable]] = []  # names of robots, and of items that they may still have between their fingers
         self._scene: Scene | None = None
         self._placed = False
         self._trials = 0
@@ -199,6 +200,7 @@ class World:
         """Let a link of a machine hold an item from now on, as it is now. loose, grasp: see `Grip`."""
         machine, held = self.machine(name), self.item(item)
         machine.holds.setdefault(item, []).append(Grip(link, self.link(name, link).inverse() @ held.placement, loose, grasp))
+        self.let_go = [pair for pair in self.let_go if pair != (name, item)]
         self._scene = None
         self._tell()
 
@@ -208,6 +210,8 @@ class World:
         grips = [grip for grip in machine.holds.pop(item, ()) if link is not None and grip.link != link]
         if grips:
             machine.holds[item] = grips
+        elif not machine.fixed and (name, item) not in self.let_go:
+            self.let_go.append((name, item))
         self._scene = None
         self._tell()
 
@@ -246,11 +250,21 @@ class World:
 
     def bounds(self, name: Hashable, link: str | None = None) -> tuple[np.ndarray, np.ndarray]:
         """The lowest and the highest corner of the box along the axes around a thing, or around one of its links."""
-        thing, scene = self.thing(name), self.scene
+        thing = self.thing(name)
+        return self._scene_with(thing).bounds(thing, link)
+
+    def lengths(self, name: Hashable, link: str | None, rotation: np.ndarray) -> np.ndarray:
+        """The lengths of the box along the axes that would be around a thing, or one of its links, if it were turned so: (w, x, y, z)."""
+        thing = self.thing(name)
+        return self._scene_with(thing).lengths(thing, link, rotation)
+
+    def _scene_with(self, thing: Thing) -> Scene:
+        """The scene; for a drawing, which is not in it, one of its own."""
+        scene = self.scene
         if thing not in scene.things:
             scene = Scene([thing])
             scene.place()
-        return scene.bounds(thing, link)
+        return scene
 
     def simulate(self, seconds: float, without: Hashable | None = None) -> float:
         """Let free items fall for so long, or until all are at rest; the seconds that it took.
@@ -258,12 +272,15 @@ class World:
         An item that is inside of something that stands is lifted out of it first, and of two that are inside of each other the later one is
         put aside. One that cannot be lifted, as in a wall, stays where it is; `stuck` tells of it.
 
-        without: the name of a machine that touches nothing meanwhile, as the fingers of a hand that has just let go.
+        A robot touches nothing meanwhile while it touches an item that it let go: its fingers would throw the item away.
+
+        without: the name of a machine that touches nothing meanwhile, wherever its hands are.
         """
         held = self._held()
-        things = [thing for thing in self.solids() if thing.name != without]
+        absent = {without, *self._still_around()}
+        things = [thing for thing in self.solids() if thing.name not in absent]
         scene = self.scene
-        if without is not None:
+        if len(things) < len(scene.things):
             scene = Scene(things, held)
             scene.place()
         self.stuck = scene.free_all()
@@ -276,6 +293,15 @@ class World:
         self._tell()
         return took
 
+    def _still_around(self) -> set[Hashable]:
+        """The names of the robots that touch an item that they let go. Items that they touch no more are forgotten."""
+        self.let_go = [
+            (name, item)
+            for name, item in self.let_go
+            if name in self.things and item in self.things and any(thing.name == name for thing in self.touching(item))
+        ]
+        return {name for name, _ in self.let_go}
+
     def stable(self, name: Hashable, metres: float = 0.005, radians: float = 0.15) -> bool:
         """Whether an item would still be where it is after five seconds."""
         ahead = self.copy()
@@ -286,9 +312,12 @@ class World:
         """A world with the same things at the same places, which goes its own way. ``into``: a kinematic world that becomes it."""
         new = World() if into is None else into
         new.things, new.ignored, new.stuck, new._scene, new._placed = {}, list(self.ignored), [], None, False
+        new.let_go = list(self.let_go)
         for name, thing in self.things.items():
             new.things[name] = copied = thing.copy()
             copied.world = new
+        if self._scene is not None and self._scene.held == new._held() and self._scene.things == self.solids():
+            new._scene = self._scene.of_copies(new.solids())
         if into is not None:
             into._tell()
         return new

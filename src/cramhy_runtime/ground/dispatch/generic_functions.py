@@ -28,17 +28,8 @@ from ..keyword_calls import lispify
 from .keyword_checks import checking_keys
 from .method_combination import STANDARD, Combination, find_combination
 from .reached_slots import ReachedSlots
-from .methods import (
-    EqlSpecializer,
-    Method,
-    Shape,
-    class_by_value,
-    class_for_dispatch,
-    generic_lambda_list,
-    is_told_by_value,
-    may_be_told_by_value,
-    specializer_of,
-)
+from .methods import EqlSpecializer, Method, Shape, class_by_value, class_for_dispatch, generic_lambda_list, specializer_of
+from .methods import is_told_by_value, may_be_told_by_value
 from ..packages import is_symbol, keyword, our_own, redefined, sym, symbol_name
 from ..ports import PORTS
 from ..python_names import python_name

@@ -40,7 +40,7 @@ drawing: nothing touches it, and it hides nothing from a camera."
           (or (mapcar #'name-of-function (location-costmap:cost-functions costmap)) '("no cost functions")))
   (handler-case
       (progn
-        (location-costmap:get-map-value costmap 0 0)
+        (location-costmap::%ready costmap)
         (location-costmap:on-visualize-costmap costmap)
         (location-costmap::%remark costmap)
         (let ((point (location-costmap:gen-costmap-sample-point costmap)))

@@ -128,25 +128,14 @@
 (defun calculate-bb-dims (object &key initial-pose)
   "The lengths of the box around OBJECT, an object or a body, when it is not turned, a 3d-vector. With CRAM-TF of the branch devel, and
 unless INITIAL-POSE is true, it lies on the side on which it lies now."
-  (let* ((aligned (find-symbol "MAP-AXIS-ALIGNED-ORIENTATION" '#:cram-tf))
-         (copy (in-a-copy object (robot-world:copy-world (world-of-body object)))))
-    (setf (pose-of-whole copy)
-          (make-pose (make-identity-vector)
-                     (if (and aligned (fboundp aligned) (not initial-pose))
-                         (funcall aligned (orientation (pose object)))
-                         (make-identity-rotation))))
-    (bounding-box-dimensions (aabb copy))))
+  (let ((aligned (find-symbol "MAP-AXIS-ALIGNED-ORIENTATION" '#:cram-tf)))
+    (turned-lengths object (if (and aligned (fboundp aligned) (not initial-pose))
+                               (funcall aligned (orientation (pose object)))
+                               (make-identity-rotation)))))
 
-(defgeneric world-of-body (object)
-  (:method ((object object)) (robot-world:thing-world object)))
-
-(defgeneric in-a-copy (object world)
-  (:documentation "What OBJECT is in WORLD, a copy of its own.")
-  (:method ((object object) world) (object world (name object))))
-
-(defgeneric (setf pose-of-whole) (new-value object)
-  (:documentation "Put OBJECT somewhere, and with a link of a robot the whole robot.")
-  (:method (new-value (object object)) (setf (pose object) new-value)))
+(defgeneric turned-lengths (object rotation)
+  (:documentation "The lengths of the box around OBJECT, an object or a body, if it had that ROTATION.")
+  (:method ((object object) rotation) (robot-world:thing-lengths object rotation)))
 
 (defun item-dimensions (item-or-type)
   "The lengths of the box around an item, or around an object of a type, a 3d-vector."
@@ -229,16 +218,8 @@ unless INITIAL-POSE is true, it lies on the side on which it lies now."
       (setf (link-pose (body-object body) (body-link body)) new-value)
       (setf (pose (body-object body)) new-value)))
 
-(defmethod world-of-body ((body rigid-body))
-  (robot-world:thing-world (body-object body)))
-
-(defmethod in-a-copy ((body rigid-body) world)
-  (make-instance 'rigid-body :name (name body) :object (object world (name (body-object body))) :link (body-link body)))
-
-(defmethod (setf pose-of-whole) (new-value (body rigid-body))
-  (let ((to-root (transform* (transform-inv (pose->transform (pose body))) (pose->transform (pose (body-object body))))))
-    (setf (pose (body-object body)) (transform->pose (transform* (pose->transform new-value) to-root)))
-    new-value))
+(defmethod turned-lengths ((body rigid-body) rotation)
+  (robot-world:thing-lengths (body-object body) rotation (body-link body)))
 
 (defmethod aabb ((body rigid-body))
   (if (body-link body)

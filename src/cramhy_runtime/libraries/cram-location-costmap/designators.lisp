@@ -38,7 +38,7 @@
     (when costmap
       (handler-case
           (progn
-            (get-map-value costmap 0 0)
+            (%ready costmap)
             (on-visualize-costmap costmap)
             (%remark costmap)
             (costmap-samples costmap))
@@ -66,7 +66,7 @@ generators know."
         (handler-case
             (let* ((place (origin (in-fixed-frame pose)))
                    (x (x place)) (y (y place)))
-              (if (and (> (/ (get-map-value costmap x y) (%map-maximum costmap)) *costmap-valid-solution-threshold*)
+              (if (and (%above costmap x y *costmap-valid-solution-threshold*)
                        (or (not (%has-height-generators costmap))
                            (some (lambda (height) (<= (abs (- (z place) height)) *height-tolerance*)) (%heights-at costmap x y))))
                   :accept

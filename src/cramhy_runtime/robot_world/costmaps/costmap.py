@@ -22,6 +22,7 @@ from cramhy_runtime.ground.numbers import is_real
 from .arrays import np
 from .costs import Cost
 from .grids import PACKAGE, GridMetadata
+from .sieve import LONG, MANY_CELLS, Sieve, turns_of
 
 
 class NoCostFunctions(Exception):
@@ -70,6 +71,10 @@ class FunctionCostmapGenerator(CostmapGenerator):
                 result[row, columns] *= [self._checked(function(xs[column], y), xs[column], y) for column in columns]
                 kernel.checkpoint()
         return result
+
+    def cost(self, x: float, y: float) -> float:
+        """What the function gives there."""
+        return self._checked(self.generator_function(x, y), x, y)
 
     def _checked(self, cost: Any, x: float, y: float) -> float:
         cost = one(cost)
@@ -121,6 +126,7 @@ class LocationCostmap(GridMetadata):
         self.height_generators: list[Any] = []
         self.orientation_generators: list[Any] = []  # the newest first
         self.computed: Any = None
+        self._sieve: Sieve | None = None
         self.views: dict[str, Any] = {}  # what others make of the computed map, to keep
 
     def register(self, function: Any, name: Any) -> None:
@@ -162,30 +168,73 @@ class LocationCostmap(GridMetadata):
         Without functions it raises `NoCostFunctions`, and where all cells are 0 `NothingPossible`.
         """
         if self.computed is None:
-            if not self.generators:
-                raise NoCostFunctions
-            matrix, names = np.ones((self.rows, self.columns)), []
-            for generator in self.ordered():
-                matrix = self.run(generator, matrix, self)
-                names.append(generator.name)
-                total = matrix.sum()
-                if not total > 0:
-                    raise NothingPossible(names)
-            self.computed = matrix / total
+            matrix = self._product(self.ordered())
+            self.computed, self._sieve = matrix / matrix.sum(), None
         return self.computed
+
+    def _product(self, generators: Iterable[CostmapGenerator], whole: bool = True) -> Any:
+        """The product of the generators, an array; unless ``whole``, `_sieve` is set, and None returned, when slow functions come last."""
+        if not self.generators:
+            raise NoCostFunctions
+        matrix, names, rest = np.ones((self.rows, self.columns)), [], list(generators)
+        while rest:
+            if not whole and self._slow(rest, matrix):
+                self._sieve = Sieve(matrix, rest, self)
+                return None
+            generator = rest.pop(0)
+            matrix = self.run(generator, matrix, self)
+            names.append(generator.name)
+            if not matrix.sum() > 0:
+                raise NothingPossible(names)
+        return matrix
+
+    def _slow(self, rest: list[CostmapGenerator], matrix: Any) -> bool:
+        """Whether only functions are left that are asked cell by cell, the first one is slow, and many cells are left to ask about."""
+        first = rest[0]
+        if any(one.__class__ is not FunctionCostmapGenerator or not _cell_by_cell(one) for one in rest):
+            return False
+        cells = np.flatnonzero(matrix)
+        if len(cells) <= MANY_CELLS:
+            return False
+        row, column = divmod(int(cells[len(cells) // 2]), self.columns)
+        x, y = float(self.xs().ravel()[column]), float(self.ys().ravel()[row])
+        return turns_of(lambda: first.cost(x, y)) >= LONG
+
+    def ready(self) -> None:
+        """Find that places can be drawn. Slow functions are asked about a few cells. Errors: as of `values`."""
+        if self.computed is None and self._sieve is None:
+            matrix = self._product(self.ordered(), whole=False)
+            if matrix is not None:
+                self.computed = matrix / matrix.sum()
+        if self._sieve is not None and not self._sieve.possible():
+            self.values()
 
     def value(self, x: float, y: float) -> float:
         """The value of the cell at ``x`` and ``y``; 0 outside of the grid."""
         values, cell = self.values(), self.cell(x, y)
         return 0.0 if cell is None else float(values[cell])
 
+    def above(self, x: float, y: float, part: float) -> bool:
+        """Whether the value at ``x`` and ``y`` is more than that part of the greatest one. Errors: as of `values`."""
+        self.ready()
+        cell = self.cell(x, y)
+        if cell is None or self._sieve is not None and self._sieve.surely_above(*cell, part):
+            return cell is not None
+        return self.value(x, y) / self.maximum > part
+
     @property
     def maximum(self) -> float:
         """The greatest value of a cell."""
         return float(self._kept("maximum", lambda: self.values().max()))
 
-    def draw(self, chance: float) -> tuple[int, int]:
-        """The column and row of the cell that ``chance``, a number from 0 to below 1, falls on: greater values are more probable."""
+    def draw(self, chance: Callable[[], float]) -> tuple[int, int]:
+        """The column and row of a cell; greater values are more probable. chance: gives numbers from 0 to below 1."""
+        self.ready()
+        drawn = None if self._sieve is None else self._sieve.draw(chance)
+        return drawn or self._fallen_on(chance())
+
+    def _fallen_on(self, chance: float) -> tuple[int, int]:
+        """The column and row of the cell that a number from 0 to below 1 falls on."""
         cells, sums = self._kept("sums", self._sums)
         row, column = divmod(cells[min(bisect.bisect_right(sums, chance * sums[-1]), len(cells) - 1)], self.columns)
         return column, row

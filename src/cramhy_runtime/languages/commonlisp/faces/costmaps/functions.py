@@ -6,7 +6,7 @@ the functions with a ``%``. Source: mobile-manipulation.md section 9.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cramhy_runtime.ground.classes import make_instance
 from cramhy_runtime.ground.conditions import error
@@ -28,6 +28,9 @@ from cramhy_runtime.utilities.lazy_lists import from_iterator
 from ...numbers.random_state import RANDOM_STATE
 from ...numbers.random_state import random as random_number
 from .matrices import lisp_matrix, numpy_matrix, numpy_vector
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 X, Y = keyword("X"), keyword("Y")
 ONE = 1.0
@@ -380,9 +383,22 @@ NO_FUNCTIONS = f"{PACKAGE}::NO-COST-FUNCTIONS-REGISTERED"
 
 def cost_array(map: Any) -> Any:
     """The values of a costmap as an array of numpy; CRAM's conditions for one without functions, or that is 0 everywhere."""
-    _costmap(map)
+    return _computed(map, _costmap(map).values)
+
+
+def ready(map: Any) -> None:
+    """Find that places can be drawn from a costmap, or raise the conditions of `cost_array`. Slow functions are asked about few cells."""
+    _computed(map, _costmap(map).ready)
+
+
+def above(map: Any, x: Any, y: Any, part: Any) -> Any:
+    """Whether the value at x and y is more than that part of the greatest value."""
+    return _computed(map, lambda: map.above(_real(x, "X"), _real(y, "Y"), _real(part, "PART"))) or None
+
+
+def _computed(map: Any, compute: Callable[[], Any]) -> Any:
     try:
-        return map.values()
+        return compute()
     except costmap.NoCostFunctions:
         return _signal(NO_FUNCTIONS)
     except costmap.NothingPossible as problem:
@@ -456,9 +472,9 @@ def gen_costmap_sample_point(map: Any, *, sampling_function: Any = None) -> Vect
 
     ``sampling-function``: a function of the matrix that gives the list (column row); by default cells are drawn by their values.
     """
-    cost_array(map)
+    ready(map)
     if sampling_function is None:
-        column, row = map.draw(chance())
+        column, row = map.draw(chance)
     else:
         column, row = _cell_of(one(_function(sampling_function, "SAMPLING-FUNCTION")(get_cost_map(map))))
     x = grids.coordinate_of(column, map.resolution, map.origin_x)
@@ -485,7 +501,7 @@ def orientations_at(map: Any, x: Any, y: Any) -> Any:
 
 def costmap_samples(map: Any, *, sampling_function: Any = None) -> Any:
     """The endless lazy list of poses drawn from the costmap; each drawn place comes with all its orientations."""
-    cost_array(map)
+    ready(map)
 
     show = _generic("ON-VISUALIZE-COSTMAP-SAMPLE")
 

@@ -33,7 +33,7 @@ GENERIC = """width height origin-x origin-y resolution generator-function grid-w
     register-orientation-generator 2d-value-map-lookup"""
 """Those that are generic in the original: users may define methods on them."""
 INTERNAL = """occupied occupied-places pad-grid grid-of-values cached generate-by-function map-maximum heights-at has-height-generators
-    orientations-at check-metadata visible-cells why-empty remark"""
+    orientations-at check-metadata visible-cells why-empty remark ready above"""
 """For the Lisp half of the library: `orientations_at` is ``%orientations-at``."""
 CLASSES = (
     grids.GridMetadata,

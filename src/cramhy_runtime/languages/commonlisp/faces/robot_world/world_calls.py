@@ -15,7 +15,7 @@ from cramhy_runtime.ground.packages import is_symbol, keyword, symbol_name
 from cramhy_runtime.robot_world import description_files, models, remarks, xacro_files
 from cramhy_runtime.robot_world.descriptions import Description, DescriptionError
 from cramhy_runtime.robot_world.physical.world import PhysicalWorld
-from cramhy_runtime.robot_world.placements import of_pose
+from cramhy_runtime.robot_world.placements import of_pose, placement
 from cramhy_runtime.robot_world.things import Item, Machine, Thing
 from cramhy_runtime.robot_world.vision import seen
 from cramhy_runtime.robot_world.world import World
@@ -26,11 +26,13 @@ from .names import colour_of, name_of
 if TYPE_CHECKING:
     from cramhy_runtime.ground.data import Symbol
     from cramhy_runtime.transforms.poses import Pose
+    from cramhy_runtime.transforms.quaternions import Quaternion
+    from cramhy_runtime.transforms.vectors import Vector3
 
 LISP_NAMES = """
 make-world physical-p copy-world thing-color stuck-things ignored-contacts ignore-contact add-description remove-thing find-thing things
 thing-name thing-world thing-pose set-thing-pose thing-types thing-mass thing-stays set-thing-stays
-thing-bounds part-bounds machine-joints machine-joint
+thing-bounds part-bounds thing-lengths machine-joints machine-joint
 set-machine-joint machine-links machine-link machine-description attach detach attachments grips contacts settle stable visibility
 read-description description-text looked-on-p remark-seen remark-grasp
 """
@@ -144,6 +146,12 @@ def thing_bounds(thing: Thing) -> Cons:
 def part_bounds(machine: Machine, link: str) -> Cons:
     """As `thing_bounds`, of one link."""
     return _box(*machine.world.bounds(machine.name, str(link)))
+
+
+def thing_lengths(thing: Thing, rotation: Quaternion, link: str | None = None) -> Vector3:
+    """The lengths of the box along the axes that would be around a thing, or around one of its links, if it were turned so."""
+    turn = placement(rotation=(rotation.w, rotation.x, rotation.y, rotation.z)).rotation
+    return make_3d_vector(*map(float, thing.world.lengths(thing.name, None if link is None else str(link), turn)))
 
 
 def machine_joints(machine: Machine) -> Cons | None:
