@@ -23,6 +23,7 @@
                     reinitialize-instance shared-initialize change-class find-method compute-applicable-methods))
     (import (list symbol) '#:closer-mop)
     (export (list symbol) '#:closer-mop))
+  (export '(closer-mop::ensure-finalized closer-mop::required-args closer-mop::classp closer-mop::subclassp) '#:closer-mop)
   (reexport '#:common-lisp '#:closer-common-lisp)
   (reexport '#:closer-mop '#:closer-common-lisp))
 
@@ -46,5 +47,3 @@
   "Whether CLASS, a class or its name, is a subclass of SUPERCLASS."
   (flet ((class-of-name (thing) (if (symbolp thing) (find-class thing) thing)))
     (not (null (member (class-of-name superclass) (sb-mop:class-precedence-list (class-of-name class)))))))
-
-(export '(closer-mop::ensure-finalized closer-mop::required-args closer-mop::classp closer-mop::subclassp) '#:closer-mop)

@@ -127,7 +127,7 @@ def choose_file(path):
             stream.flush()
 
 
-OF_ALL_LISPS = {"alexandria", "cl-utilities", "s-xml", "split-sequence"}
+OF_ALL_LISPS = {"alexandria", "closer-mop", "cl-utilities", "s-xml", "split-sequence"}
 """Libraries that know nothing of CRAM, of which cramhy contains a rewritten form: a real one on ROS_PACKAGE_PATH comes first. All others
 depend on how cramhy is made; `prefer` takes them from there."""
 
