@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from cramhy_runtime.grading import CheckResult, Grader, Report, formats
+from cramhy_runtime.grading import CheckResult, Grader, Report, formats, judging
 from cramhy_runtime.grading.exercise import Exercise
 from cramhy_runtime.grading.harmless import harmless
 from cramhy_runtime.grading.problems import ExerciseError
@@ -192,3 +192,10 @@ def test_a_number_that_is_none_is_told_so_that_a_student_finds_the_division(grad
     assert words in said and "Python" not in said
     if "far" not in words:
         assert "Such a number comes from a division such as 0/0 or 1/0 of floats" in said
+
+
+@pytest.mark.parametrize("number, words", [(0, "sent 0 commands,"), (1, "sent 1 command,"), (2, "sent 2 commands,")])
+def test_what_is_counted_agrees_with_its_number(number, words):
+    judge = judging._counted("commands", lambda replay: number, "The plan sent {} command{s}", "It should send")
+    [fault] = judge({"commands": [5, 5]}, {}, None, None)
+    assert words in fault.plain and "It should send 5." in fault.whole

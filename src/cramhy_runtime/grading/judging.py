@@ -356,14 +356,16 @@ CLOCKS_APART = 0.1
 
 
 def _counted(name, count, words, wanted):
-    """A judge of a number. count: gives it for a `Replay`. words, wanted: sentences with {} for the number and for what it should be."""
+    """A judge of a number. count: gives it for a `Replay`. words: a sentence with {} for the number, and
+    {s} behind what is counted. wanted: how the sentence begins that says what it should be."""
 
     def judge(table, values, replay, told):
         if name in table:
             found = count(replay)
             low, high = _range(table[name], values)
             if not low <= found <= high:
-                yield _off(words.format(f"{found:.1f}" if isinstance(found, float) else found), found, low, high, "", wanted)
+                shown = f"{found:.1f}" if isinstance(found, float) else found
+                yield _off(words.format(shown, s="" if found == 1 else "s"), found, low, high, "", wanted)
 
     return judge
 
@@ -372,7 +374,7 @@ def _services(table, values, replay, told):
     for name, wanted in table.get("services", {}).items():
         found, (low, high) = replay.services.get(name, 0), _range(wanted, values)
         if not low <= found <= high:
-            yield _off(f"The service {name} was called {found} times", found, low, high, "", "It should be")
+            yield _off(f"The service {name} was called {found} time{'' if found == 1 else 's'}", found, low, high, "", "It should be")
 
 
 def _off(words, found, low, high, unit, wanted):
@@ -401,13 +403,13 @@ _JUDGES = (
     _still,
     _counted("turned", Replay.turned, "To the left the turtle turned by {} degrees in all", "It should be"),
     _counted("distance", Replay.distance, "The turtle went {} m", "In metres it should go"),
-    _counted("commands", lambda replay: replay.commands, "The plan sent {} commands", "It should send"),
-    _counted("walls", lambda replay: replay.walls, "The turtle was at a wall in {} ticks", "It should be"),
+    _counted("commands", lambda replay: replay.commands, "The plan sent {} command{s}", "It should send"),
+    _counted("walls", lambda replay: replay.walls, "The turtle was at a wall in {} tick{s}", "It should be"),
     _counted(
         "teleports",
         lambda replay: sum(replay.services.get(name, 0) for name in allowances.CARRYING),
-        "The turtle was carried {} times, by teleport or reset",
+        "The turtle was carried {} time{s}, by teleport or reset",
         "It should be",
     ),
-    _counted("turtles", lambda replay: len(replay.turtles), "There are {} turtles at the end", "It should be"),
+    _counted("turtles", lambda replay: len(replay.turtles), "The number of turtles at the end is {}", "It should be"),
 )
