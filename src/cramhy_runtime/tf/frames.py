@@ -9,6 +9,8 @@ from cramhy_runtime.kernel.typing_names import Any
 
 def unslash_frame(frame: Any) -> str:
     """``frame``, a string, without slashes and blanks at its ends; NIL stays NIL."""
+    if frame.__class__ is str:
+        return frame.strip("/ ")
     if frame is None:
         return None
     if not isinstance(frame, (str, LispString)):

@@ -172,7 +172,7 @@ def cross_product(v_1: Place, v_2: Place) -> Vector3:
 def v_norm(v: Place) -> float:
     """The length of a point; a double for vectors, a single for arrays of integers."""
     square = dot_product(v, v)
-    return result_class(square)(math.sqrt(square))
+    return math.sqrt(square) if square.__class__ is float else result_class(square)(math.sqrt(square))
 
 
 def v_dist(v_1: Place, v_2: Place) -> float:
