@@ -177,7 +177,7 @@ def samples(table: Table) -> None:
     """Places drawn from a costmap of the floor."""
     costmap, draw = LocationCostmap(width=12, height=12, origin_x=-6, origin_y=-6, resolution=0.05), random.Random(3)
     costmap.register(Gauss((1.0, 0.5), ((0.4, 0.0), (0.0, 0.4))), 1)
-    measured(table, "a place drawn from a costmap", repeat(lambda: costmap.draw(draw.random())), 100)
+    measured(table, "a place drawn from a costmap", repeat(lambda: costmap.draw(draw.random)), 100)
 
 
 def main() -> None:

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
 
-from cramhy_runtime.robot_world import vision
+from cramhy_runtime.robot_world import scene, vision
 from cramhy_runtime.robot_world.descriptions import Frame, Shape, turned
 from cramhy_runtime.robot_world.placements import Placement, of_pose, placement
 from cramhy_runtime.robot_world.world import World, WorldError
@@ -210,6 +210,23 @@ def test_a_copy_sees_with_a_model_that_is_there_but_where_its_own_things_are(wor
     copied.attach("pr2", "bottle", "r_wrist_roll_link")
     copied.simulate(5)
     assert copied.item("bottle").placement.position[2] == 1.5 and copied.scene.model is not world.scene.model
+
+
+def test_a_copy_makes_nothing_for_mujoco_until_it_is_asked(world, monkeypatch):
+    world.add_item("bottle", BOTTLE, placement(TABLE))
+    world.contacts()
+    made = []
+    monkeypatch.setattr(scene.Scene, "of_copies", lambda self, copies, old=scene.Scene.of_copies: made.append("data") or old(self, copies))
+    monkeypatch.setattr(scene.Scene, "_find_parts", lambda self, old=scene.Scene._find_parts: made.append("model") or old(self))
+    copied = world.copy()
+    again = copied.copy()
+    without = world.copy()
+    without.remove("bottle")
+    assert made == []
+    again.contacts()
+    assert made == ["data"]  # a copy of a copy has the model of the first world
+    without.contacts()
+    assert made == ["data", "model"]
 
 
 def test_the_same_falls_are_the_same_to_the_bit(world):

@@ -51,6 +51,7 @@ class World:
         self.stuck: list[tuple[Item, Thing | None]] = []  # items that the last `simulate` could not free, and what they are in
         self.let_go: list[tuple[Hashable, Hashable]] = []  # names of robots, and of items that they may still have between their fingers
         self._scene: Scene | None = None
+        self._pattern: tuple[Scene, list[Thing]] | None = None  # the scene of the world that this one was copied from; copies of its things
         self._placed = False
         self._trials = 0
 
@@ -233,11 +234,19 @@ class World:
     def scene(self) -> Scene:
         """The things as MuJoCo sees them, where they are now."""
         if self._scene is None:
-            self._scene, self._placed = Scene(self.solids(), self._held()), False
+            self._scene, self._placed = self._made_scene(), False
         if not self._placed:
             self._scene.place()
             self._placed = True
         return self._scene
+
+    def _made_scene(self) -> Scene:
+        """A scene of the things of now, with the model of the world that this one is a copy of, if it still has the same things."""
+        solids, held, pattern = self.solids(), self._held(), self._pattern
+        self._pattern = None
+        if pattern is not None and pattern[0].held == held and pattern[1] == solids:
+            return pattern[0].of_copies(solids)
+        return Scene(solids, held)
 
     def contacts(self, name: Hashable | None = None) -> list[tuple[Part, Part | None]]:
         """What touches what, or touches the thing ``name``: see `Scene.contacts`."""
@@ -316,8 +325,8 @@ class World:
         for name, thing in self.things.items():
             new.things[name] = copied = thing.copy()
             copied.world = new
-        if self._scene is not None and self._scene.held == new._held() and self._scene.things == self.solids():
-            new._scene = self._scene.of_copies(new.solids())
+        pattern = (self._scene, self._scene.things) if self._scene is not None else self._pattern
+        new._pattern = (pattern[0], new.solids()) if pattern is not None and pattern[1] == self.solids() else None
         if into is not None:
             into._tell()
         return new
