@@ -548,3 +548,25 @@ def step_of_form(page, language, form):
     return step_with(
         page, language, lambda part: isinstance(part, Code) and any(each.form == form for each in getattr(part, language) or ())
     )
+
+
+def test_later_pages_have_the_package_of_the_course_beside_that_of_the_student(typed, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # below which the student's package lies, too
+    typed([":quit"], "lecture-38")
+    assert (tmp_path / "files/lectures/cram_my_beginner_tutorial/cram-my-beginner-tutorial.asd").is_file()
+    load = '(ros-load:load-system "cram_my_beginner_tutorial" :cram-my-beginner-tutorial)'
+    ask = "(matching-process-module-names (desig:a motion (type driving) (speed 3)))"
+    for page in ("choosing-a-module", "location-designators"):
+        assert "(TURTLESIM-NAVIGATION)" in typed([load, "(in-package :tut)", ask, ":quit"], page)
+    assert "(TURTLESIM-NAVIGATION)" not in typed([load, "(in-package :tut)", ask, "q", ":quit"], "lecture-34")
+
+
+@pytest.mark.parametrize(("page", "kept"), [("lecture-38", True), ("simple-plans", False)])
+def test_a_file_of_the_page_to_which_a_student_comes_back_stays(typed, tmp_path, page, kept):
+    asd = tmp_path / "files/lectures/cram_my_beginner_tutorial/cram-my-beginner-tutorial.asd"
+    number, process_modules = contents.NAMES.index("lecture-38") + 1, '(:file "process-modules"'
+    write = step_with(number, "lisp", lambda part: isinstance(part, File) and process_modules in (part.lisp or ("", ""))[1])
+    typed([write, ":write", ":quit"], "lecture-38")
+    assert process_modules in asd.read_text()
+    typed([":quit"], page)
+    assert (process_modules in asd.read_text()) == kept

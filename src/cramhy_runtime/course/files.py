@@ -65,11 +65,24 @@ def earlier(page: Page, language: str) -> dict[str, str]:
 def settle(page: Page, language: str) -> None:
     """Make a session that goes on from page to page, in one folder, ready for ``page``: that of a tab. Errors: `OSError`.
 
-    The files of earlier pages are there. On the pages on which the student's own package grows, its system is that one. On all others it is
-    the one that comes with cramhy, which has the same name.
+    See `provide_earlier` and `choose_package`.
     """
+    provide_earlier(page, language)
+    choose_package(page)
+
+
+def provide_earlier(page: Page, language: str) -> None:
+    """Let the files of the pages before be in the current folder. One that has this page's text already stays: a student who comes back
+    to the page has written it. One with the text of a later page is set back. Errors: `OSError`."""
+    own = set(_files(page, language))
     for name, text in earlier(page, language).items():
-        provide(name, text)
+        path = Path(name)
+        if not (path.is_file() and (name, path.read_text(encoding="utf-8", errors="replace")) in own):
+            provide(name, text)
+
+
+def choose_package(page: Page) -> None:
+    """Let the course's system be the student's own on the pages on which that grows, and cramhy's on all others: it has the same name."""
     own = None if page.name in contents.GROWING else tutorials() / PACKAGE / f"{SYSTEM}.asd"
     if systems.chosen.get(SYSTEM) != own:
         systems.forget_system(SYSTEM)

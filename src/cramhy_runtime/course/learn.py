@@ -228,9 +228,14 @@ def run(
         way = Guide(name, language, progress, style)
         with Image(), contextlib.ExitStack() as closings:
             closings.enter_context(_in_work_folder(way, top))
-            status = _go(way, lambda closings=closings: make_session(closings), lines)
+            status = _go(way, lambda closings=closings, page=way.page: _session_for(page, make_session(closings)), lines)
         name = way.leaves_for
     return status
+
+
+def _session_for(page, session):
+    files.choose_package(page)
+    return session
 
 
 def _go(way, make_session, lines):
@@ -258,8 +263,7 @@ def _in_work_folder(way, top):
         place = files.work_folder(way.page, way.language, top)
         if place is not None:
             os.chdir(place)
-            for name, text in files.earlier(way.page, way.language).items():
-                files.provide(name, text)
+            files.provide_earlier(way.page, way.language)
     except OSError as problem:
         os.chdir(before)
         raise PageError(
