@@ -65,7 +65,9 @@ def _while(found, language):
 
 def _assignment(found, language):
     name, value = _variable(found["name"], language), found["value"].strip()
-    return f"({'defvar' if language == 'lisp' else 'setv'} {name} {value})"
+    if language == "hy":
+        return f"(setv {name} {value})"
+    return f"(defvar {name} {value}), and if the variable is there already, (setf {name} {value})"
 
 
 _LIKE_PYTHON = [
