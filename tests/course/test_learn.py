@@ -570,3 +570,8 @@ def test_a_file_of_the_page_to_which_a_student_comes_back_stays(typed, tmp_path,
     assert process_modules in asd.read_text()
     typed([":quit"], page)
     assert (process_modules in asd.read_text()) == kept
+
+
+def test_the_names_of_one_page_are_gone_on_the_next(typed):
+    said = typed(["(setv of-this-page 5)", "of-this-page", ":page 2", "of-this-page", ":quit"], language="hy")
+    assert said.count("\n5\n") == 1 and "name 'of-this-page' is not defined" in said.replace("of_this_page", "of-this-page")

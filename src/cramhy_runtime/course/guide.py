@@ -406,7 +406,8 @@ class Guide:
 
 
 def _squeezed(form):
-    return " ".join(form.split()).lower()
+    """The form without what does not matter: its lines, blanks inside of parentheses at their ends, and case."""
+    return re.sub(r"(?<=[(\[]) | (?=[)\]])", "", " ".join(form.split())).lower()
 
 
 __all__ = ["command", "COMMANDS", "Failure", "Guide", "meant", "PageError"]

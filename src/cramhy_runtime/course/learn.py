@@ -249,6 +249,7 @@ def _go(way, make_session, lines):
                 self.input = lines or self.input
                 self.failed()  # an error of the page before is not one of this page
 
+        sys.modules.pop("__console__", None)  # in which Hy's prompt of the page before has evaluated
         return hy_prompt.run(make_session, "", kind=OfPage, farewell="")
     prompt = LispPrompt(make_session, lines)
     prompt.guide = way

@@ -69,10 +69,26 @@ def code(block: str, style: Style) -> str:
     )
 
 
+_COMMENT = re.compile(r'((?:[^";\\]|\\.|"(?:[^"\\]|\\.)*"?)*)(;*)(.*)')
+"""A line of code: what stands before a comment, its semicolons, its text."""
+
+
 def _broken(line, width):
-    """A line of code in pieces of at most ``width`` columns. They end between words, so a longer word stays whole."""
+    """A line of code in pieces of at most ``width`` columns. They end between words, so a longer word stays whole.
+
+    A comment goes on as a comment, so that what is typed as it stands is the same code.
+    """
     if len(line) <= width:
         return [line]
+    before, mark, comment = _COMMENT.fullmatch(line).groups()
+    if mark:
+        indent = " " * (len(before) - len(before.lstrip()))
+        pieces, begin = ([], before + mark) if len(before) < width * 2 // 3 else (_broken(before.rstrip(), width), indent + mark)
+        lead = f"{begin} " if comment.startswith(" ") else begin
+        further = f"{indent}{mark} "
+        return pieces + textwrap.wrap(
+            comment.strip(), width, initial_indent=lead, subsequent_indent=further, break_long_words=False, break_on_hyphens=False
+        )
     longest = max(map(len, line.split()))
     further = " " * max(0, min(len(line) - len(line.lstrip()) + 4, width // 2, width - longest))
     return textwrap.wrap(line, width, subsequent_indent=further, break_long_words=False, break_on_hyphens=False)

@@ -1,0 +1,33 @@
+"""Code on the screen of ``cramhy learn`` is the same code when it is typed as it stands, and what was typed is known in other lines, too."""
+
+import re
+
+import pytest
+
+from cramhy_runtime.course.guide import _squeezed
+from cramhy_runtime.course.shown import Style, code
+
+
+def without_comments(code):
+    """The words of ``code``, without its comments."""
+    kept = [re.match(r'((?:[^";\\]|\\.|"(?:[^"\\]|\\.)*"?)*)', line)[1] for line in code.split("\n")]
+    return " ".join(kept).split()
+
+
+@pytest.mark.parametrize("width", [44, 80])
+@pytest.mark.parametrize(
+    "line",
+    [
+        '  ;; (make-message "geometry_msgs/Twist" (:x :linear) lin (:z :angular) ang) and more than fits into a row of the terminal',
+        "(setv x 1) ; the colour under the turtle, which is what this variable has at each moment of the plan",
+        '(format t "a ; b" one-argument another-argument a-third-argument a-fourth-argument) ; prints, and then goes on with the rest',
+        r"(list #\; first-of-them second-of-them third-of-them fourth-of-them) ; a character of Lisp that is not a comment",
+    ],
+)
+def test_a_comment_that_is_too_long_for_the_screen_goes_on_as_one(line, width):
+    assert without_comments(code(line, Style(width))) == without_comments(line)
+
+
+def test_a_form_that_is_typed_over_two_lines_was_typed():
+    assert _squeezed("(import cram-my-beginner-tutorial\n  :as tut\n)") == _squeezed("(import cram-my-beginner-tutorial :as tut)")
+    assert _squeezed("(f a )") == _squeezed("(f a)") != _squeezed("(fa)")
