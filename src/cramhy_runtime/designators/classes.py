@@ -148,15 +148,8 @@ _new = object.__new__
 
 
 def _made(cls: Any, description: Cons | None = None) -> Any:
-    """A designator of the class ``cls``."""
+    """A designator of the class ``cls``: what `Designator.__init__` does, in one call, since plans make many."""
     made: Any = _new(_Slots)
-    _begin(made, description)
-    made.__class__ = cls
-    return made
-
-
-def _begin(made: Any, description: Cons | None) -> None:
-    """Give the slots of a new designator their first values, and note that it lives."""
     made.description = description
     made.parent = made.successor = made.effective = made.timestamp = made.data = None
     made.quantifier = A
@@ -166,6 +159,8 @@ def _begin(made: Any, description: Cons | None) -> None:
     living_ones.append(ref(made))
     if len(living_ones) > living_ones.limit:
         living_ones.shorten()
+    made.__class__ = cls
+    return made
 
 
 class Designator(_Slots):
@@ -187,8 +182,11 @@ class Designator(_Slots):
     }
 
     def __init__(self, description: Cons | None = None, parent: Designator | None = None):
-        _begin(self, description)
+        like = _made(_Slots, description)
+        for name in _Slots.__slots__[:-1]:  # all but __weakref__
+            setattr(self, name, getattr(like, name))
         self.parent = parent
+        _live.value.append(ref(self))
 
     @property
     def object_id(self) -> object:

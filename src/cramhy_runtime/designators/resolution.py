@@ -105,8 +105,9 @@ def _reference(designator=UNSUPPLIED, role=UNSUPPLIED, *more):
         await_resolver(designator, me)
     set_resolver(designator, me)
     try:
-        resolve_one = _place if isinstance(designator, LocationDesignator) else resolve_designator
-        result = resolve_one(designator, DEFAULT_ROLE.value if role is UNSUPPLIED else role)
+        if role is UNSUPPLIED:
+            role = DEFAULT_ROLE.value
+        result = (_place if isinstance(designator, LocationDesignator) else resolve_designator)(designator, role)
         set_effective(designator, True)
         if designator.timestamp is None:
             set_timestamp(designator, current_timestamp())

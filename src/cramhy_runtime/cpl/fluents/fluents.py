@@ -252,15 +252,19 @@ class ValueFluent(Fluent[T]):
         if self.test is None:
             old = self.stored
             kind = type(new)
-            if new is not True and new is not None and kind not in TRUE_CLASSES and OWN_ANSWERS.get(kind, True):
-                new = plain_truth(new)
-                kind = type(new)
-            if kind is type(old):
-                if (kind not in COLLECTIONS and kind.__name__ != "ndarray") if old is new else old == new if kind is int else eql(old, new):
+            if kind is int:  # as most values of plans are
+                if type(old) is int and old == new:
                     return new
-            elif (old is False or new is False) and eql(old, new):  # of two classes only False is nil
-                self.stored = new  # without a pulse: it is one value in Lisp, and Python reads what it has written
-                return new
+            else:
+                if kind not in TRUE_CLASSES and new is not True and new is not None and OWN_ANSWERS.get(kind, True):
+                    new = plain_truth(new)
+                    kind = type(new)
+                if kind is type(old):
+                    if (kind not in COLLECTIONS and kind.__name__ != "ndarray") if old is new else eql(old, new):
+                        return new
+                elif (old is False or new is False) and eql(old, new):  # of two classes only False is nil
+                    self.stored = new  # without a pulse: it is one value in Lisp, and Python reads what it has written
+                    return new
         elif self._same(new := plain_truth(new)):
             return new
         self.stored = new

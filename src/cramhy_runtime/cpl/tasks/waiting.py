@@ -8,7 +8,7 @@ pulses, and can be evaporated and suspended like the untimed one.
 
 from __future__ import annotations
 
-from math import inf, isnan
+from math import inf
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar, overload
 
 from cramhy_runtime import kernel
@@ -96,7 +96,7 @@ def wait(fluent: Fluent[object], timeout: float | None) -> Any:
 
 def in_seconds(time: Any) -> float:
     """``time``, a real number of Lisp, Python or numpy, as seconds of the kernel's clock. Other objects, and NaN, are a type error."""
-    if isinstance(time, (bool, str)) or not (isinstance(time, (int, float)) or hasattr(time, "__float__")):
+    if time.__class__ is not float and time.__class__ is not int and (isinstance(time, (bool, str)) or not hasattr(time, "__float__")):
         return type_error(time, "REAL")
     try:
         seconds = float(time)
@@ -104,7 +104,7 @@ def in_seconds(time: Any) -> float:
         return inf if time > 0 else -inf
     except (TypeError, ValueError):  # an array of several, say
         return type_error(time, "REAL")
-    if isnan(seconds):
+    if seconds != seconds:  # NaN
         return type_error(time, "REAL", "\n(NaN is not a number: a wait of so many seconds would never end, or end at once.)")
     return seconds
 

@@ -129,16 +129,15 @@ def lisp_value(m, function, arguments):
     if not done:
         return NotImplemented
     kind = value.__class__
-    if kind in _TERMS:
+    if kind is Cons or kind is Symbol or kind is Keyword or kind is bool:
         return import_term(value, m.names)
-    if kind not in _ATOMS and function in RESULTS:
+    if RESULTS and kind not in _ATOMS and function in RESULTS:
         return RESULTS[function](value)
     return value
 
 
 RESULTS: dict[Symbol, Callable[[Any], Any]] = {}
 """The symbol of a function that was written in Hy → what makes Lisp data of its result. Such a result may be a collection of Python."""
-_TERMS = frozenset((Cons, Symbol, Keyword, bool))
 _ATOMS = frozenset((int, float, str, type(None)))
 
 

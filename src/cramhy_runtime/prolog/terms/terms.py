@@ -203,14 +203,11 @@ def value_of(term):
             return term
 
 
-_RESOLVED = frozenset((Cons, Var, LazyTail, TermTail))
-"""The classes of terms that `resolve` looks into. All others are data already."""
-
-
 def _resolve_list(term, names):
     cell = term
     for _ in _CELLS:  # as far as nothing changes
-        if cell.car.__class__ in _RESOLVED:
+        kind = cell.car.__class__
+        if kind is Cons or kind is Var or kind is LazyTail or kind is TermTail:  # quicker than a look into a set
             break
         cell = cell.cdr
         if cell.__class__ is not Cons:
@@ -221,7 +218,8 @@ def _resolve_list(term, names):
     while True:
         while cell.__class__ is Cons:
             car = cell.car
-            if car.__class__ in _RESOLVED:
+            kind = car.__class__
+            if kind is Cons or kind is Var or kind is LazyTail or kind is TermTail:
                 value = resolve(car, names)
                 if value is not car:
                     changed = True
