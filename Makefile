@@ -2,6 +2,7 @@
 # make test: the tests. make soak: each case of them, for hours.
 # make docs: the pages with what happens now. make site: the pages as a site, in site/index.html.
 # make bench: what things cost, beside their goals and beside others. make bench-compare COMMIT=HEAD~1: this checkout beside that one.
+# make house: counts the house and writes docs/explanation/house.md.
 # make recorded: what SBCL and its libraries answered, asked again, where they are installed.
 # make notebooks OUT=folder: the tutorial as notebooks.
 # make course: the course for a browser's tab, as static files in course-site. make pyodide: fetches what that needs from npm.
@@ -14,7 +15,7 @@ ROBOT := .venv/.robot
 READY := .venv/.ready
 PEERS := .venv/.peers
 
-.PHONY: tutorial view kitchen test interpreters recorded docs notebooks site pyodide course bench bench-compare golden lint soak clean
+.PHONY: tutorial view kitchen test interpreters recorded house docs notebooks site pyodide course bench bench-compare golden lint soak clean
 
 tutorial: $(LIGHT)
 	@$(BIN)/python tutorials/lectures.py --png turtle.png
@@ -34,6 +35,9 @@ interpreters: $(READY)
 
 recorded: $(READY)
 	@$(BIN)/python tests/recorded.py
+
+house: $(READY)
+	@$(BIN)/python tests/docs/house.py
 
 golden: $(READY)
 	@$(BIN)/python tests/golden/score.py
