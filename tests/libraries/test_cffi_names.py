@@ -12,6 +12,8 @@ import pytest
         ("(cffi-features:cffi-feature-p '(:and :unix (:not :windows)))", "T"),
         ("(cffi-features:cffi-feature-p '(:or :windows (:and :unix :no-such-feature)))", "NIL"),
         ('(mapcar #\'cffi:canonicalize-symbol-name-case \'("grab-image" "x1" ""))', '("GRAB-IMAGE" "X1" "")'),
+        ('(list (cffi-sys:native-namestring #p"/tmp/a b") (cffi:native-namestring "/tmp/a/"))', '("/tmp/a b" "/tmp/a/")'),
+        (r'(cffi-sys:native-namestring (make-pathname :directory "tmp" :name "a*b"))', '"/tmp/a*b"'),
     ],
 )
 def test_a_name_that_asks_about_this_machine_or_about_cases(values, form, printed):

@@ -10,7 +10,7 @@ import os
 import sys
 
 from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.packages import on_demand, registered
+from cramhy_runtime.ground.packages import keyword, on_demand, registered
 from cramhy_runtime.languages.commonlisp.packages.face_definition import define_face
 from cramhy_runtime.languages.commonlisp.files.files import path_of
 from cramhy_runtime.session import session
@@ -75,6 +75,7 @@ def define():
                 "lookup-presented-object-or-lose": presented,
                 "lookup-presented-object": presented,
             },
+            variables={"*readtable-alist*": None, "*communication-style*": keyword("SPAWN")},
         )
 
 
