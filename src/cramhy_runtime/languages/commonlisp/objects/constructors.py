@@ -7,9 +7,10 @@ is an assignment (`utilities.generated_functions`).
 from __future__ import annotations
 
 from functools import cache
+from itertools import count
 
 from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.data import FLOATS, UNSUPPLIED, Character, Keyword, one
+from cramhy_runtime.ground.data import FLOATS, UNSUPPLIED, Character, Keyword, one, python_list
 from cramhy_runtime.ground.dispatch.keyword_checks import ALLOW_OTHER_KEYS
 from cramhy_runtime.ground.keyword_calls import GIVEN, name_of_key
 from cramhy_runtime.ground.packages import symbol_name
@@ -49,6 +50,49 @@ def _written_constructor(structure, names):
     body = [f"if {GIVEN} or Lothers:", *sorting, f"    return Lconstruct(*{GIVEN}, **Lothers)", "Lobject = Lnew(Lclass)", *filling]
     body.append("return Lobject")
     return generated_function(f"constructor of {structure.name.name}", "construct", [*parameters, "**Lothers"], body, scope)
+
+
+WORTH_WRITING = 20
+"""After so many calls a function of its own is written for a structure: most structures of a program have few instances."""
+
+
+def maker_of_values(structure, order, empty):
+    """The function that makes an instance of a `Structure` from a Lisp list of values, for a constructor by position.
+
+    order: for each slot the position of its value in the list, or ``None``: then the slot has its default. empty: the names of slots
+    that were left out, and so may have a value of another type.
+    """
+    calls, written = count(1), None
+
+    def make(values):
+        nonlocal written
+        if written is not None:
+            return written(values)
+        if structure.cls is not None and next(calls) == WORTH_WRITING:
+            written = _written_maker(structure, order, empty)
+        values = python_list(values)
+        found = [values[index] if index is not None else slot.default() for slot, index in zip(structure.slots, order, strict=True)]
+        return structure.make(found, empty)
+
+    return make
+
+
+def _written_maker(structure, order, empty):
+    scope = {"new": object.__new__, "cls": structure.cls, "one": one, "wrong_type": structure.wrong_type}
+    lines, checks, filling = [], [], []
+    for number in range(max((index + 1 for index in order if index is not None), default=0)):
+        lines.append(f"value{number} = values.car; values = values.cdr")
+    for number, (index, slot) in enumerate(zip(order, structure.slots, strict=True)):
+        value = f"default{number}" if index is None else f"value{index}"
+        if index is None:
+            scope[f"initform{number}"] = slot.initform
+            lines.append(f"{value} = {'None' if slot.initform is None else f'one(initform{number}())'}")
+        if slot.predicate is not None and symbol_name(slot.name) not in empty:
+            scope |= {f"is_right{number}": slot.predicate, f"slot{number}": slot}
+            checks.append(f"if not is_right{number}({value}): wrong_type(slot{number}, {value})")
+        filling.append(f"made.{slot.attribute} = {value}")
+    body = [*lines, *checks, "made = new(cls)", *filling, "return made"]
+    return generated_function(f"constructor of {structure.name.name}", "make", ["values"], body, scope)
 
 
 def instance_constructor(plan, keys):

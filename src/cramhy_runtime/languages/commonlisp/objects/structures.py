@@ -24,7 +24,7 @@ from ..packages.package_errors import check_symbol
 from ..syntax.declaration_names import check_type_name
 from cramhy_runtime.ground.printing import CURRENT_LEVEL, LEVELS_COUNT
 from .builtin_classes import set_structure_object
-from .constructors import keyword_constructor
+from .constructors import keyword_constructor, maker_of_values
 from .classes import StructureClass, register_class, registered_class
 from cramhy_runtime.ground.dispatch.generic_functions import add_method
 from cramhy_runtime.ground.dispatch.methods import Shape
@@ -476,11 +476,10 @@ def _define_constructor(structure, constructor):
     indexes = {symbol_name(variable): index for index, variable in enumerate(python_list(variables))}
     order = [indexes.get(symbol_name(slot.name)) for slot in structure.slots]
 
+    make = maker_of_values(structure, order, empty)
+
     def construct(*arguments, **keywords):
-        values = python_list(one(function(*arguments, **keywords)))
-        return structure.make(
-            [values[index] if index is not None else slot.default() for slot, index in zip(structure.slots, order)], empty
-        )
+        return make(one(function(*arguments, **keywords)))
 
     construct.shape = shape_of(function)
     _function(symbol, construct)
