@@ -122,6 +122,10 @@ class Types(Protocol):
         """What a type of ``deftype`` stands for; other specifiers as they are."""
         ...
 
+    def without_parameters(self, specifier: Any) -> Any:
+        """As `expand`, for a symbol whose ``deftype`` has no parameters, so that its expansion needs nothing; others as they are."""
+        ...
+
     def simplified(self, specifier: Any) -> Any:
         """The specifier as messages show it."""
         ...

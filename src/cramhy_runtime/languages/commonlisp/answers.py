@@ -74,6 +74,7 @@ class _Types:
     predicate = staticmethod(types.type_predicate)
     declared = staticmethod(types.declared_predicate)
     expand = staticmethod(types.expand_type)
+    without_parameters = staticmethod(types.expand_without_parameters)
     of = staticmethod(types.type_of)
     simplified = staticmethod(simplified_type)
 

@@ -15,7 +15,7 @@ import math
 from cramhy_runtime.ground.condition_types import SimpleTypeError
 from cramhy_runtime.ground.conditions import error, type_error
 from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, LispString, MultipleValues, list_from
-from .element_types import FLOAT_CLASSES, check_element, upgraded_element_type
+from .element_types import FLOAT_CLASSES, LIMITS, check_element, upgraded_element_type
 from .sequence_types import char_of, constant_changed
 from cramhy_runtime.ground.arrays import InvalidArray, InvalidArrayIndex, followers_moved, wrong_rank
 from cramhy_runtime.ground.arrays import (
@@ -141,9 +141,11 @@ def set_aref(value, array, *subscripts):
     """``(setf aref)``."""
     if array.__class__ is TypedVector and len(subscripts) == 1:
         index = subscripts[0]
-        if value.__class__ is FLOAT_CLASSES.get(array.element_type) and index.__class__ is int and 0 <= index < len(array):
-            array[index] = value
-            return value
+        if index.__class__ is int and 0 <= index < len(array):
+            limits = LIMITS.get(id(array.element_type)) if value.__class__ is int else None
+            if value.__class__ is FLOAT_CLASSES.get(array.element_type) or limits is not None and limits[0] <= value <= limits[1]:
+                array[index] = value
+                return value
     return _write(array, *_place(array, subscripts), value)
 
 

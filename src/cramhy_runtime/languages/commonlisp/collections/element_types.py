@@ -30,6 +30,13 @@ _NAMES = {
 }
 _UNSIGNED_BITS = (1, 2, 4, 7, 8, 15, 16, 31, 32, 62, 63, 64)
 _SIGNED_BITS = (8, 16, 32, 63, 64)
+_UNSIGNED = {bits: lisp_list(sym("UNSIGNED-BYTE"), bits) for bits in _UNSIGNED_BITS}
+_SIGNED = {bits: lisp_list(sym("SIGNED-BYTE"), bits) for bits in _SIGNED_BITS}
+LIMITS = {
+    **{id(kind): (0, 2**bits - 1) for bits, kind in _UNSIGNED.items()},
+    **{id(kind): (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) for bits, kind in _SIGNED.items()},
+}
+"""The least and the greatest integer in arrays of each element type, by the id of the list that is the type."""
 
 
 def upgraded_element_type(specifier):
@@ -37,6 +44,8 @@ def upgraded_element_type(specifier):
     if isinstance(specifier, Symbol) and specifier.package is BIT.package:
         return _NAMES.get(specifier.name, True) if specifier.name != "UNSIGNED-BYTE" else True
     if isinstance(specifier, Cons) and isinstance(specifier.car, Symbol):
+        if specifier.car.package is not BIT.package and (expansion := PORTS.types.expand(specifier)) is not specifier:
+            return upgraded_element_type(expansion)
         name, parameters = specifier.car.name, list(specifier.cdr or ())
         if name in ("SINGLE-FLOAT", "DOUBLE-FLOAT", "SHORT-FLOAT", "LONG-FLOAT"):
             return _NAMES[name]
@@ -88,11 +97,11 @@ def _for_integers(low, high):
     if low >= 0:
         for bits in _UNSIGNED_BITS:
             if high < 2**bits:
-                return BIT if bits == 1 else lisp_list(sym("UNSIGNED-BYTE"), bits)
+                return BIT if bits == 1 else _UNSIGNED[bits]
         return True
     for bits in _SIGNED_BITS:
         if -(2 ** (bits - 1)) <= low and high < 2 ** (bits - 1):
-            return _FIXNUM if bits == 63 else lisp_list(sym("SIGNED-BYTE"), bits)
+            return _FIXNUM if bits == 63 else _SIGNED[bits]
     return True
 
 

@@ -12,6 +12,7 @@ from cramhy_runtime.ground.ports import PORTS
 from cramhy_runtime.ground.conditions import type_error
 from cramhy_runtime.ground.printing import prin1_to_string
 from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, one
+from cramhy_runtime.ground.conses import list_parts
 from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym
 
 TYPE, OPTIMIZE, SAFETY = sym("TYPE"), sym("OPTIMIZE"), sym("SAFETY")
@@ -23,8 +24,9 @@ MUFFLE-CONDITIONS""".split()
 """Declarations whose name is no type."""
 
 UNCHECKED = {sym("T"), sym("*"), True}
-FIXNUM = sym("FIXNUM")
+FIXNUM, INTEGER, MOD, SIGNED_BYTE, UNSIGNED_BYTE = map(sym, "FIXNUM INTEGER MOD SIGNED-BYTE UNSIGNED-BYTE".split())
 LEAST_FIXNUM, GREATEST_FIXNUM = -FIXNUM_LIMIT, FIXNUM_LIMIT - 1
+_LIMITS = {FIXNUM: (LEAST_FIXNUM, GREATEST_FIXNUM), UNSIGNED_BYTE: (0, None), sym("BIT"): (0, 1)}
 
 
 def declared_types(specifiers):
@@ -57,8 +59,30 @@ def checkable(specifier):
     return specifier is None or isinstance(specifier, Symbol) and (specifier.compiler_data or {}).get("declaration") is None
 
 
-def is_fixnum(value):
-    return value.__class__ is int and LEAST_FIXNUM <= value <= GREATEST_FIXNUM
+def integer_limits(specifier):
+    """The least and the greatest integer of a type that has all integers between them; ``None`` for other types, and for wrong specifiers.
+
+    The greatest is ``None`` where there is none. Types that programs define are not looked into: they may be defined again.
+    """
+    if specifier.__class__ is not Cons:
+        return _LIMITS.get(specifier) if specifier.__class__ is Symbol else None
+    head, parameters = specifier.car, list_parts(specifier.cdr)[0]
+    if head.__class__ is not Symbol or any(parameter.__class__ is not int for parameter in parameters):
+        return None
+    if head is INTEGER and 1 <= len(parameters) <= 2:
+        return parameters[0], parameters[1] if len(parameters) == 2 else None
+    if len(parameters) != 1 or parameters[0] < 1:
+        return None
+    if head is MOD:
+        return 0, parameters[0] - 1
+    if head is UNSIGNED_BYTE:
+        return 0, 2 ** parameters[0] - 1
+    return (-(2 ** (parameters[0] - 1)), 2 ** (parameters[0] - 1) - 1) if head is SIGNED_BYTE else None
+
+
+def is_between(value, limits):
+    """Whether ``value`` is an integer within the ``limits`` of `integer_limits`."""
+    return value.__class__ is int and limits[0] <= value and (limits[1] is None or value <= limits[1])
 
 
 _predicates: dict = {}

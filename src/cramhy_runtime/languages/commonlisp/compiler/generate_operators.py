@@ -7,26 +7,12 @@ from __future__ import annotations
 
 from cramhy_runtime.ground.data import Symbol as LispSymbol
 from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.ground.ports import PORTS
 from . import nodes
 from .core import NONE, Expression, Symbol, expression, word
-from .declared_types import FIXNUM, is_fixnum
+from .declared_types import integer_limits, is_between
 from .arithmetic.comparisons import COMPARISONS
-from .arithmetic.operations import (
-    AND,
-    ARITHMETIC,
-    DOT,
-    FLOAT_CLASS,
-    IF,
-    INT_CLASS,
-    IS,
-    IS_NOT,
-    OR,
-    SETX,
-    SINGLE_CLASS,
-    Operand,
-    class_of,
-    fixnum_test,
-)
+from .arithmetic.operations import AND, ARITHMETIC, DOT, FLOAT_CLASS, IF, INT_CLASS, IS, IS_NOT, OR, SETX, SINGLE_CLASS, Operand, class_of
 from .arithmetic.elements import ELEMENTS, LENGTH, ArrayGenerator
 from .arithmetic.functions import NumberGenerator
 from .kinds import ANY, DOUBLE_TYPES, INT, MACHINE, SINGLE_TYPES, exactly, kind_of, kind_of_type
@@ -42,14 +28,13 @@ KNOWN_PARTS = {sym("CRAMHY::CAR-OF-CONS"): "car", sym("CRAMHY::CDR-OF-CONS"): "c
 CONSP, ATOM, ENDP = map(sym, "CONSP ATOM ENDP".split())
 PROVING_CLASSES = {
     sym("INTEGER"): [INT_CLASS],
-    FIXNUM: [INT_CLASS],
     **dict.fromkeys(SINGLE_TYPES, [SINGLE_CLASS]),
     **dict.fromkeys(DOUBLE_TYPES, [FLOAT_CLASS]),
     sym("FLOAT"): [FLOAT_CLASS, SINGLE_CLASS],
     sym("REAL"): [INT_CLASS, FLOAT_CLASS, SINGLE_CLASS],
     sym("NUMBER"): [INT_CLASS, FLOAT_CLASS, SINGLE_CLASS],
 }
-"""Types that a comparison of classes proves, for a fixnum also one of size."""
+"""Types that a comparison of classes proves."""
 
 MOST_TERMS = 32
 """A sum of more terms is a call of the function: written as sums of two, it would take long to compile."""
@@ -59,11 +44,13 @@ class OperatorGenerator(ArrayGenerator, NumberGenerator):
     """The part of the `Generator` that makes expressions of calls of standard functions."""
 
     def Checked(self, node, destination):
-        """A value of a declared type: one comparison of classes, and of size for a fixnum, where that proves it."""
-        classes = PROVING_CLASSES.get(node.type) if isinstance(node.type, LispSymbol) else None
-        kind, fits = kind_of(node.value), node.type is not FIXNUM
-        if classes is not None and not node.entry and exactly(kind, kind_of_type(node.type) & MACHINE):
-            if fits or node.value.__class__ is nodes.Constant and is_fixnum(node.value.value):
+        """A value of a declared type: one comparison of classes, and of size for a range of integers, where that proves it."""
+        meant = PORTS.types.without_parameters(node.type)
+        limits = integer_limits(meant)
+        classes = [INT_CLASS] if limits else PROVING_CLASSES.get(meant) if isinstance(meant, LispSymbol) else None
+        kind, fits = kind_of(node.value), limits is None
+        if classes is not None and not node.entry and exactly(kind, kind_of_type(meant) & MACHINE):
+            if fits or node.value.__class__ is nodes.Constant and is_between(node.value.value, limits):
                 return self.gen(node.value, destination)
         if node.entry and not node.value.variable.raw:  # its kind is what is to be checked
             name = self.reference(node.value.variable)
@@ -86,7 +73,7 @@ class OperatorGenerator(ArrayGenerator, NumberGenerator):
         tests = [expression(IS, again if index else noted, each) for index, each in enumerate(classes)]
         test = tests[0] if len(tests) == 1 else expression(OR, *tests)
         if not fits:
-            test = expression(AND, test, fixnum_test(operand.later))
+            test = expression(AND, test, expression(word("<="), limits[0], operand.later, *([] if limits[1] is None else limits[1:])))
         if destination.kind == "effect":
             self.emit(word("when"), expression(word("not"), test), slow)
             self.effects += 1

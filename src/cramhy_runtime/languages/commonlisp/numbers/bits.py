@@ -88,6 +88,8 @@ def _byte_part(integer):
 
 
 def byte(size, position):
+    if size.__class__ is position.__class__ is int and size >= 0 <= position:
+        return Cons(size, position)
     return Cons(_byte_part(size), _byte_part(position))
 
 
@@ -117,7 +119,7 @@ def _mask(bytespec):
 def ldb(bytespec, integer):
     """The byte of ``integer``, moved to position 0."""
     mask = _mask(bytespec)
-    return need_integer(integer) >> bytespec.cdr & mask
+    return (integer if integer.__class__ is int else need_integer(integer)) >> bytespec.cdr & mask
 
 
 def ldb_test(bytespec, integer):

@@ -19,6 +19,7 @@ from cramhy_runtime.ground.arrays import (
     BASE_CHAR,
     STRING_KINDS,
     LispArray,
+    TypedVector,
     Vector,
     array_type,
     dimensions,
@@ -269,11 +270,17 @@ def is_star(item):
 
 def _and(arguments, _):
     predicates = [type_predicate(argument) for argument in arguments]
+    if len(predicates) == 2:
+        first, second = predicates
+        return lambda obj: first(obj) and second(obj)
     return lambda obj: all(predicate(obj) for predicate in predicates)
 
 
 def _or(arguments, _):
     predicates = [type_predicate(argument) for argument in arguments]
+    if len(predicates) == 2:
+        first, second = predicates
+        return lambda obj: first(obj) or second(obj)
     return lambda obj: any(predicate(obj) for predicate in predicates)
 
 
@@ -305,6 +312,8 @@ def _range(kind):
     def make(arguments, _):
         low, above, high, below = bounds(arguments)
         predicate = _ATOMIC[kind]
+        if kind == "INTEGER" and low.__class__ is high.__class__ is int:
+            return _integers_between(low + above, high - below)
 
         def holds(obj):
             return (
@@ -318,23 +327,26 @@ def _range(kind):
     return make
 
 
+def _integers_between(least, greatest):
+    """The predicate of the integers from ``least`` to ``greatest``."""
+    return lambda obj: (obj.__class__ is int or is_integer(obj)) and least <= obj <= greatest
+
+
 def _mod(arguments, _):
-    limit = arguments[0]
-    return lambda obj: is_integer(obj) and 0 <= obj < limit
+    return _integers_between(0, arguments[0] - 1)
 
 
 def _unsigned_byte(arguments, _):
     if not arguments or is_star(arguments[0]):
         return _ATOMIC["UNSIGNED-BYTE"]
-    limit = 2 ** arguments[0]
-    return lambda obj: is_integer(obj) and 0 <= obj < limit
+    return _integers_between(0, 2 ** arguments[0] - 1)
 
 
 def _signed_byte(arguments, _):
     if not arguments or is_star(arguments[0]):
         return is_integer
     limit = 2 ** (arguments[0] - 1)
-    return lambda obj: is_integer(obj) and -limit <= obj < limit
+    return _integers_between(-limit, limit - 1)
 
 
 def _cons(arguments, _):
@@ -369,7 +381,11 @@ def _array_test(predicate, kind, shape):
     upgraded = None if is_star(kind) else upgraded_element_type(kind)
     wanted = [sym("*")] * shape if is_integer(shape) else None if is_star(shape) else list(shape or ())
 
+    open_ended = wanted is None or len(wanted) == 1 and is_star(wanted[0])
+
     def holds(obj):
+        if obj.__class__ is TypedVector and open_ended and obj.element_type is upgraded:  # every kind of array that `predicate` may ask for
+            return True
         if not predicate(obj) or (not is_star(kind) and not same_specifier(element_type(obj), upgraded)):
             return False
         if wanted is None:
@@ -471,6 +487,12 @@ def expand_type(specifier):
             return specifier
         form = specifier if isinstance(specifier, Cons) else lisp_list(specifier)
         specifier = one(run(expander, form, None))
+
+
+def expand_without_parameters(specifier):
+    """As `expand_type`, for a symbol whose ``deftype`` has no parameters; other specifiers as they are."""
+    expander = _expanders.get(specifier) if specifier.__class__ is Symbol else None
+    return specifier if expander is None or expander.__lisp_lambda_list__ is not None else expand_type(specifier)
 
 
 def is_known_type(specifier):
