@@ -3,24 +3,33 @@
 
 (defpackage #:cffi
   (:use #:common-lisp)
-  (:nicknames #:cffi-sys)
   (:export
    #:*built-in-float-types* #:*built-in-integer-types* #:*darwin-framework-directories* #:*default-foreign-encoding* #:*foreign-library-directories* #:callback #:canonicalize-symbol-name-case #:close-foreign-library
    #:convert-from-foreign #:convert-to-foreign #:defbitfield #:defcallback #:defcenum #:defcfun #:defcstruct #:defctype #:defcunion
    #:defcvar #:define-c-struct-wrapper #:define-foreign-library #:define-foreign-type #:define-parse-method #:defcfun-helper-forms
-   #:expand-from-foreign #:expand-to-foreign #:foreign-alloc #:foreign-bitfield-symbols #:foreign-bitfield-value
-   #:foreign-enum-keyword #:foreign-enum-value #:foreign-free #:foreign-funcall #:foreign-funcall-pointer
+   #:expand-from-foreign #:expand-to-foreign #:foreign-alloc #:foreign-bitfield-symbol-list #:foreign-bitfield-symbols #:foreign-bitfield-value
+   #:foreign-enum-keyword #:foreign-enum-keyword-list #:foreign-enum-value #:foreign-free #:foreign-funcall #:foreign-funcall-pointer
    #:foreign-library #:foreign-library-loaded-p #:foreign-not-implemented #:foreign-pointer #:foreign-slot-names
    #:foreign-slot-offset #:foreign-slot-pointer #:foreign-slot-value #:foreign-string-alloc #:foreign-string-free
    #:foreign-string-to-lisp #:foreign-symbol-pointer #:foreign-type-alignment #:foreign-type-size #:free-converted-object
    #:free-translated-object #:get-callback #:get-var-pointer #:inc-pointer #:lisp-string-to-foreign #:list-foreign-libraries
    #:load-foreign-library #:load-foreign-library-error #:make-pointer #:make-shareable-byte-vector #:mem-aptr #:mem-aref #:mem-ref
-   #:native-namestring
    #:null-pointer #:null-pointer-p #:pointer-address #:pointer-eq #:pointerp #:translate-camelcase-name #:translate-from-foreign
    #:translate-into-foreign-memory
    #:translate-name-from-foreign #:translate-name-to-foreign #:translate-to-foreign #:use-foreign-library #:with-foreign-array
    #:with-foreign-object #:with-foreign-objects #:with-foreign-pointer #:with-foreign-pointer-as-string #:with-foreign-slots
    #:with-foreign-string #:with-foreign-strings #:with-pointer-to-vector-data))
+
+;;; Packages that use CFFI may have a NATIVE-NAMESTRING of their own.
+(defpackage #:cffi-sys
+  (:use #:common-lisp)
+  (:import-from #:cffi #:canonicalize-symbol-name-case #:foreign-alloc #:foreign-free #:foreign-pointer #:inc-pointer #:make-pointer
+                #:make-shareable-byte-vector #:null-pointer #:null-pointer-p #:pointer-address #:pointer-eq #:pointerp #:with-foreign-pointer
+                #:with-pointer-to-vector-data)
+  (:import-from #:sb-ext #:native-namestring)
+  (:export #:canonicalize-symbol-name-case #:foreign-alloc #:foreign-free #:foreign-pointer #:inc-pointer #:make-pointer
+           #:make-shareable-byte-vector #:native-namestring #:null-pointer #:null-pointer-p #:pointer-address #:pointer-eq #:pointerp
+           #:with-foreign-pointer #:with-pointer-to-vector-data))
 
 (defpackage #:cffi-features
   (:use #:common-lisp)
@@ -44,9 +53,6 @@
 (defun canonicalize-symbol-name-case (name)
   "NAME as a symbol of the standard readtable is called."
   (string-upcase name))
-
-;;; what the operating system calls the file of a pathname
-(setf (fdefinition 'native-namestring) #'sb-ext:native-namestring)
 
 (define-condition foreign-not-implemented (error)
   ((operation :initarg :operation :reader operation) (name :initarg :name :initform nil :reader name))
@@ -172,6 +178,12 @@
 (defun foreign-enum-keyword (type value &key (errorp t))
   (or (car (rassoc value (entries-of type)))
       (when errorp (error "~S is not defined as a value for enum type ~S." value type))))
+
+(defun foreign-enum-keyword-list (type)
+  (mapcar #'car (entries-of type)))
+
+(defun foreign-bitfield-symbol-list (type)
+  (mapcar #'car (entries-of type)))
 
 (defun foreign-bitfield-value (type symbols)
   (reduce #'logior symbols :key (lambda (symbol) (foreign-enum-value type symbol)) :initial-value 0))
