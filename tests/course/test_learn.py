@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 import json
 import sys
 import types as python_types
@@ -42,27 +40,6 @@ TASK = {language: step_with(1, language, "seconds-of-a-day") for language in ("l
 
 
 LAST = len(steps(reading.page("first-forms"), "lisp"))
-
-
-@pytest.fixture
-def typed(tmp_path):
-    """typed(lines, page, language, progress): what the screen shows."""
-
-    def run(lines, page="first-forms", language="lisp", progress=None):
-        out = io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(out):
-            learn.run(
-                lambda closings: Session(time="virtual"),
-                language,
-                page,
-                tmp_path / "files",
-                progress or Progress(),
-                Style(),
-                Script(iter(lines)),
-            )
-        return out.getvalue()
-
-    return run
 
 
 @pytest.mark.parametrize(

@@ -76,6 +76,8 @@ def told_of_open_form(lines: list[str]) -> str | None:
     return f"; A form is open{taken}. {close}, or press Ctrl-C to begin anew."
 
 
+_OUTSIDE = "form not inside a plan."
+"""In an error that names the form of the student itself."""
 _NOT_STARTED = re.compile(r"No message is there yet|No ROS node runs here")
 
 
@@ -236,7 +238,7 @@ class Guide:
             self._cue = self._cue or slips.of_error(error.told, self._text, self.language)
             self._cue = self._cue or slips.of_unready(*self._untyped(), told=error.told)
             if error.in_a_file or _NOT_STARTED.search(error.told):
-                self._cue = self._cue or slips.of_unready(*self._untyped()) or error.led_there
+                self._cue = self._cue or slips.of_unready(*self._untyped()) or (error.led_there if _OUTSIDE not in error.told else None)
         self.replay.failed()
         if self._read is not None and any(line.startswith(ERROR) for line in self._read.answer.splitlines()):  # as it should
             self._cue = None

@@ -7,6 +7,7 @@ innermost frame of a ``.lisp`` or ``.hy`` file or of a REPL line, and shows that
 from __future__ import annotations
 
 import os
+import re
 import sys
 from itertools import islice
 
@@ -265,6 +266,39 @@ def describe(position):
     filename, line, *column = position
     shown = _relative(file_of_text(filename))
     return ":".join([shown, str(line), *(str(part) for part in column if part)])
+
+
+def calling_form(frame, passed_over=()):
+    """The outermost form of the user's that led to ``frame``, in one line, or ``None`` if no other text of the user's led there.
+
+    passed_over: the operators of forms that only lead to other texts, such as ``load``. A form of many lines, or a long one, is shown by
+    its operator: ``(visit ...)``.
+    """
+    import linecache
+
+    places = [frame_position(*each) for each in circumstance.running(frame) if is_user_file(each[0].f_code.co_filename)]
+    for filename, line, column in reversed(places):
+        if filename == places[0][0]:
+            return None
+        text = linecache.getline(filename, line)[max(0, (column or 0) - 1) :]
+        operator = re.match(r"\(([^\s()\[\]]+)", text)
+        if operator is not None and operator[1].lower() not in passed_over:
+            form = _balanced(text)
+            return form if form is not None and len(form) <= _LONGEST_FORM else f"({operator[1]} ...)"
+    return None
+
+
+_LONGEST_FORM = 60
+
+
+def _balanced(line):
+    """The form at the beginning of ``line``, or ``None`` if it does not end in it."""
+    depth = 0
+    for token in re.finditer(r'"(?:[^"\\]|\\.)*"|[()]', line):
+        depth += {"(": 1, ")": -1}.get(token[0], 0)
+        if depth == 0:
+            return line[: token.end()]
+    return None
 
 
 def _relative(filename):
