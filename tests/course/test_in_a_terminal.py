@@ -21,14 +21,19 @@ from cramhy_runtime.course.parts import Code, Task  # noqa: E402
 from .walking import solution  # noqa: E402
 
 
+WIDE = (24, 200)
+"""Rows and columns: a terminal that cannot move its cursor shows a longer line in pieces while it is typed."""
+
+
 @pytest.fixture
 def terminal(tmp_path, monkeypatch):
     from tests.repl.terminal import Terminal
 
     monkeypatch.chdir(tmp_path)
 
-    def start(*words, editor=False):
-        return Terminal("learn", *words, editor=editor, variables={"CRAMHY_HISTORY": str(tmp_path / "state"), "CRAMHY_VIEW": "no"})
+    def start(*words, editor=False, draws=False):
+        variables = {"CRAMHY_HISTORY": str(tmp_path / "state"), "CRAMHY_VIEW": "no", **({"TERM": "xterm"} if draws else {})}
+        return Terminal("learn", *words, editor=editor, size=WIDE, variables=variables)
 
     return start
 
@@ -88,6 +93,20 @@ def test_ctrl_c_ends_a_check_that_does_not_end_and_the_prompt_goes_on(terminal):
         there.expect("\n42\nCL-USER> ")
         there.type("exit")
         assert there.status() == 0
+
+
+@pytest.mark.parametrize("language", ["lisp", "hy"])
+def test_ctrl_c_ends_a_form_that_is_open_and_the_next_line_is_answered(terminal, language):
+    prompt = {"lisp": "CL-USER> ", "hy": "=> "}[language]
+    with terminal("--language", language, draws=True) as there:
+        there.expect(f"{prompt}$")
+        for line, begun in (("(max 1 2", "max 1> $"), ("(max 3\n  (min 4", "min 2> $")):
+            there.type(line)
+            there.expect(begun)
+            there.control_c()
+            there.expect(rf"\n{prompt}$")
+            there.type("(+ 40 2)")
+            there.expect(rf"\n42\n{prompt}$")
 
 
 def test_the_editor_of_the_prompt_is_there_and_recalls_commands(terminal):

@@ -7,14 +7,10 @@ from .readline_lines import ReadlineLines
 
 
 class HyLines(ReadlineLines):
-    """Lines that a REPL of Hy reads, with Hy's own line editing. in_lisp: a function that says whether the REPL reads Lisp now."""
+    """Lines that a REPL of Hy reads, as readline edits them. in_lisp: a function that says whether the REPL reads Lisp now."""
 
     def __init__(self, repl, in_lisp):
         super().__init__(HyTab(repl, in_lisp))
-        self.repl = repl
-
-    def ask(self, prompt):
-        return type(self.repl).raw_input(self.repl, prompt)
 
 
 __all__ = ["HyLines"]
