@@ -170,7 +170,7 @@ def _check(folder, table, number, files, shows=False):
         raise ExerciseError(f"{where} has no do, but asks for {', '.join(sorted(criteria))}.")
     if "paper" in table:
         paper = table["paper"]
-        _known(paper, {"way", "from", "upright", "tolerance", "slack", "width", "ordered"}, f"paper of {where}")
+        _known(paper, {"way", "from", "upright", "tolerance", "slack", "width", "ordered", "pen_first"}, f"paper of {where}")
         if not isinstance(paper.get("way"), str):
             raise ExerciseError(f"paper of {where} has no way.")
     for trouble in table.get("troubles", ()):

@@ -229,7 +229,9 @@ def _no_function(name):
 
 
 class _Now:
-    """The paper and the turtle as they are, for the judges that else look at a `Replay`."""
+    """The paper and the turtle as they are, for the judges that else look at a `Replay`. What came first nobody knows any more."""
+
+    pen_late = False
 
     def __init__(self, simulator):
         self.simulator = simulator

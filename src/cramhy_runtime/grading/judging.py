@@ -256,6 +256,8 @@ def _pen_and_order(paper, target, drawn, replay, values):
             yield Fault(
                 "The lines have another width than they should.", f"{lines}, which is not right.", f"{lines}. They should be {wanted}."
             )
+    if paper.get("pen_first") and replay.pen_late:
+        yield fault(PEN_LATE, PEN_LATE)
     if not paper.get("ordered"):
         return
     drew, asked = drawings.length(drawn), drawings.length(target)
@@ -269,6 +271,7 @@ def _pen_and_order(paper, target, drawn, replay, values):
 LONGER = 0.03
 """The share by which a drawing may be longer than the asked one: turtles overshoot."""
 OTHER_ORDER = "The lines of the drawing are right, but the turtle drew them in another order, or the other way round."
+PEN_LATE = "The turtle was driven first, and its pen was set afterwards: it begins its line with the pen that it had."
 EMPTY = "The paper is empty: the turtle has drawn nothing."
 
 

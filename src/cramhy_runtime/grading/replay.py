@@ -39,7 +39,8 @@ class Replay:
     begin: the tick at which the plan began. troubles, seed: as of `Troubles`.
 
     ``way``: for each turtle its places (x, y, heading) since the plan began, one for each tick. ``begun``: the place of turtle1 then.
-    ``commands``, ``services``: how many reached the turtles since. ``walls``: how often one hit a wall. ``lines``: see `drawing`.
+    ``commands``, ``services``: how many reached the turtles since. ``pen_late``: whether a turtle was driven before its pen was set for the
+    first time. ``walls``: how often one hit a wall. ``lines``: see `drawing`.
     """
 
     def __init__(self, start, heard, ticks, begin, troubles=(), seed=1):
@@ -48,6 +49,7 @@ class Replay:
         self.paper = _Paper()
         self.walls = self.commands = 0
         self.services = {}
+        self.pen_late, self._driven = False, set()
         self.turtles = {}
         self._spawn("turtle1", (CENTRE, CENTRE, 0.0))
         put(self.turtles["turtle1"], start)
@@ -62,6 +64,7 @@ class Replay:
                 self.begun = _place(self.turtles["turtle1"]) if "turtle1" in self.turtles else start
                 self.walls = self.commands = 0
                 self.services = {}
+                self.pen_late, self._driven = False, set()
                 self.paper.lines.clear()
             self.troubles.act(tick, self.turtles)
             while place < len(heard) and heard[place][0] == tick:
@@ -86,9 +89,13 @@ class Replay:
         if kind == "command":
             self.commands += 1
             values = self.troubles.command(tick, name, tuple(values))
+            if values is not None and any(values):
+                self._driven.add(name)
             if name in self.turtles and values is not None:
                 self.turtles[name].command(*values, tick * TICK)
             return
+        if kind == "set_pen" and kind not in self.services:
+            self.pen_late = name in self._driven
         self.services[kind] = self.services.get(kind, 0) + 1
         if kind == "spawn":
             if len(self.turtles) >= MOST_TURTLES:
