@@ -10,7 +10,7 @@ import re
 
 from cramhy_runtime.kernel.typing_names import NamedTuple
 
-from . import checking, contents, files, shown, slips
+from . import checking, contents, files, mistyped, shown, slips
 from .parts import Code, File, Task, Typed, text_in
 from .progress import Progress
 from .reading import PageError, page, pages
@@ -203,7 +203,7 @@ class Guide:
                 f"; Lisp took each of these words for a form of its own. A call has parentheses around it: ({' '.join(text.split())})"
             )
         else:
-            self._cue = slips.of_line(text, self.language)
+            self._cue = mistyped.of_form(text, self.language) or slips.of_line(text, self.language)
         self._text = text
         self._typed.update(form for form in map(_squeezed, self._forms()) if form in _squeezed(text))
         self._read = next((typed for typed in self._waiting if _squeezed(typed.form) == _squeezed(text)), None)
@@ -232,8 +232,9 @@ class Guide:
     def failed(self, missing: str | None = None, error: Failure | None = None) -> None:
         """What was typed last has failed, or was ended by Ctrl-C. missing: the name that was not defined. error: what is known of it."""
         self._cue = self._cue or slips.of_failed_form(self._text, self.language)
+        self._cue = self._cue or mistyped.of_failed_form(self._text, self.language, self.replay.texts)
         if missing is not None:
-            self._cue = self._cue or slips.of_missing(missing, *self._untyped())
+            self._cue = self._cue or mistyped.of_name(missing, self.language) or slips.of_missing(missing, *self._untyped())
         elif error is not None:
             self._cue = self._cue or slips.of_error(error.told, self._text, self.language)
             self._cue = self._cue or slips.of_unready(*self._untyped(), told=error.told)

@@ -1,0 +1,104 @@
+"""What the guide says of slips of writing: single quotes, commas, an equals sign, ``true`` in Hy, a quote or brackets left out.
+
+Some of these forms fail with a message that does not name the slip, and some give a wrong answer without a message: Hy takes ``1,57`` for
+157. The sentence says what stands wrong and how it is written. It has the words of the student, and is not the answer of a task.
+"""
+
+from __future__ import annotations
+
+import re
+
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+_APART = re.compile(r'"(?:[^"\\]|\\.)*"?|;[^\n]*', re.S)
+"""Strings and comments, in which nothing is a slip."""
+_SINGLE = re.compile(r"(?<![^\s(\[])'([^'()\[\]\"\n]*[^'()\[\]\"\s])'(?=[\s)\]]|$)")
+_CURVED = re.compile('[\u201c\u201d\u201e\u00ab\u00bb]([^\u201c\u201d\u201e\u00ab\u00bb"\n]*)[\u201c\u201d\u201e\u00ab\u00bb]')
+_DECIMAL = re.compile(r"(?<![\w.,'])(-?\d+),(\d+)(?![\w.,])")
+_THOUSANDS = re.compile(r"-?[1-9]\d{0,2},\d{3}")
+_GROUP = re.compile(r"[(\[][^()\[\]]*[^\s()\[\],],(?=[\s)\]])[^()\[\]]*[)\]]|[(\[][^()\[\]]*\s,\s[^()\[\]]*[)\]]")
+_COMMA = re.compile(r"[^\s()\[\],],(?=[\s)\]])")
+_EQUALS = re.compile(r"\((?P<head>setv|setf|setq|defvar|defparameter)\s+(?P<name>[^\s()\[\]]+)\s+=\s+(?P<value>[^\s()\[\]]*)")
+_EQUALS_IN_LET = re.compile(r"\(let\s+(?P<begin>[\[(]+)\s*(?P<name>[^\s()\[\]=]+)\s+=\s+(?P<value>[^\s()\[\]]*)")
+_AS = re.compile(r"\(import\s[^()]*?(?P<module>[^\s()\[\]]+)\s+as\s+(?P<name>[^\s()\[\]]+)")
+_NOT_QUOTED = re.compile(r"\((?:[\w-]+:)?prolog\s+\((?P<predicate>[^\s()\[\]]+)")
+_NO_BRACKETS = re.compile(r"\((?:[\w-]+:)?def-fact-group\s+(?P<name>[^\s()\[\]]+)\s+\(\s*<-")
+_HANDLES = re.compile(r"\(with-failure-handling\b")
+_LEAVES = re.compile(r"\((?:return|return-from|leave|retry|do-retry)\b")
+VALUES = {"true": "True", "false": "False", "nil": "None", "null": "None", "none": "None", "TRUE": "True", "FALSE": "False", "NIL": "None"}
+"""What other languages call true, false and nothing, and how Hy writes it."""
+
+
+def of_form(text: str, language: str) -> str | None:
+    """What to say of a form, whether it has failed or not; ``None`` if nothing in it is a slip."""
+    code = _code(text)
+    if found := _CURVED.search(code):
+        return f'; A text stands in straight double quotes: "{found[1]}"'
+    if found := _SINGLE.search(code):
+        return f'; A text stands in double quotes: "{found[1]}"'
+    if found := _EQUALS.search(code):
+        return f"; {found['head']} takes no =: ({found['head']} {found['name']} {found['value'] or '...'})"
+    if found := _EQUALS_IN_LET.search(code):
+        close = {"[": "]", "(": ")"}
+        ends = "".join(close[each] for each in reversed(found["begin"]))
+        return f"; let takes no =: (let {found['begin']}{found['name']} {found['value'] or '...'}{ends} ...)"
+    return _of_hy(code, text) if language == "hy" else None
+
+
+def _code(text):
+    """``text`` with nothing in its strings, and without comments; what is left keeps its place."""
+    return _APART.sub(lambda found: f'"{"_" * (len(found[0]) - 2)}"' if found[0][0] == '"' else " " * len(found[0]), text)
+
+
+def _of_hy(code, text):
+    if found := _AS.search(code):
+        return f"; A colon stands before as: {found['module']} :as {found['name']}"
+    if (found := _DECIMAL.search(code)) and not _THOUSANDS.fullmatch(found[0]):
+        return f"; A number has a point: {found[1]}.{found[2]}. Hy leaves the comma in {found[0]} out."
+    if found := _GROUP.search(code):
+        group = "".join(" " if sign == "," else old for sign, old in zip(found[0], text[found.start() :]))
+        return f"; Between values stand spaces, and no commas: {group[0]}{' '.join(group[1:-1].split())}{group[-1]}"
+    return "; Between values stand spaces, and no commas." if _COMMA.search(code) else None
+
+
+def of_name(name: str, language: str) -> str | None:
+    """What to say of a name without a value: one that other languages have for true, false and nothing; else ``None``."""
+    if language == "hy" and name in VALUES:
+        return (
+            f"; Hy writes {VALUES[name]}, with a capital letter."
+            if name.lower() != "null" and "i" not in name.lower()
+            else f"; Hy writes {VALUES[name]}."
+        )
+    return None
+
+
+def of_failed_form(text: str, language: str, earlier: Iterable[str] = ()) -> str | None:
+    """What to say of a form that has failed: a quote or brackets left out, or a handler without its end; else ``None``.
+
+    earlier: what was typed on the page before, in which a function may stand that the form calls.
+    """
+    code = _code(text)
+    if found := _NOT_QUOTED.search(code):
+        return f"; A question to Prolog is not a call. A quote stands before it: (prolog '({found['predicate']} ...))"
+    if found := _NO_BRACKETS.search(code):
+        empty = "[]" if language == "hy" else "()"
+        return (
+            f"; Behind the name of the group stands a list of the predicates that the group extends, and {empty} if it extends none: "
+            f"(def-fact-group {found['name']} {empty} ...)"
+        )
+    for each in (code, *(other for other in map(str, earlier) if _calls(code, other))):
+        if _HANDLES.search(each) and not _LEAVES.search(_code(each)):
+            leave = "(leave ...)" if language == "hy" else "(return ...)"
+            return f"; A handler that comes to its end passes the failure on. {leave} in it ends the block, and (retry) begins it anew."
+    return None
+
+
+def _calls(code, other):
+    name = re.match(r"\s*\((?:defun|defn|def-cram-function)\s+([^\s()\[\]]+)", other)
+    return name is not None and re.search(rf"\({re.escape(name[1])}[\s)]", code, re.I) is not None
+
+
+__all__ = ["VALUES", "of_failed_form", "of_form", "of_name"]
