@@ -45,3 +45,27 @@ def test_a_plan_function_outside_of_a_plan_names_the_form_of_the_student(typed, 
 def test_a_plan_form_that_was_typed_itself_is_named_as_before(typed, language):
     shown = words(typed([*START[language], "(par (sleep 1))", "q", ":quit"], language=language))
     assert "Plan forms run inside of a plan: write (top-level (par ...))." in shown
+
+
+# --------------------------------------------------------------------------------------------------------- the words of Hy in Hy
+
+
+IN_HY = {
+    "(top-level (wait-for 1))": "wait-for takes a fluent, but was given 1 (of the type int), which never changes. Write (wait-for f)",
+    "(top-level (wait-for (> 1 0)))": "Write (wait-for (< f x)) or (wait-for (fl-eql f x)) with the fluent f itself.",
+    "(top-level (wait-for max))": "and write (wait-for (fl-funcall function f)) or (wait-for (< f 1)).",
+    "(nosuch-name 1)": "NameError: name 'nosuch-name' is not defined",
+    "(print nosuch_name)": "NameError: name 'nosuch_name' is not defined",
+    "(print nosuch->name)": "NameError: name 'nosuch->name' is not defined",
+    "(cpm:matching-process-modul 1)": "NameError: name 'cpm:matching-process-modul' is not defined",
+    "(. max no-such)": "has no attribute 'no-such'",
+    "(print (2 3))": "TypeError: 'int' object is not callable",
+    "(defn go? [] (none?))\n(go?)": "NameError: name 'none?' is not defined",
+}
+OF_PYTHON = ("cpl.", "hyx_", "missed a comma")
+
+
+@pytest.mark.parametrize("form", IN_HY)
+def test_an_error_in_hy_speaks_hy(typed, form):
+    shown = words(typed([*form.split("\n"), ":quit"], language="hy"))
+    assert IN_HY[form] in shown and not [word for word in OF_PYTHON if word in shown]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 
+from cramhy_runtime.ground.packages import find_package, near_names
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -65,14 +66,15 @@ def _of_hy(code, text):
 
 
 def of_name(name: str, language: str) -> str | None:
-    """What to say of a name without a value: one that other languages have for true, false and nothing; else ``None``."""
-    if language == "hy" and name in VALUES:
-        return (
-            f"; Hy writes {VALUES[name]}, with a capital letter."
-            if name.lower() != "null" and "i" not in name.lower()
-            else f"; Hy writes {VALUES[name]}."
-        )
-    return None
+    """What to say of a name without a value: what other languages call true, false or nothing, or a misspelt name of a package in Hy."""
+    if language != "hy":
+        return None
+    if name in VALUES:
+        return f"; Hy writes {VALUES[name]}."
+    prefix, colon, word = name.partition(":")
+    package = find_package(prefix.upper()) if colon and prefix else None
+    near = near_names(word.upper(), package.external) if package is not None else None
+    return f"; Did you mean {prefix}:{near[0].lower()}?" if near else None
 
 
 def of_failed_form(text: str, language: str, earlier: Iterable[str] = ()) -> str | None:

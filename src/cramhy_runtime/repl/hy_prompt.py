@@ -17,7 +17,8 @@ import functools
 import io
 import re
 import sys
-from contextlib import contextmanager, nullcontext
+import warnings
+from contextlib import contextmanager, nullcontext, redirect_stderr
 
 import hy
 from hy.models import Expression, Symbol
@@ -157,6 +158,13 @@ class HyPrompt(Listener):
         """What Python's console says by itself; from Python 3.13 on also its goodbye, when a signal ends it and the terminal has gone."""
         if not signals.received:
             type(self.repl).write(self.repl, text)
+
+    def showtraceback(self):
+        """As the REPL's own, with the names as Hy writes them."""
+        with redirect_stderr(io.StringIO()) as told:
+            type(self.repl).showtraceback(self.repl)
+        sys.stderr.write(as_written(told.getvalue()))
+        sys.stderr.flush()
 
     def _listen_no_more(self):
         speak(lisp=False)
@@ -369,6 +377,23 @@ class HyPrompt(Listener):
         return text
 
 
+_MANGLED = re.compile(r"\bhyx_\w+")
+_LAST_LINE = re.compile(r"^(?:Name|Attribute|Import|Type)Error\b.*", re.M)
+
+
+def as_written(text):
+    """``text``, a traceback, with the names in its last line as the program has them: ``wait-for``, and not ``wait_for``."""
+
+    def unmangled(found):
+        return re.sub(r"(?<=')[a-zA-Z]\w*_\w*(?=')", written, found[0])
+
+    def written(name):
+        name_in_hy = hy.unmangle(name[0])
+        return name_in_hy if name_in_hy in text else name[0]
+
+    return _LAST_LINE.sub(unmangled, _MANGLED.sub(lambda found: hy.unmangle(found[0]), text))
+
+
 def shown_by_lisp(value):
     """The text that Hy's REPL shows for ``value``, the last of a file that is run before the prompt comes."""
     streams.CONSOLE_OUTPUT.fresh_line()
@@ -399,7 +424,7 @@ def attend(repl, session=None, kind=HyPrompt):
             repl.output_fn = repl.lisp.shown_in_hy
         name_as_later_releases(hy.repl)
         repl.raw_input, repl.runsource, repl.runcode = repl.lisp.raw_input, repl.lisp.runsource, repl.lisp.runcode
-        repl.write = repl.lisp.write
+        repl.write, repl.showtraceback = repl.lisp.write, repl.lisp.showtraceback
         compiler = repl.compile.compiler
         compiler.ast_callback = repl.lisp.complete_code(compiler.ast_callback)
 
@@ -452,6 +477,7 @@ def converse(session, lines, text="", begun=lambda repl: None):
 
 def _repl_of(session, kind=HyPrompt, interact=None, banner=None):
     """A `hy.REPL` with the macros of the plan language. interact: its loop, a function of the REPL and the banner; by default its own."""
+    warnings.filterwarnings("ignore", ".*perhaps you missed a comma", SyntaxWarning)  # Hy has none
     repl = hy.REPL()
     attend(repl, session, kind)
     repl.runsource("(require cramhy *)")

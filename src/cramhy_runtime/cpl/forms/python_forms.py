@@ -10,6 +10,7 @@ arguments. Several Lisp values are a tuple; no values, of a branch that another 
 
 from __future__ import annotations
 
+import sys
 from contextlib import contextmanager
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar, overload
 from cramhy_runtime.kernel.unstarted import callable_part
@@ -18,6 +19,8 @@ from cramhy_runtime import kernel
 
 from cramhy_runtime.ground.condition_types import Condition
 from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.ground.source_places import is_user_file
+from cramhy_runtime.kernel.reports import of_the_library
 from cramhy_runtime.ground.data import TRUE_CLASSES, Cons, list_from, truth
 from ..failures import handling as failures
 from . import operators, policies
@@ -30,6 +33,7 @@ from .named_steps import Tag
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
     from contextlib import AbstractContextManager
+    from types import FrameType
 
     from ..signatures import Ordering, Thunk
     from ..tasks.tasks import AbstractTask
@@ -170,7 +174,9 @@ def wait_for(fluent: Any, *, timeout: float | None = None) -> Any:
 
 
 def _refuse(thing: object, form: str) -> NoReturn:
-    """Tell why ``thing``, which is not a fluent, was given to ``form``, as far as one can guess."""
+    """Tell why ``thing``, which is not a fluent, was given to ``form``, as far as one can guess, in the language of the caller."""
+    if _called_in_hy():
+        _refuse_in_hy(thing, form.replace("_", "-"))
     if isinstance(thing, bool):
         advice = (
             f"A comparison of a fluent's value gives {thing} once, and so do `f == x` and `f != x`, which ask whether two fluents are the "
@@ -184,6 +190,30 @@ def _refuse(thing: object, form: str) -> NoReturn:
     else:
         advice = f"Write cpl.{form}(f) with a fluent f, not with f.value, and cpl.make_fluent(value=...) to make one."
     raise TypeError(f"cpl.{form} takes a fluent, but was given {_short(thing)}, which never changes. {advice}")
+
+
+def _refuse_in_hy(thing: object, form: str) -> NoReturn:
+    if isinstance(thing, bool):
+        advice = (
+            f"A comparison of a fluent's value gives {thing} once. "
+            f"Write ({form} (< f x)) or ({form} (fl-eql f x)) with the fluent f itself."
+        )
+    elif callable(thing):
+        advice = (
+            "Nobody would tell the plan when to call a function again. Keep what it looks at in a fluent f, "
+            f"and write ({form} (fl-funcall function f)) or ({form} (< f 1))."
+        )
+    else:
+        advice = f"Write ({form} f) with a fluent f, not with f.value, and (make-fluent :value ...) to make one."
+    raise TypeError(f"{form} takes a fluent, but was given {_short(thing)}, which never changes. {advice}")
+
+
+def _called_in_hy() -> bool:
+    """Whether the innermost text that is not of this library is one of Hy, or was typed at its prompt."""
+    frame: FrameType | None = sys._getframe(1)
+    while frame is not None and of_the_library(frame.f_code.co_filename):
+        frame = frame.f_back
+    return frame is not None and is_user_file(frame.f_code.co_filename)
 
 
 def _short(thing: object) -> str:
