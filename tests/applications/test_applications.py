@@ -162,6 +162,12 @@ def test_roslisp_utilities_gives_what_that_of_roslisp_common_gives_on_sbcl():
         assert run(Session(time="virtual", turtlesim=False), "roslisp_utilities") == []
 
 
+def test_cl_tf_gives_what_that_of_roslisp_common_gives_on_sbcl():
+    """As above: its transformer and cache, without messages, listener and broadcaster, and with stand-ins for roslisp's names."""
+    with Image():
+        assert run(Session(time="virtual", turtlesim=False), "cl_tf") == []
+
+
 @foreign
 def test_cl_utils_of_roslisp_common_gives_what_it_gives_on_sbcl(begin):
     """Its systems cl-utils, extended-reals, data-structures, cl-graph and cl-probability are loaded from the checkout."""
