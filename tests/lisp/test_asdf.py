@@ -312,3 +312,9 @@ def test_a_system_may_have_a_dot_in_its_name(write, run, name):
     write("net.example.dotted.asd", '(defsystem "net.example.dotted" :components ((:file "dotted-x")))')
     write("dotted-x.lisp", logging(":dotted"))
     assert run(f"(asdf:load-system {name!r}) *log*".replace("'", '"')) == "(:DOTTED)"
+
+
+def test_the_ending_of_a_bundles_file_is_that_of_sbcl_on_linux(run):
+    kinds = '\'(:object :shared-library :static-library :program :fasl :lib :dll :image nil "x")'
+    assert run(f"(mapcar #'asdf/bundle:bundle-pathname-type {kinds})") == '("o" "so" "a" NIL "fasl" "a" "so" "image" NIL "x")'
+    assert run('(handler-case (asdf:bundle-pathname-type :foo) (error () "refused"))') == '"refused"'

@@ -285,7 +285,26 @@ GENERIC: dict[str, tuple[str, Any]] = {
         for option in ("HOMEPAGE", "BUG-TRACKER", "LONG-NAME", "MAILTO", "SOURCE-CONTROL", "DEFSYSTEM-DEPENDS-ON", "WEAKLY-DEPENDS-ON")
     },
 }
+_ENDINGS = {"OBJECT": "o", "SHARED-LIBRARY": "so", "DLL": "so", "STATIC-LIBRARY": "a", "LIB": "a", "FASL": "fasl", "IMAGE": "image"}
+
+
+def bundle_pathname_type(bundle: Any) -> Any:
+    """``asdf:bundle-pathname-type``: the ending of the file names of a kind of bundle, on Linux; nil is that of a program.
+
+    A string is the ending itself. An error says that there is not such a kind.
+    """
+    if bundle is None or isinstance(bundle, str):
+        return bundle
+    if bundle is keyword("PROGRAM"):
+        return None
+    for name, ending in _ENDINGS.items():
+        if bundle is keyword(name):
+            return ending
+    return error("~S is not a kind of bundle. ASDF knows :program~{, :~(~A~)~}.", bundle, list_from([*_ENDINGS]))
+
+
 FUNCTIONS: dict[str, Any] = {
+    "bundle-pathname-type": bundle_pathname_type,
     "make-operation": make_operation,
     "find-operation": lambda context, operation: make_operation(operation),
     "output-file": output_file,
