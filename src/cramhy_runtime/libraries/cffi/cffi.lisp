@@ -13,7 +13,7 @@
    #:foreign-slot-offset #:foreign-slot-pointer #:foreign-slot-value #:foreign-string-alloc #:foreign-string-free
    #:foreign-string-to-lisp #:foreign-symbol-pointer #:foreign-type-alignment #:foreign-type-size #:free-converted-object
    #:free-translated-object #:get-callback #:get-var-pointer #:inc-pointer #:lisp-string-to-foreign #:list-foreign-libraries
-   #:load-foreign-library #:load-foreign-library-error #:make-pointer #:make-shareable-byte-vector #:mem-aptr #:mem-aref #:mem-ref #:native-namestring
+   #:load-foreign-library #:load-foreign-library-error #:make-pointer #:make-shareable-byte-vector #:mem-aptr #:mem-aref #:mem-ref
    #:null-pointer #:null-pointer-p #:pointer-address #:pointer-eq #:pointerp #:translate-camelcase-name #:translate-from-foreign
    #:translate-into-foreign-memory
    #:translate-name-from-foreign #:translate-name-to-foreign #:translate-to-foreign #:use-foreign-library #:with-foreign-array
@@ -53,10 +53,6 @@
 (defun canonicalize-symbol-name-case (name)
   "NAME as a symbol of the standard readtable is called."
   (string-upcase name))
-
-(defun native-namestring (pathname)
-  "The string by which the operating system calls the file PATHNAME."
-  (sb-ext:native-namestring pathname))
 
 (define-condition foreign-not-implemented (error)
   ((operation :initarg :operation :reader operation) (name :initarg :name :initform nil :reader name))
