@@ -229,7 +229,8 @@ class LocationCostmap(GridMetadata):
 
     def draw(self, chance: Callable[[], float]) -> tuple[int, int]:
         """The column and row of a cell; greater values are more probable. chance: gives numbers from 0 to below 1."""
-        self.ready()
+        if self.computed is None:
+            self.ready()
         drawn = None if self._sieve is None else self._sieve.draw(chance)
         return drawn or self._fallen_on(chance())
 
