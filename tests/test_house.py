@@ -354,47 +354,6 @@ def test_nobody_sets_the_names_of_another_module():
     assert offences(patches) == {}
 
 
-FOREIGN_PATCHES = {
-    "src/cramhy_runtime/languages/hy/keywords.py": ["models.Keyword.__hash__"],
-    "src/cramhy_runtime/languages/hy/quick_requires.py": ["hy.macros.inspect"],
-    "src/cramhy_runtime/languages/kept_hy.py": ["hy.compiler.HyASTCompiler.eval", "hy.macros.MacroExceptions", "hy.macros.reader_macro"],
-}
-"""The names of other libraries that we set, file by file: each ties us to how that library is written today."""
-
-
-def foreign_patches(path):
-    """The attributes of modules and classes of other libraries, outside of Python's own, that a file sets or deletes."""
-    foreign = set()
-    for node in ast.walk(tree_of(path)):
-        if isinstance(node, (ast.Import, ast.ImportFrom)) and not getattr(node, "level", 0):
-            for alias in node.names:
-                top = (getattr(node, "module", None) or alias.name).split(".")[0]
-                if top not in sys.stdlib_module_names and top not in ("cramhy_runtime", "cramhy"):
-                    foreign.add(alias.asname or alias.name.split(".")[0])
-    targets = []
-    for node in ast.walk(tree_of(path)):
-        if isinstance(node, (ast.Assign, ast.Delete)):
-            targets += [part for target in node.targets for part in (target.elts if isinstance(target, ast.Tuple) else [target])]
-        elif isinstance(node, (ast.AnnAssign, ast.AugAssign)):
-            targets.append(node.target)
-        elif isinstance(node, ast.Call) and ast.unparse(node.func) in ("setattr", "delattr"):
-            targets.append(ast.Attribute(node.args[0], ast.unparse(node.args[1]).strip("'")))
-    roots = [(target, re.match(r"\w*", ast.unparse(target))[0]) for target in targets if isinstance(target, ast.Attribute)]
-    return sorted(ast.unparse(target) for target, root in roots if root in foreign)
-
-
-def test_the_patches_of_other_libraries_are_counted():
-    found = {path: foreign_patches(path) for path in (*FILES, *(ROOT / "hy_src").rglob("*.py"))}
-    assert {path.relative_to(ROOT).as_posix(): patched for path, patched in found.items() if patched} == FOREIGN_PATCHES
-
-
-def test_a_patch_of_another_library_is_found(monkeypatch):
-    path = SOURCE / "image_that_patches_others.py"  # it is never written
-    text = "import hy, sys\nfrom hy import models\nmodels.A.b, sys.path = 1, 2\nsetattr(hy.macros, 'require', 3)\ndel models.C.d\n"
-    monkeypatch.setattr(Path, "read_text", lambda self: text)
-    assert foreign_patches(path) == ["hy.macros.require", "models.A.b", "models.C.d"]
-
-
 def test_a_patch_is_found(monkeypatch):
     path = SOURCE / "image_that_patches.py"  # it is never written
     text = "from cramhy_runtime import kernel\nkernel.now = kernel.reports.LIMIT = 1\nsetattr(kernel, 'now', 2)\nkernel.cleanup.limit = 3\n"
