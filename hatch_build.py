@@ -57,7 +57,7 @@ def absolute_links(text, repository, tag):
 
 def get_requires_for_build_wheel(config_settings=None):
     """What hatchling needs, and Hy, which compiles. An editable installation compiles nothing."""
-    return [*_required(config_settings), "hy>=1.2,<2"]
+    return [*_required(config_settings), "hy>=1.3,<2"]
 
 
 class Compiled(BuildHookInterface):

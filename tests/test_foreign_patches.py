@@ -174,7 +174,6 @@ FOREIGN_PATCHES = {
         "reader.try_parse_one_form, a method of HyReader",
     ],
     "src/cramhy_runtime/languages/hy/operator_bodies.py": ["scope.__class__ = BodyScope, of hy.scoping.ScopeFn"],
-    "src/cramhy_runtime/languages/hy/program_texts.py": ["repl_module.hashlib, of a module"],
     "src/cramhy_runtime/languages/hy/quick_requires.py": ["hy.macros.inspect"],
     "src/cramhy_runtime/languages/hy/reader.py": [
         "reader.__class__ = LispReader, of hy.reader.HyReader",

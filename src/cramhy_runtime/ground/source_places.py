@@ -18,7 +18,7 @@ _RUNTIME = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 _LIBRARIES = os.path.join(_RUNTIME, "libraries")
 
 
-_TYPED = ("<repl", "<stdin>", "stdin-")  # the last one is Hy 1.2's
+_TYPED = ("<repl", "<stdin>")
 _called = {}  # the names of texts that are no files → the files that they were read from
 
 

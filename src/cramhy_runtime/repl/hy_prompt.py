@@ -42,7 +42,6 @@ from cramhy_runtime.session import time_setting
 from cramhy_runtime.languages import answered_texts
 from cramhy_runtime.languages.hy import answer_lists, malformed, module_names, program_texts
 from cramhy_runtime.languages.hy.lisp_data import package_of
-from cramhy_runtime.languages.hy.program_texts import TypedName, name_as_later_releases
 from cramhy_runtime.languages.hy.reader import TypedReader, is_way_back, more_wanted, rest_of_text, source_of
 
 from .console import Console, exit_status
@@ -275,7 +274,6 @@ class HyPrompt(Listener):
 
         Hy shows the value of the last form alone, and many forms come at once when a terminal marks what is pasted.
         """
-        filename = TypedName(filename)
         with self._goes_on():
             forms, refused = self._forms(source, filename)
             while forms and not self.in_lisp:
@@ -422,7 +420,6 @@ def attend(repl, session=None, kind=HyPrompt):
         repl.lisp = kind(repl, session or session_of_prompt())
         if repl.output_fn is hy.repr:  # and not what the user has chosen
             repl.output_fn = repl.lisp.shown_in_hy
-        name_as_later_releases(hy.repl)
         repl.raw_input, repl.runsource, repl.runcode = repl.lisp.raw_input, repl.lisp.runsource, repl.lisp.runcode
         repl.write, repl.showtraceback = repl.lisp.write, repl.lisp.showtraceback
         compiler = repl.compile.compiler

@@ -2,8 +2,7 @@
 
 Hy tells a text by its name: the path of a file, ``<string>`` for ``hy -c``, ``<stdin>`` for a text that is piped into ``hy``. A prompt
 puts a number behind the name: ``<stdin>-3`` was typed, ``plan.hy-0`` is the file of ``hy -i plan.hy``, and ``<string>-0`` the text of
-``hy -i -c``. ``<string>`` is also what Python and Hy call any text that a program evaluates. Hy 1.2, for early releases of Python 3.12,
-puts a sum of the text in the place of the number, and takes the brackets away. `name_as_later_releases` mends both for what is typed.
+``hy -i -c``. ``<string>`` is also what Python and Hy call any text that a program evaluates.
 """
 
 from __future__ import annotations
@@ -11,11 +10,10 @@ from __future__ import annotations
 import os
 import re
 import sys
-from types import ModuleType
 
 from cramhy_runtime.ground.source_places import keep_text
 
-_NUMBER = re.compile(r"-(?:\d+|[0-9a-f]{40})\Z")
+_NUMBER = re.compile(r"-\d+\Z")
 
 
 def is_program(filename: str) -> bool:
@@ -45,33 +43,4 @@ def _is_no_file(filename: str) -> bool:
     return filename == "<stdin>" or filename == "<string>" and sys.argv[:1] == ["-c"]
 
 
-class TypedName(str):
-    """The name of a text that is typed; Hy 1.2 cannot take its brackets away."""
-
-    __slots__ = ()
-
-    def strip(self, characters: str | None = None, /) -> str:
-        return str(self)
-
-
-class _Numbers:
-    """In the place of ``hashlib``: each text has the next number as its sum."""
-
-    def __init__(self) -> None:
-        self.count = 0
-
-    def sha1(self, text: bytes) -> _Numbers:
-        self.count += 1
-        return self
-
-    def hexdigest(self) -> str:
-        return str(self.count)
-
-
-def name_as_later_releases(repl_module: ModuleType) -> None:
-    """Let the prompts of the module ``hy.repl`` call what is typed ``<stdin>-3``, as those of Hy 1.3 do, if it has a `TypedName`."""
-    if isinstance(getattr(repl_module, "hashlib", None), ModuleType):
-        setattr(repl_module, "hashlib", _Numbers())
-
-
-__all__ = ["TypedName", "before_the_prompt", "is_program", "keep", "name_as_later_releases", "was_typed"]
+__all__ = ["before_the_prompt", "is_program", "keep", "was_typed"]
