@@ -169,23 +169,8 @@ FOREIGN_PATCHES = {
     "src/cramhy_runtime/kernel/backends/jspi.py": ["asyncio.ensure_future"],
     "src/cramhy_runtime/kernel/patient_calls.py": ["builtins.input", "time.sleep"],
     "src/cramhy_runtime/languages/hy/keywords.py": ["hy.models.Keyword.__hash__"],
-    "src/cramhy_runtime/languages/hy/malformed.py": [
-        "Refused.__copy__, of a model of Hy",
-        "reader.try_parse_one_form, a method of HyReader",
-    ],
     "src/cramhy_runtime/languages/hy/operator_bodies.py": ["scope.__class__ = BodyScope, of hy.scoping.ScopeFn"],
     "src/cramhy_runtime/languages/hy/quick_requires.py": ["hy.macros.inspect"],
-    "src/cramhy_runtime/languages/hy/reader.py": [
-        "reader.__class__ = LispReader, of hy.reader.HyReader",
-        "self.__class__ = HyReader, of hy.reader.HyReader",
-    ],
-    "src/cramhy_runtime/languages/kept_hy.py": [
-        "hy.compiler.HyASTCompiler.eval",
-        "hy.macros.MacroExceptions",
-        "hy.macros.reader_macro",
-        "importlib.machinery.SourceFileLoader.get_code",
-        "importlib.machinery.SourceFileLoader.set_data",
-    ],
     "src/cramhy_runtime/repl/hy_prompt.py": [
         "repl.banner, a method of REPL",
         "repl.interact, a method of InteractiveConsole",

@@ -54,9 +54,7 @@ def _required():
     malformed.check(hy.reader.HyReader.current_reader(create=False))
 
 
-_hy_macros = RequiredMacros(
-    {**language._hy_macros, "cramhy.time": _time_form, "_form": malformed.form, **module_names.MACROS}, required=_required
-)
+_hy_macros = RequiredMacros({**language._hy_macros, "cramhy.time": _time_form, **module_names.MACROS}, required=_required)
 _hy_export_macros = _hy_macros.keys()
 
 _functions = functions()

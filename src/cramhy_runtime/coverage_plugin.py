@@ -74,11 +74,9 @@ def _codes(path):
         return kept
     if path.suffix != ".hy":
         return []
-    from hy.importer import HyLoader
+    from cramhy_runtime.languages.kept_hy import Loader
 
-    from cramhy_runtime.languages.kept_hy import unguarded
-
-    return [unguarded(HyLoader(path.stem, str(path)).get_code(path.stem))]
+    return [Loader(path.stem, str(path)).get_code(path.stem)]
 
 
 def _lines(code):

@@ -59,6 +59,7 @@ class _HyStaysHy(importlib.abc.MetaPathFinder):
             from cramhy_runtime.languages import kept_hy
 
             kept_hy.watch()
+            spec.loader = kept_hy.Loader(name, spec.loader.path)
         if collected_tests.rewrites(name, spec.origin, self.config):
             spec.loader = collected_tests.RewritingLoader(name, spec.origin)
             spec.loader.config = self.config

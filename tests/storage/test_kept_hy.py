@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from hy.importer import HyLoader
+from cramhy_runtime.languages.kept_hy import Loader as HyLoader
 
 from cramhy_runtime.languages import kept_hy
 from cramhy_runtime.storage import dependency_tracing, kept_code

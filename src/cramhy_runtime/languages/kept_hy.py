@@ -2,31 +2,36 @@
 the same.
 
 Python keeps the code of a module in ``__pycache__`` and looks at the date of the source only. Nobody sees that a module of macros has
-changed, a module of Python that they call, a file that they read, or cramhy itself. `watch` lets Python's loader of source files ask here
-for files of Hy: code that the keeper has is used if its record holds. Else the file is compiled, while a trace notes what its macros ask of
-the world. Python's own file is written as ever, for those who run Hy without cramhy.
+changed, a module of Python that they call, a file that they read, or cramhy itself. After `watch`, modules in Hy are found by `Finder`, and
+their `Loader` asks the keeper: code that it has is used if its record holds. Else the file is compiled by `Compiler`, while a trace notes
+what its macros ask of the world.
 
-``hy FILE`` looks into ``__pycache__`` before anybody has loaded cramhy. So in Python's file the code of a text that our macros have seen
-(`seen`) is a call of `run`, which asks the keeper and compiles again what that does not have.
+``hy FILE`` looks into ``__pycache__`` before anybody has loaded cramhy, and compiles a file that is not there. So in Python's file the code
+of a text that our macros have seen (`seen`) is a call of `run`, which asks the keeper and compiles again what that does not have. Two
+functions bring it there: `compiled_apart`, where ``(require cramhy ...)`` is the first form, and `guard`, where others stand before it.
 """
 
 from __future__ import annotations
 
+import ast
 import contextlib
-import importlib.machinery
+import copy
 import importlib.util
 import marshal
 import os
 import re
 import sys
 from importlib import _bootstrap_external
+from importlib.machinery import PathFinder, SourceFileLoader
 from pathlib import Path
-from types import CodeType
+from types import CodeType, ModuleType
 from typing import Any
 
 import hy
 import hy.compiler
+import hy.importer
 import hy.macros
+from hy.reader import HyReader
 
 from cramhy_runtime.storage import dependencies, dependency_tracing, kept_code
 from cramhy_runtime.storage.checksummed_code import Unusable
@@ -34,7 +39,6 @@ from cramhy_runtime.storage.dependency_tracing import Trace, is_library, tracing
 
 from .compiler_stamp import stamp
 
-HEADER = 16  # bytes before the code in a file of bytecode
 _CALL = "__import__('cramhy').kept_code.run(globals(), {filename!r}, {code!r})"
 _BEGINS_WITH_US = re.compile(rb'\A(?:#!.*\n)?(?:\s|;.*\n|"[^"]*"|\(import (?:cramhy|hy)\))*\(require cramhy\b')
 """A text whose first form requires cramhy: nothing of it was compiled before that."""
@@ -45,57 +49,73 @@ _OURS = os.path.join(os.path.abspath(os.path.join(__file__, "..", "..", "..")), 
 _filenames: set[str] = set()
 """The files that our macros have seen since Python began."""
 
-_loader = importlib.machinery.SourceFileLoader
-_get_code, _set_data = _loader.get_code, _loader.set_data
-
-
-class _Begun:
-    """The compilation that was at work already when cramhy was loaded: ``hy FILE``."""
-
-    filename = ""
-    trace: Trace | None = None
-    leave: Any = None
+_compiled: dict[str, CodeType] = {}
+"""Path of each file that `compiled_apart` has compiled, and that did not run yet → its code."""
 
 
 def seen(filename: str) -> None:
     """Our macros are at work in the file of that name."""
-    if filename not in _filenames:
-        _filenames.add(filename)
-        if dependency_tracing.current() is None and not sys.dont_write_bytecode and _begins_with_us(filename):
-            _Begun.filename, _Begun.leave = filename, contextlib.ExitStack()
-            _Begun.trace = _Begun.leave.enter_context(tracing(audited=True))
-
-
-def _begins_with_us(filename):
-    try:
-        return not is_library(filename) and _BEGINS_WITH_US.match(Path(filename).read_bytes()) is not None
-    except OSError:
-        return False
+    _filenames.add(filename)
 
 
 def watch() -> None:
-    """From now on Python asks the keeper for the code of Hy files."""
-    if _loader.get_code is not _get_code:
-        return
-    _loader.get_code = _get_code_of_ours  # type: ignore[method-assign]
-    _loader.set_data = _set_data_of_ours  # type: ignore[method-assign]
-    hy.macros.MacroExceptions = _Expansion  # type: ignore[attr-defined, misc]
-    hy.macros.reader_macro = _reader_macro  # type: ignore[attr-defined]
-    hy.compiler.HyASTCompiler.eval = _eval  # type: ignore[attr-defined]
+    """From now on Python asks the keeper for the code of the Hy modules that it imports."""
+    if Finder not in sys.meta_path:
+        place = sys.meta_path.index(PathFinder) if PathFinder in sys.meta_path else len(sys.meta_path)
+        sys.meta_path.insert(place, Finder)
 
 
-def _get_code_of_ours(self: Any, fullname: str) -> CodeType | None:
-    path = os.path.abspath(self.get_filename(fullname))
-    if not path.endswith(".hy"):
-        return _get_code(self, fullname)
-    if is_library(path):
-        with untraced():
-            return _get_code(self, fullname)
-    try:
-        source = self.get_data(path)
-    except OSError:
-        return _get_code(self, fullname)
-    return _code(self, path, source)
+class Finder:
+    """Finds what Python's own finder of files finds; modules in Hy get a `Loader`."""
+
+    @staticmethod
+    def find_spec(name: str, path: Any = None, target: Any = None) -> Any:
+        """The spec of the module ``name``, or ``None``: as ``importlib.abc.MetaPathFinder`` says."""
+        spec = PathFinder.find_spec(name, path, target)
+        if spec is not None and type(spec.loader) is SourceFileLoader and spec.loader.path.endswith(".hy"):
+            spec.loader = Loader(name, spec.loader.path)
+        return spec
+
+
+class Loader(SourceFileLoader):
+    """Loads a file of Hy."""
+
+    def get_code(self, fullname: str) -> CodeType | None:
+        """The code of the module: what is kept, or what the compiler makes of it."""
+        path = os.path.abspath(self.get_filename(fullname))
+        if is_library(path):
+            with untraced():
+                return super().get_code(fullname)
+        try:
+            source = self.get_data(path)
+        except OSError:
+            return super().get_code(fullname)
+        return _code(self, path, source)
+
+    def source_to_code(self, data: Any, path: Any, *, _optimize: int = -1) -> CodeType:  # type: ignore[override]
+        """The code that `Compiler` makes of the text ``data``, in bytes."""
+        if os.environ.get("HY_MESSAGE_WHEN_COMPILING"):
+            print("Compiling", path, file=sys.stderr)
+        return compile(tree_of(self, data, path), path, "exec", dont_inherit=True, optimize=_optimize)
+
+    def keep_for_python(self, path: str, code: CodeType) -> None:
+        """Write Python's own file of bytecode. Where our macros have seen the source, the code in it is a call of `run`."""
+        with untraced(), contextlib.suppress(OSError, NotImplementedError, AttributeError):
+            if not sys.dont_write_bytecode:
+                status, target = self.path_stats(path), importlib.util.cache_from_source(path)
+                if code.co_filename in _filenames:
+                    told = marshal.dumps(code)
+                    code = compile(_CALL.format(filename=code.co_filename, code=told), code.co_filename, "exec")
+                data = _bootstrap_external._code_to_timestamp_pyc(code, status["mtime"], status["size"])  # type: ignore[attr-defined]
+                self._cache_bytecode(path, target, data)  # type: ignore[attr-defined]
+
+
+def tree_of(loader: Any, data: bytes, path: str) -> Any:
+    """Python's syntax tree of the module of ``loader``, whose text is ``data``."""
+    source = data.decode("utf-8")
+    forms = hy.read_many(source, filename=path, skip_shebang=True, reader=Reader())
+    with hy.importer.loader_module_obj(loader) as module:
+        return hy.importer.hy_compile(forms, module, compiler=Compiler(module, filename=path, source=source))
 
 
 def _code(loader, path, source):
@@ -113,11 +133,7 @@ def _code(loader, path, source):
         code = loader.source_to_code(source, path)
         _finish(trace, path)
     _keep(trace, path, source, code)
-    with untraced(), contextlib.suppress(OSError, NotImplementedError, AttributeError):
-        if not sys.dont_write_bytecode:
-            status, target = loader.path_stats(path), importlib.util.cache_from_source(path)
-            data = _bootstrap_external._code_to_timestamp_pyc(code, status["mtime"], status["size"])  # type: ignore[attr-defined]
-            loader._cache_bytecode(path, target, data)
+    loader.keep_for_python(path, code)
     return code
 
 
@@ -161,44 +177,39 @@ def _keep(trace, path, source, code):
 # ------------------------------------------------------------------------------------------------------------ Python's files
 
 
-def _set_data_of_ours(self: Any, path: str, data: Any, **mode: int) -> None:
-    with untraced():
-        _set_data(self, path, _guarded(bytes(data)), **mode)
+def compiled_apart(compiler: Any, filename: str) -> list[ast.stmt] | None:
+    """Python's statements that run the whole file, instead of the rest of it that Hy would compile now; ``None`` if it is not to be so.
 
-
-def _guarded(data):
-    """``data``, a file of bytecode, with the call of `run` for the code in it, if our macros have seen the source of that."""
-    with contextlib.suppress(ValueError, EOFError, TypeError):
-        code = marshal.loads(data[HEADER:])
-        if isinstance(code, CodeType) and code.co_filename in _filenames:
-            _end_begun(code)
-            call = _CALL.format(filename=code.co_filename, code=data[HEADER:])
-            return data[:HEADER] + marshal.dumps(compile(call, code.co_filename, "exec"))
-    return data
-
-
-def _end_begun(code):
-    """Keep the code that was being compiled when cramhy was loaded."""
-    if _Begun.trace is None or _Begun.filename != code.co_filename:
-        return
-    trace, leave = _Begun.trace, _Begun.leave
-    _Begun.trace = _Begun.leave = None
-    path = os.path.abspath(code.co_filename)
+    It is so where a loader of Python's or Hy's compiles a file whose first form requires cramhy. Then our own loader compiles it.
+    """
+    if (
+        isinstance(compiler, Compiler)
+        or getattr(compiler.module, "__file__", None) != filename
+        or sys.dont_write_bytecode
+        or dependency_tracing.current() is not None
+    ):
+        return None
+    path = os.path.abspath(filename)
     with contextlib.suppress(OSError):
-        source = Path(path).read_bytes()
-        _finish(trace, path)
-        if not dependency_tracing.may_have_changed(path):
-            _keep(trace, path, source, code)
-    leave.close()
+        source = Path(filename).read_bytes()
+        if not is_library(path) and _BEGINS_WITH_US.match(source):
+            seen(filename)
+            code = _compiled[path] = _code(Loader(compiler.module.__name__, filename), path, source)
+            return ast.parse(_CALL.format(filename=filename, code=marshal.dumps(code))).body
+    return None
 
 
-def unguarded(code: CodeType) -> CodeType:
-    """The code that Hy has made, where ``code``, which Python's loader gives for a file, is the call of `run` with it."""
-    guard = compile(_CALL.format(filename="", code=b""), "", "exec")
-    if code.co_names != guard.co_names:
-        return code
-    [kept] = [constant for constant in code.co_consts if isinstance(constant, bytes)]
-    return marshal.loads(kept)
+def guard_call(compiler: Any, filename: str) -> list[ast.stmt]:
+    """Python's statements that call `guard` where a loader of Python's or Hy's compiles a file; none elsewhere."""
+    if isinstance(compiler, Compiler) or getattr(compiler.module, "__file__", None) != filename:
+        return []
+    return ast.parse(f"__import__('cramhy').kept_code.guard({filename!r})").body
+
+
+def guard(filename: str) -> None:
+    """The caller is the code of that file, in which our macros have been at work: let Python's file have a call of `run` instead of it."""
+    seen(filename)
+    Loader("__main__", filename).keep_for_python(os.path.abspath(filename), sys._getframe(1).f_code)
 
 
 def run(namespace: dict[str, Any], *told: Any) -> None:
@@ -208,11 +219,31 @@ def run(namespace: dict[str, Any], *told: Any) -> None:
     calls with more before that.
     """
     *_, filename, code = told
-    exec(_code_of_file(namespace, filename, code), namespace)
+    path, caller = os.path.abspath(filename), sys._getframe(1).f_code
+    made = _compiled.pop(path, None)
+    if made is not None and caller.co_filename == filename:  # Python has written what calls this, and more
+        Loader("__main__", filename).keep_for_python(path, made)
+    exec(_code_of_file(namespace, filename, code) if made is None else made, namespace)
+
+
+def run_as_main(filename: str) -> None:
+    """Run a file of Hy as the module ``__main__``, as ``runpy.run_path`` does."""
+    module, before = ModuleType("__main__"), sys.modules.get("__main__")
+    loader = module.__loader__ = Loader("__main__", filename)
+    module.__file__, module.__cached__, module.__package__ = filename, None, ""  # type: ignore[attr-defined]
+    word = sys.argv[0]
+    sys.modules["__main__"], sys.argv[0] = module, filename
+    try:
+        code = loader.get_code("__main__")
+        exec(code, vars(module))
+    finally:
+        sys.argv[0] = word
+        if before is not None:
+            sys.modules["__main__"] = before
 
 
 def _code_of_file(namespace, filename, code):
-    loader = _loader(namespace.get("__name__", "__main__"), filename)
+    loader = Loader(namespace.get("__name__", "__main__"), filename)
     try:
         source = loader.get_data(filename)
     except OSError:
@@ -229,58 +260,70 @@ def calls_kept_code(frames: list[Any], index: int) -> bool:
 # ------------------------------------------------------------------------------------------------- what runs while Hy compiles
 
 
-class _Expansion(hy.macros.MacroExceptions):
-    """What Hy does around the call of a macro, which a trace watches if it is the user's."""
+class Compiler(hy.compiler.HyASTCompiler):
+    """Hy's compiler, whose trace watches what it calls: macros of the user's, ``eval-and-compile`` and the like."""
 
-    def __enter__(self):
-        self._watched = None
+    def compile_atom(self, atom: Any) -> Any:
+        """As Hy's own; calls of macros of the user's are expanded one by one, before it."""
         trace = dependency_tracing.current()
-        if trace is not None and not trace.watches and self._is_users():
-            trace.place = trace.place if trace.reason is not None else _place_of(self.macro_tree)
-            self._watched = dependency_tracing.watched()
-            self._watched.__enter__()
-        return super().__enter__()
+        if trace is None or trace.watches or not isinstance(atom, hy.models.Expression):
+            return super().compile_atom(atom)
+        expanded = atom
+        while isinstance(expanded, hy.models.Expression) and expanded and self._is_call_of_users_macro(expanded, trace):
+            trace.place = trace.place if trace.reason is not None else _place_of(expanded)
+            with dependency_tracing.watched():
+                expanded = hy.macros.macroexpand(copy.copy(expanded), self.module, self, once=True)
+            if isinstance(expanded, (hy.compiler.Result, ast.AST)):
+                return hy.compiler.Result() + expanded
+        return super().compile_atom(atom) if expanded is atom else self.compile(expanded)
 
-    def __exit__(self, *problem):
-        if self._watched is not None:
-            self._watched.__exit__(None, None, None)
-        return super().__exit__(*problem)
-
-    def _is_users(self):
-        name = self.macro_tree[0]
-        if not isinstance(name, hy.models.Symbol):  # hy.R.module.macro
-            return not str(name).startswith(("hy.R.cramhy", "(. hy R cramhy"))
-        name = hy.mangle(name)
-        local = self.compiler.local_state_stack if self.compiler is not None else ()
-        tables = [*(state["macros"] for state in local), getattr(self.module, "_hy_macros", {})]
-        found = next((table[name] for table in tables if dict.__contains__(table, name)), None)
-        if found is None:
-            return False
-        file = getattr(getattr(found, "__code__", None), "co_filename", "")
+    def eval(self, model: Any) -> Any:
+        """The value of ``model``, which stands in ``eval-and-compile`` or the like, or defines a macro."""
         trace = dependency_tracing.current()
-        if (
-            trace is not None and "site-packages" in file and not file.startswith((_HY, _OURS))
-        ):  # of a library, which may be another version
+        if trace is None or _defines_macro(model):
+            return super().eval(model)
+        if not trace.watches and trace.reason is None:
+            trace.place = _place_of(model)
+        with dependency_tracing.watched():
+            return super().eval(model)
+
+    def _is_call_of_users_macro(self, form: Any, trace: Trace) -> bool:
+        macro = self._macro_of(form[0])
+        if macro is None or isinstance(macro, bool):
+            return bool(macro)
+        file = getattr(getattr(macro, "__code__", None), "co_filename", "")
+        if "site-packages" in file and not file.startswith((_HY, _OURS)):  # of a library, which may be another version
             trace.ask("status", file)
         return not is_library(file)
+
+    def _macro_of(self, head: Any) -> Any:
+        """The macro that ``head`` names, or ``None``; of ``hy.R.module.macro`` only whether it may be the user's."""
+        if isinstance(head, hy.models.Expression):
+            return " ".join(map(str, head[:3])) == ". hy R" and str(head[3]) != "cramhy"
+        if not isinstance(head, hy.models.Symbol):
+            return None
+        name = hy.mangle(head)
+        tables = [*(state["macros"] for state in reversed(self.local_state_stack)), getattr(self.module, "_hy_macros", {})]
+        return next((table[name] for table in tables if dict.__contains__(table, name)), None)
+
+
+class Reader(HyReader):
+    """Hy's reader, whose trace watches the reader macros of the user's."""
+
+    @reader_for("#")  # noqa: F821  Hy's metaclass gives it
+    def tag_dispatch(self, key):
+        """As Hy's own."""
+        name = self.read_ident(just_peeking=True)
+        function = self.reader_macros.get(name) if dependency_tracing.current() is not None else None
+        if function is None:
+            return super().tag_dispatch(key)
+        self.getn(len(name))
+        model = dependency_tracing.run(function, self, name)
+        return None if model is None else hy.models.as_model(model)
 
 
 def _place_of(tree):
     return getattr(tree, "start_line", 1) or 1, getattr(tree, "start_column", 1) or 1
-
-
-_eval_of_hy, _reader_macro_of_hy = hy.compiler.HyASTCompiler.eval, hy.macros.reader_macro
-
-
-def _eval(self, model):
-    """The value of ``model``, which stands in ``eval-and-compile`` or the like, or defines a macro."""
-    trace = dependency_tracing.current()
-    if trace is None or _defines_macro(model):
-        return _eval_of_hy(self, model)
-    if not trace.watches and trace.reason is None:
-        trace.place = _place_of(model)
-    with dependency_tracing.watched():
-        return _eval_of_hy(self, model)
 
 
 def _defines_macro(model):
@@ -290,12 +333,17 @@ def _defines_macro(model):
     return isinstance(head, hy.models.Expression) and len(head) == 2 and [*map(str, head[0])] == [".", "hy", "macros", "macro"]
 
 
-def _reader_macro(name, function):
-    """Hy's definition of a reader macro, which is called as code of the user's."""
-    _reader_macro_of_hy(name, function)
-    table = function.__globals__["_hy_reader_macros"]
-    named = table[name]
-    table[name] = lambda reader, key: dependency_tracing.run(named, reader, key)
-
-
-__all__ = ["calls_kept_code", "run", "seen", "unguarded", "watch"]
+__all__ = [
+    "Compiler",
+    "Finder",
+    "Loader",
+    "Reader",
+    "calls_kept_code",
+    "compiled_apart",
+    "guard_call",
+    "run",
+    "run_as_main",
+    "seen",
+    "tree_of",
+    "watch",
+]

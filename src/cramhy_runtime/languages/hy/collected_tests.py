@@ -160,13 +160,9 @@ class RewritingLoader(importlib.machinery.SourceFileLoader):
 
     def source_to_code(self, data: Any, path: Any, *, _optimize: int = -1) -> Any:  # type: ignore[override]
         from _pytest.assertion.rewrite import rewrite_asserts
-        from hy.compiler import hy_compile
-        from hy.importer import loader_module_obj
-        from hy.reader import HyReader, read_many
+        from ..kept_hy import tree_of
 
-        forms = read_many(data.decode("utf-8"), filename=path, skip_shebang=True, reader=HyReader())
-        with loader_module_obj(self) as module:
-            tree = _Assertions().visit(hy_compile(forms, module))
+        tree = _Assertions().visit(tree_of(self, data, path))
         rewrite_asserts(tree, data, path, self.config)
         return compile(tree, path, "exec", dont_inherit=True, optimize=_optimize)
 

@@ -18,7 +18,7 @@ from cramhy_runtime.ground.data import Cons, list_from
 from cramhy_runtime.languages.commonlisp.syntax.hy_models import from_hy
 from cramhy_runtime.ground.packages import find_package_or_error, intern
 from . import rest_of_file
-from .reader import LispReader, change_over
+from .reader import ProgramReader, take_rest
 
 
 _units: dict = {}
@@ -102,10 +102,16 @@ def _run_now(unit, statements, form):
 def take_over():
     """From the next form on, let our reader read the text that Hy's reader is reading."""
     reader = HyReader.current_reader(create=False)
-    if reader is None or isinstance(reader, LispReader):
+    if reader is None or getattr(reader, "lisp", None) is not None:
         return
     evaluator.compiler().allow_exits_from_cleanup()
-    lisp = change_over(reader)
+    if isinstance(reader, ProgramReader):
+        reader.begin_lisp(_note_places)
+    else:
+        take_rest(reader, begin=_note_places)
+
+
+def _note_places(lisp):
     unit_for(lisp.filename).positions = lisp.positions
 
 

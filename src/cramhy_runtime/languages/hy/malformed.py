@@ -1,9 +1,9 @@
 """Forms of Hy that cannot be compiled: the error says which form, where, why, and how it is written.
 
 Hy makes a `HyLanguageError` of what is wrong in a text, and ``hy FILE`` prints those itself, with internal frames around them and before
-anybody else is asked. So the file that requires ``cramhy`` gets a reader that puts each of its forms into one of ours (`check`). Its
-macro, `form`, compiles the form that is in it. When that fails, its expansion is a `Refused`: a model that raises a `MalformedForm` as
-soon as Hy's compiler touches it. That one is a SyntaxError, as a tool for Python expects it, and nothing that ``hy FILE`` prints.
+anybody else is asked. So the file that requires ``cramhy`` gets a reader that makes a `ProgramForm` of each of its forms (`check`). Here
+Hy's compiler gets the functions that compile this model, and `Rest`. When a form cannot be compiled, they raise a `MalformedForm`: that one
+is a SyntaxError, as a tool for Python expects it, and nothing that ``hy FILE`` prints.
 """
 
 from __future__ import annotations
@@ -12,19 +12,18 @@ import linecache
 import re
 
 import hy
+from hy.compiler import Result, builds_model
 from hy.errors import HyCompileError, HyError, HyLanguageError, HyMacroExpansionError
-from hy.models import Expression, Object
 from hy.reader import HyReader
 
 from cramhy_runtime.ground.condition_types import Condition
 
-from .. import answered_texts
+from .. import answered_texts, kept_hy
 from . import brackets, module_names, program_texts, shapes
+from .reader import ProgramForm, ProgramReader, Rest, take_rest
 
 BRACKET_TOO_MANY = re.compile(r"Ran into a '(.)' where it wasn't expected")
 """How Hy's reader says so."""
-
-_FORM = hy.read("hy.R.cramhy._form")  # the name under which a file finds our macro, whatever it has required
 
 
 class MalformedForm(HyCompileError, SyntaxError):
@@ -42,23 +41,27 @@ class MalformedForm(HyCompileError, SyntaxError):
         return (self.filename, self.lineno, self.offset) if self.filename and self.lineno else None
 
 
-class Refused(Object):
-    """A model in place of the expansion of a macro that failed. Hy's compiler copies each model first; then it raises ``problem``."""
-
-    def __init__(self, problem):
-        self.problem = problem
-
-    def __copy__(self):
-        raise self.problem.with_traceback(None)
-
-
-def form(_hy_compiler, form):
-    """The macro around each form of a file: what Hy's compiler makes of ``form``, or a `Refused`."""
+@builds_model(ProgramForm)
+def _compile_form(compiler, wrapped):
+    """What Hy's compiler makes of a form of a program; a `MalformedForm` is raised if it cannot be compiled."""
+    form = wrapped.form
     try:
-        return module_names.compiled(_hy_compiler, form)
+        return module_names.compiled(compiler, form)
     except (Exception, Condition) as problem:
-        position = _hy_compiler.filename, getattr(form, "start_line", 1), getattr(form, "start_column", 1)
-        return Refused(retold(problem, position))
+        position = compiler.filename, getattr(form, "start_line", 1), getattr(form, "start_column", 1)
+        told = retold(problem, position)
+    raise told.with_traceback(None)
+
+
+@builds_model(Rest)
+def _compile_rest(compiler, rest):
+    """What Hy's compiler makes of the rest of a text. The rest of a file that is loaded may be what our own loader has made of the file."""
+    statements = kept_hy.compiled_apart(compiler, rest.filename) if rest.program else None
+    if statements is not None:
+        return Result(stmts=statements)
+    forms = rest.forms()
+    with forms.reader.as_current_reader():
+        return Result(stmts=kept_hy.guard_call(compiler, rest.filename)) + compiler.compile(forms)
 
 
 def retold(problem, position=(None, None, None)):
@@ -91,40 +94,20 @@ def retold(problem, position=(None, None, None)):
 
 def check(reader):
     """Let the errors of the program that ``reader`` reads for Hy be `MalformedForm`. A prompt and other languages are left alone."""
-    if reader is None or type(reader) is not HyReader or "try_parse_one_form" in vars(reader):
+    if type(reader) not in (HyReader, kept_hy.Reader):
         return
-    filename, inside = getattr(reader, "_filename", None), []
+    filename = getattr(reader, "_filename", None)
     if not filename or not program_texts.is_program(filename):
         return
-    if reader._source is not None:  # and not one of `evaluate`, whose text is kept already
-        program_texts.keep(filename, reader._source)
-        if program_texts.before_the_prompt(filename) is not None:
-            answered_texts.note(reader._source, "hy", filename).end()
-
-    def try_parse_one_form():
-        if reader._filename != filename:  # the reader of a prompt, which came after the program
-            del reader.try_parse_one_form
-            return reader.try_parse_one_form()
-        inside.append(True)
-        try:
-            model = type(reader).try_parse_one_form(reader)
-        except HyLanguageError as problem:
-            if len(inside) > 1:  # a form in a form: the reader around it wants to know
-                raise
-            raise unreadable(problem) from None
-        finally:
-            inside.pop()
-        return model if inside or model is None else Expression([_FORM, model]).replace(model, recursive=False)
-
-    reader.try_parse_one_form = try_parse_one_form
+    program_texts.keep(filename, reader._source)
+    if program_texts.before_the_prompt(filename) is not None:
+        answered_texts.note(reader._source, "hy", filename).end()
+    take_rest(reader, program=True)
 
 
 def evaluate(text, filename, module):
     """Evaluate ``text``, which goes on with the program of that name in Hy. Its places are those in the whole program."""
-    reader = HyReader()
-    reader._filename = filename
-    check(reader)
-    hy.eval(hy.read_many(text, filename, reader), module=module)
+    hy.eval(hy.read_many(text, filename, ProgramReader(program=True)), module=module)
 
 
 def unreadable(problem):
@@ -143,4 +126,6 @@ def unreadable(problem):
     return MalformedForm(message, problem.filename, line, column, hint=hint)
 
 
-__all__ = ["BRACKET_TOO_MANY", "MalformedForm", "check", "evaluate", "form", "retold", "unreadable"]
+ProgramReader.told = staticmethod(unreadable)
+
+__all__ = ["BRACKET_TOO_MANY", "MalformedForm", "check", "evaluate", "retold", "unreadable"]

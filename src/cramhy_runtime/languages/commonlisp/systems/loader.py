@@ -332,16 +332,14 @@ def is_plain_hy(text):
 
 def _run_hy(path):
     """Run a file of Hy as ``hy FILE`` does: with its name in ``sys.argv``, and the modules in its folder can be imported."""
-    import runpy
-
-    from ... import kept_hy  # Hy teaches `runpy` to run .hy files
+    from ... import kept_hy
 
     kept_hy.watch()
     words, folder = sys.argv, str(path.parent.resolve())
     sys.argv = [str(path)]
     sys.path.insert(0, folder)
     try:
-        runpy.run_path(str(path), run_name="__main__")
+        kept_hy.run_as_main(str(path))
     finally:
         sys.argv = words
         if folder in sys.path:
