@@ -130,6 +130,9 @@ def foreign_patches(path):
     names, found = foreign_names(tree), set()
     hy_file = any(dotted.split(".")[0] in ("hy", "code") for dotted in names.values())
     classes = {node.name.lstrip("_") for node in ast.walk(tree) if isinstance(node, ast.ClassDef)}
+    arguments = {
+        node.arg for node in ast.walk(tree) if isinstance(node, ast.arg) and node.annotation and "hy." in ast.unparse(node.annotation)
+    }
     modules = {
         node.arg
         for node in ast.walk(tree)
@@ -143,6 +146,8 @@ def foreign_patches(path):
         elif attribute == "__class__":
             cls = ast.unparse(value).rpartition(".")[2] if value is not None else ""
             base = names.get(cls) or foreign_base(cls)
+            if base is None and cls in arguments:  # a class that the caller gives
+                found.add(f"{ast.unparse(holder)}.__class__ = {cls}")
             if base is not None and base.split(".")[0] in LIBRARIES:
                 found.add(f"{ast.unparse(holder)}.__class__ = {cls}, of {base}")
         elif attribute.startswith("_") and "__" in attribute[1:] and not attribute.startswith("__"):
@@ -168,17 +173,7 @@ FOREIGN_PATCHES = {
     "src/cramhy_runtime/jupyter/notebook_kernel.py": ["getpass.getpass"],
     "src/cramhy_runtime/kernel/backends/jspi.py": ["asyncio.ensure_future"],
     "src/cramhy_runtime/kernel/patient_calls.py": ["builtins.input", "time.sleep"],
-    "src/cramhy_runtime/languages/hy/keywords.py": ["hy.models.Keyword.__hash__"],
-    "src/cramhy_runtime/languages/hy/operator_bodies.py": ["scope.__class__ = BodyScope, of hy.scoping.ScopeFn"],
-    "src/cramhy_runtime/languages/hy/quick_requires.py": ["hy.macros.inspect"],
-    "src/cramhy_runtime/repl/hy_prompt.py": [
-        "repl.banner, a method of REPL",
-        "repl.interact, a method of InteractiveConsole",
-        "repl.raw_input, a method of InteractiveConsole",
-        "repl.runcode, a method of REPL",
-        "repl.runsource, a method of REPL",
-        "repl.write, a method of InteractiveInterpreter",
-    ],
+    "src/cramhy_runtime/languages/hy/patches.py": ["hy.macros.inspect", "hy.models.Keyword.__hash__", "repl.__class__ = cls"],
     "src/cramhy_runtime/repl/progress.py": ["sys.stdout.write"],
 }
 """File by file, what is set today."""

@@ -24,14 +24,14 @@ from cramhy_runtime.languages.hy.required_macros import RequiredMacros
 
 # they are there when the language is
 from cramhy_runtime.languages import kept_hy as kept_code  # the name that compiled code calls, also of older versions
-from cramhy_runtime.languages.hy import calls, errors, keywords, malformed, module_names, quick_requires
+from cramhy_runtime.languages.hy import calls, errors, keywords, malformed, module_names, patches
 from cramhy_runtime.session.time_setting import time  # noqa: F401  cramhy.time; a star does not import it, since it would hide Python's module
 
 
 live_page.offer()  # (turtlesim:view)
 kept_code.watch()
 keywords.install()
-quick_requires.install()
+patches.require_quickly()
 symbols = calls.Symbols()
 branching = calls.Branching()
 """With `calls`, and `kept_code`: what the code calls that the macros of plain Hy expand into."""

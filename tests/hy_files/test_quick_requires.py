@@ -12,7 +12,7 @@ import cramhy  # noqa: F401  it changes how Hy requires
 import hy
 import pytest
 
-from cramhy_runtime.languages.hy import quick_requires
+from cramhy_runtime.languages.hy import patches
 
 LIBRARY = "(defmacro three [] 3)\n(defreader seven 7)\n(defmacro _hidden [] 1)\n(export :macros [three])\n"
 PROGRAM = """\
@@ -66,6 +66,6 @@ def test_no_source_is_read_for_it(folder, monkeypatch):
 
 
 def test_the_rest_of_inspect_is_what_it_was():
-    assert isinstance(hy.macros.inspect, quick_requires._Inspect)
+    assert isinstance(hy.macros.inspect, patches._Inspect)
     assert hy.macros.inspect.ismodule is inspect.ismodule and hy.macros.inspect.signature is inspect.signature
     assert "frame" in inspect.stack()[0]._fields  # others are not touched

@@ -1,9 +1,9 @@
 """Common Lisp at a prompt of Hy, after ``(in-package ...)``.
 
 Hy's REPL (`hy.REPL`) has its own loop: it asks for a line (``raw_input``), reads with the reader of its compiler, runs what comes of it,
-and prints the value. A REPL that runs is ``_hy_repl`` in its module. We change that one object, and none of Hy's classes. `attend` gives
-it a wait for lines during which plans go on. `enter` gives it a reader that hands over texts as they are (`TypedReader`), and a prompt
-that shows the package. A text is then answered by the same `Listener` as in ``roslisp_repl``. ``(in-hy)`` gives it back its own reader.
+and prints the value. A REPL that runs is ``_hy_repl`` in its module. `attend` makes it one of a class of `hy_repl.Attended`, so plans go on
+while it waits for a line. `enter` gives it a reader that hands over texts as they are (`TypedReader`), and a prompt that shows the package.
+A text is then answered by the same `Listener` as in ``roslisp_repl``. ``(in-hy)`` gives it back its own reader.
 
 Hy reads standard input that is no terminal (``hy < FILE``) to its end, compiles it, and runs it. There, what follows ``(in-package ...)``
 is given to a `Console`, as if it had been typed into ``roslisp_repl < FILE`` (`answer_piped`).
@@ -40,12 +40,13 @@ from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of, report
 from cramhy_runtime.session import time_setting
 from cramhy_runtime.languages import answered_texts
-from cramhy_runtime.languages.hy import answer_lists, malformed, module_names, program_texts
+from cramhy_runtime.languages.hy import answer_lists, malformed, module_names, patches, program_texts
 from cramhy_runtime.languages.hy.lisp_data import package_of
 from cramhy_runtime.languages.hy.reader import TypedReader, is_way_back, more_wanted, rest_of_text, source_of
 
 from .console import Console, exit_status
 from .history import History, place
+from .hy_repl import Attended, PlanREPL, attended
 from .line_input import BROKEN_OFF, Lines
 from .listener import Listener, at_the_prompt
 from .open_forms import OpenForms, of_lisp
@@ -156,12 +157,12 @@ class HyPrompt(Listener):
     def write(self, text):
         """What Python's console says by itself; from Python 3.13 on also its goodbye, when a signal ends it and the terminal has gone."""
         if not signals.received:
-            type(self.repl).write(self.repl, text)
+            self.repl.of_hy.write(text)
 
     def showtraceback(self):
         """As the REPL's own, with the names as Hy writes them."""
         with redirect_stderr(io.StringIO()) as told:
-            type(self.repl).showtraceback(self.repl)
+            self.repl.of_hy.showtraceback()
         sys.stderr.write(as_written(told.getvalue()))
         sys.stderr.flush()
 
@@ -234,7 +235,7 @@ class HyPrompt(Listener):
         The REPL reads its text anew whenever a line has come, and a form of many lines would take time in proportion to their square.
         """
         if kernel.active() is None:  # somebody has stopped it
-            return type(self.repl).raw_input(self.repl, prompt)
+            return self.repl.of_hy.raw_input(prompt)
         kernel.interrupt_over()
         if self.in_lisp:
             self.listen()
@@ -293,7 +294,7 @@ class HyPrompt(Listener):
         noted = answered_texts.note(source, "hy") if not lisp else None
         errors, good = self.repl.locals.get(LAST_ERROR), False
         try:
-            more = type(self.repl).runsource(self.repl, source, filename, symbol)
+            more = self.repl.of_hy.runsource(source, filename, symbol)
             good = self.repl.locals.get(LAST_ERROR) is errors
         finally:
             if noted is not None:
@@ -327,7 +328,7 @@ class HyPrompt(Listener):
     def runcode(self, code):
         """As the REPL's own, and the errors that Hy does not count among them are shown, too."""
         with self._goes_on(), self.progress.during():
-            type(self.repl).runcode(self.repl, code)
+            self.repl.of_hy.runcode(code)
 
     @contextmanager
     def _goes_on(self):
@@ -417,11 +418,11 @@ def attend(repl, session=None, kind=HyPrompt):
     session: a `Session`; by default the one that is there, or a new one in wall time. kind: the class of the prompt.
     """
     if getattr(repl, "lisp", None) is None:
+        if not isinstance(repl, Attended):
+            patches.change_class(repl, attended(type(repl)))
         repl.lisp = kind(repl, session or session_of_prompt())
         if repl.output_fn is hy.repr:  # and not what the user has chosen
             repl.output_fn = repl.lisp.shown_in_hy
-        repl.raw_input, repl.runsource, repl.runcode = repl.lisp.raw_input, repl.lisp.runsource, repl.lisp.runcode
-        repl.write, repl.showtraceback = repl.lisp.write, repl.lisp.showtraceback
         compiler = repl.compile.compiler
         compiler.ast_callback = repl.lisp.complete_code(compiler.ast_callback)
 
@@ -475,20 +476,17 @@ def converse(session, lines, text="", begun=lambda repl: None):
 def _repl_of(session, kind=HyPrompt, interact=None, banner=None):
     """A `hy.REPL` with the macros of the plan language. interact: its loop, a function of the REPL and the banner; by default its own."""
     warnings.filterwarnings("ignore", ".*perhaps you missed a comma", SyntaxWarning)  # Hy has none
-    repl = hy.REPL()
+    repl = PlanREPL(banner)
     attend(repl, session, kind)
     repl.runsource("(require cramhy *)")
-    if interact is not None:
-        repl.interact = functools.partial(interact, repl)
-    if banner is not None:
-        repl.banner = lambda: banner
+    repl.loop = interact
     return repl
 
 
 def _interact(repl, banner, farewell=None):
     """The loop of ``repl``. What is typed is kept in our file. That of Hy's prompts has what was typed in the session that ended last."""
     with repl.lisp.input.keep(History(place("hy-history"))) if "readline" in sys.modules else nullcontext():
-        type(repl).interact(repl, banner, farewell)
+        repl.of_hy.interact(banner, farewell)
 
 
 # --------------------------------------------------------------------------------------------------------------------- a pipe

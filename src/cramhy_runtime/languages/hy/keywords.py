@@ -17,6 +17,8 @@ from hy import models
 from cramhy_runtime.ground.data import STANDS_FOR
 from cramhy_runtime.ground.packages import keyword
 
+from . import patches
+
 
 def lisp_keyword(of_hy):
     """The keyword of Lisp for one of Hy."""
@@ -30,7 +32,7 @@ def _hash(self):
 
 def install():
     """Let Hy's keywords be Lisp's, in the whole process."""
-    models.Keyword.__hash__ = _hash
+    patches.hash_keywords(_hash)
     STANDS_FOR[models.Keyword] = lisp_keyword
 
 

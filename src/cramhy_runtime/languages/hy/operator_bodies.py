@@ -56,7 +56,14 @@ class Mark(ast.Pass):
 
 
 class BodyScope(ScopeFn):
-    """What Hy knows of the variables of a body: those of a ``let`` around the operator are assigned, where a function would hide them."""
+    """What Hy knows of the variables of a body: those of a ``let`` around the operator are assigned, where a function would hide them.
+
+    scope: that of the function that the body is for Hy. It is the same scope by another class: what one of them learns, both know.
+    """
+
+    def __init__(self, scope):
+        self.__dict__ = vars(scope)
+        self.parameters = frozenset(self.defined)
 
     def assign(self, node, index=None):
         name = getattr(node, "name", None) or getattr(node, "id", None)
@@ -76,10 +83,11 @@ class BodyScope(ScopeFn):
 def body(_hy_compiler, operator, *forms):
     """The macro around the forms of a body: what Hy's compiler makes of them, behind a `Mark` where there is something to settle."""
     scope = _hy_compiler.scope
-    if type(scope) is ScopeFn:
-        scope.__class__ = BodyScope
-        scope.parameters = frozenset(scope.defined)
-    made = _hy_compiler._compile_branch(forms)
+    _hy_compiler.scope = BodyScope(scope) if type(scope) is ScopeFn else scope
+    try:
+        made = _hy_compiler._compile_branch(forms)
+    finally:
+        _hy_compiler.scope = scope
     if made.stmts or made.expr is not None and any(isinstance(node, _SETTLED) for node in _own(made.expr)):
         for statement in made.stmts:
             for node in _own(statement):

@@ -14,11 +14,12 @@ import re
 
 from hy import models, read_many
 from hy.errors import HyLanguageError
+from hy.reader import HyReader
 from hy.reader.exceptions import PrematureEndOfInput
 
 from cramhy_runtime.ground.condition_types import Condition
 from cramhy_runtime.ground.data import Cons, Symbol
-from cramhy_runtime.languages.commonlisp.reader.reader import NOTHING
+from cramhy_runtime.languages.commonlisp.reader.reader import NOTHING, incomplete
 from cramhy_runtime.languages.commonlisp.reader.reader import Reader as LispReader
 
 from ..kept_hy import Reader
@@ -184,6 +185,27 @@ class ProgramReader(Reader):
         return models.Expression([models.Symbol("lisp-form-read"), Form(form)])
 
 
+class TypedReader(HyReader):
+    """Gives each text that is typed at a prompt as one model: a call of ``answer``, a Hy model of a function, with the text.
+
+    The text is not taken apart, because a form may change how the next one is read (``(in-package ...)``, ``(setf *readtable* ...)``), and
+    at a prompt each form runs before the next one is read. One that ends inside a form, a string or a comment raises
+    `hy.PrematureEndOfInput`, so Hy's REPL asks for another line.
+    """
+
+    def __init__(self, answer):
+        super().__init__()
+        self.answer = answer
+
+    def parse(self, stream, filename=None, skip_shebang=False):
+        text = stream.read()
+        if not text.strip():
+            return
+        if incomplete(text):
+            raise more_wanted(text, filename)
+        yield models.Expression([self.answer, models.String(text)])
+
+
 def more_wanted(text, filename):
     """The exception that tells Hy's REPL that ``text`` ends inside a form."""
     return PrematureEndOfInput("The text ends inside a Lisp form.", None, filename, text, 1, 1)
@@ -202,4 +224,15 @@ def source_of(model, source):
     return "\n".join(lines)
 
 
-__all__ = ["Form", "ProgramForm", "ProgramReader", "Rest", "is_way_back", "more_wanted", "rest_of_text", "source_of", "take_rest"]
+__all__ = [
+    "Form",
+    "ProgramForm",
+    "ProgramReader",
+    "Rest",
+    "TypedReader",
+    "is_way_back",
+    "more_wanted",
+    "rest_of_text",
+    "source_of",
+    "take_rest",
+]
