@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import importlib.metadata
 import inspect
+import types
 
 import hy
 import hy.macros
@@ -34,10 +35,7 @@ def test_hy_looks_at_no_other_entry_of_the_stack():
 def test_hy_compiles_a_keyword_to_a_call_of_its_class_whose_hash_is_that_of_the_name():
     from hy.compiler import hy_compile
 
-    made = ast.unparse(hy_compile(hy.read("(f :driving)"), "builtins", import_stdlib=False))
-    assert made.splitlines()[-1] == "f(driving=)" or "hy.models.Keyword('driving')" in ast.unparse(
-        hy_compile(hy.read("[:driving]"), "builtins", import_stdlib=False)
-    )
+    assert ast.unparse(hy_compile(hy.read("[:driving]"), types.ModuleType("a"), import_stdlib=False)) == "[hy.models.Keyword('driving')]"
     assert "def __hash__(self):\n        return hash(self.name)" in inspect.getsource(hy.models.Keyword)
 
 

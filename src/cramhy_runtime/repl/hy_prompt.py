@@ -46,7 +46,7 @@ from cramhy_runtime.languages.hy.reader import TypedReader, is_way_back, more_wa
 
 from .console import Console, exit_status
 from .history import History, place
-from .hy_repl import Attended, PlanREPL, attended
+from .hy_repl import Attended, REPL, attended
 from .line_input import BROKEN_OFF, Lines
 from .listener import Listener, at_the_prompt
 from .open_forms import OpenForms, of_lisp
@@ -476,7 +476,7 @@ def converse(session, lines, text="", begun=lambda repl: None):
 def _repl_of(session, kind=HyPrompt, interact=None, banner=None):
     """A `hy.REPL` with the macros of the plan language. interact: its loop, a function of the REPL and the banner; by default its own."""
     warnings.filterwarnings("ignore", ".*perhaps you missed a comma", SyntaxWarning)  # Hy has none
-    repl = PlanREPL(banner)
+    repl = REPL(banner)
     attend(repl, session, kind)
     repl.runsource("(require cramhy *)")
     repl.loop = interact

@@ -1,6 +1,6 @@
 """REPLs of Hy in which plans go on: `hy.REPL` with methods that ask the prompt of ``hy_prompt.py``.
 
-``cramhy repl --hy`` makes a `PlanREPL`. The one that ``hy`` itself has made becomes one of a class of `Attended` when somebody requires
+``cramhy repl --hy`` makes a `REPL`. The one that ``hy`` itself has made becomes one of a class of `Attended` when somebody requires
 cramhy there (`languages/hy/patches.py` `change_class`).
 """
 
@@ -37,8 +37,8 @@ class Attended:
         return (self.lisp or super()).write(text)
 
 
-class PlanREPL(Attended, hy.REPL):
-    """A REPL of ours. begins: its first lines, or ``None`` for Hy's. loop: called with the REPL and these, or ``None`` for Hy's loop."""
+class REPL(Attended, hy.REPL):
+    """A REPL of ours; Python's console says the name of the class at the end. begins: its first lines, or ``None`` for Hy's. loop: called with the REPL and these, or ``None`` for Hy's loop."""
 
     def __init__(self, begins=None, loop=None):
         self.begins, self.loop = begins, loop
@@ -57,4 +57,4 @@ def attended(kind):
     return type(kind.__name__, (Attended, kind), {"__module__": kind.__module__, "__doc__": kind.__doc__})
 
 
-__all__ = ["Attended", "PlanREPL", "attended"]
+__all__ = ["Attended", "REPL", "attended"]
