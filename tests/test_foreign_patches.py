@@ -168,8 +168,6 @@ def foreign_patches(path):
 
 
 FOREIGN_PATCHES = {
-    "src/cramhy_runtime/chronicle/chunk_index.py": ["writer._Writer__chunk_indices, a private"],
-    "src/cramhy_runtime/chronicle/chunks.py": ["writer._Writer__chunk_builder, a private"],
     "src/cramhy_runtime/jupyter/notebook_kernel.py": ["getpass.getpass"],
     "src/cramhy_runtime/kernel/backends/jspi.py": ["asyncio.ensure_future"],
     "src/cramhy_runtime/kernel/patient_calls.py": ["builtins.input", "time.sleep"],

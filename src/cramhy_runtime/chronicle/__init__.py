@@ -13,7 +13,8 @@ plan did stands beside what the robot did, with the same times.
 Where the parts are: `plans`, `fluents`, `modules` (with `goals`), `world`, `robots` (with `robot_forms`) see what happens, `chronicler`
 looks at the end of each instant of the kernel, `merge` (with `robot_merge`) merges, `history` keeps, `service_node` publishes and serves.
 `recorder` writes a file, in `chunks`, with `schemas` that tell Foxglove what messages look like, a `scene` and a `robot_scene` for its 3D
-panel and a `chunk_index` of what is where; `recordings` reads one, `player` replays it. `texts` shows values on one line.
+panel and a `chunk_index` of what is where; `writing` lays out the file. `recordings` reads one, `player` replays it. `texts` shows values
+on one line.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The index of a recording's chunks while it is written: packed, since the file gets it at its end only.
 
-The MCAP writer keeps an object for each chunk until the file is closed, with the place of each topic in it: over a kilobyte, and a
+mcap's own writer keeps an object for each chunk until the file is closed, with the place of each topic in it: over a kilobyte, and a
 session in wall time writes 1800 chunks in an hour. Packed they take a fifth of that.
 """
 
@@ -13,7 +13,7 @@ _PLACE = struct.Struct("<HQ")  # a channel, and the offset of its index
 
 
 class PackedIndexes:
-    """A list of ``mcap.records.ChunkIndex`` as far as the writer uses one: `append`, iteration and length."""
+    """A list of ``mcap.records.ChunkIndex`` as far as a writer uses one: `append`, iteration and length."""
 
     def __init__(self):
         self._packed, self._length = bytearray(), 0
@@ -60,10 +60,3 @@ class PackedIndexes:
                 compressed_size=compressed,
                 uncompressed_size=uncompressed,
             )
-
-
-def pack_indexes(writer):
-    """Have the ``mcap.writer.Writer``, which has written no chunk yet, keep its index packed. One of another make is left as it is."""
-    name = "_Writer__chunk_indices"
-    if getattr(writer, name, None) == []:
-        setattr(writer, name, PackedIndexes())

@@ -1,7 +1,7 @@
-"""The chunk of a recording that is being filled: the records of its messages as bytes, until the MCAP writer packs and writes it.
+"""The chunk of a recording that is being filled: the records of its messages as bytes, until `writing.Writer` packs and writes it.
 
-The writer would make an object of each message and write its fields one after the other, which takes 12 microseconds. Here a message costs
-one. What the file holds is the same, byte for byte: the writer gets the whole chunk and its index, and goes on to do all the rest.
+mcap's own writer makes an object of each message and writes its fields one after the other, which takes 12 microseconds. Here a message
+costs one.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ _REST = _MESSAGE.size - 9
 
 
 class Chunk:
-    """A ``mcap._chunk_builder.ChunkBuilder`` as far as the writer uses one, with an `add` of its own.
+    """The records of a chunk, and where in it the messages of each channel are.
 
     statistics: those of the writer, which are brought up to date when the chunk is packed.
     """
@@ -43,13 +43,11 @@ class Chunk:
         self.num_messages += 1
 
     def add_channel(self, channel):
-        """Add a ``mcap.records.Channel``."""
+        """Add a ``mcap.records.Channel``, or a ``Schema``."""
         channel.write(self._builder)
         record = self._builder.end()
         self._records.append(record)
         self.count += len(record)
-
-    add_schema = add_channel
 
     def end(self):
         """The bytes of the chunk."""
@@ -80,28 +78,4 @@ class Index:
         stream.write(_INDEX.pack(7, size + 6, self.channel, size) + struct.pack(f"<{len(self.entries)}Q", *self.entries))
 
 
-class _Unknown:
-    """Adds messages to a writer of another make."""
-
-    count = 0  # it packs its chunks itself
-
-    def __init__(self, writer):
-        self._add = writer.add_message
-
-    def add(self, channel, number, time, data):
-        self._add(channel, time, data, time, number)
-
-
-def first_chunk(writer):
-    """The `Chunk` that the ``mcap.writer.Writer`` fills from now on; it has got no message yet. Its user asks ``flush`` for the next."""
-    from mcap.writer import ChunkBuilder
-
-    statistics = getattr(writer, "_Writer__statistics", None)
-    if getattr(writer, "_Writer__chunk_builder", None).__class__ is not ChunkBuilder or statistics is None:
-        return _Unknown(writer)
-    chunk = Chunk(statistics)
-    writer._Writer__chunk_builder = chunk
-    return chunk
-
-
-__all__ = ["Chunk", "first_chunk"]
+__all__ = ["Chunk"]

@@ -24,9 +24,8 @@ from cramhy_runtime.ground.conditions import warn
 from ..ros import graph
 from ..ros.message_json import MessageJsonError, text_of, to_record_text
 from . import chronicler, robot_scene, scene
-from .chunk_index import pack_indexes
-from .chunks import first_chunk
 from .recordings import RecordingError, needs_mcap
+from .writing import Writer
 from .schemas import schema_text
 from .merge import TOPICS
 from cramhy_runtime.kernel.typing_names import Self
@@ -44,7 +43,7 @@ class Recorder:
     """
 
     def __init__(self, path, program=()):
-        writer = needs_mcap("Recording").writer
+        needs_mcap("Recording")
         if kernel.active() is None:
             raise RecordingError(f"Nothing can be recorded in {path}: no session runs. Start one first, by the REPL or kernel.start().")
         self.path = os.fspath(path)
@@ -62,9 +61,8 @@ class Recorder:
         self._part = None
         try:
             self._part = storage.growing(self.path)
-            self._writer = writer.Writer(self._part.file, chunk_size=CHUNK)
-            pack_indexes(self._writer)
-            self._chunk = first_chunk(self._writer)
+            self._writer = Writer(self._part.file, CHUNK)
+            self._chunk = self._writer.chunk
             self._writer.start(profile="", library=f"cramhy {__version__}")
             self._writer.add_metadata("cramhy", self._about(program))
             self._writer.flush()  # whenever the process is killed, the file is a recording

@@ -38,7 +38,10 @@ class Attended:
 
 
 class REPL(Attended, hy.REPL):
-    """A REPL of ours; Python's console says the name of the class at the end. begins: its first lines, or ``None`` for Hy's. loop: called with the REPL and these, or ``None`` for Hy's loop."""
+    """A REPL of ours; Python's console says the name of the class at the end.
+
+    begins: its first lines, or ``None`` for Hy's. loop: called with the REPL and these, or ``None`` for Hy's loop.
+    """
 
     def __init__(self, begins=None, loop=None):
         self.begins, self.loop = begins, loop
