@@ -19,10 +19,10 @@ from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.ground.functions import function_of
 from cramhy_runtime.ground.packages import sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string, princ_to_string
+from cramhy_runtime.languages.hy.malformed import ProgramForm
 from cramhy_runtime.repl.session import condition_of
 
 
-_AS_IN_A_FILE = hy.read("hy.R.cramhy._form")
 _required = {}
 """What ``(require cramhy *)`` puts into a module. It takes 0.1 s, so one module of the process requires and the others take it over."""
 
@@ -65,7 +65,7 @@ def hy_value(module, text):
     """The value of the last form of ``text`` in ``module``; each is compiled as in a file."""
     value = None
     for form in hy.read_many(text, filename="<example>"):
-        value = hy.eval(hy.models.Expression([_AS_IN_A_FILE, form]), module=module)
+        value = hy.eval(ProgramForm(form), module=module)
         kernel.settle()
     return value
 
