@@ -125,7 +125,7 @@ def test_the_launch_file_of_turtlesim():
         ),
         (
             "<launch><rosparam>a: [1</rosparam></launch>",
-            "while processing {path}:\nInvalid <rosparam> tag: its parameters: line 1, column 1: the [ is never closed.\n\nThe tag is <rosparam>",
+            "while processing {path}:\nInvalid <rosparam> tag: its parameters: line 1, column 4: the [ is never closed.\n\nThe tag is <rosparam>",
         ),
         (
             '<launch><node pkg="turtlesim" type="mimic" name="a/b"/></launch>',

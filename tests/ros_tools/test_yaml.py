@@ -6,8 +6,8 @@ import math
 
 import pytest
 
+from cramhy_runtime.ros_tools.yaml_library import parameter_file, parameter_text
 from cramhy_runtime.ros_tools.yaml_reading import YamlError, read
-from cramhy_runtime.ros_tools.yaml_writing import parameter_file, parameter_text
 
 BLOCK = """
 linear:
@@ -101,7 +101,7 @@ def test_block_style():
         "text": "one # no comment\n  two\n",
         "folded": "three four",
         "empty": None,
-        "a b": "word with spaces",
+        "a b": "word with  spaces",
     }
 
 

@@ -26,7 +26,8 @@ BY_MODULES = {"ros", "turtlesim", "transforms", "tf"}  # whose users import the 
 
 OPTIONS = """--strict --python-version 3.11 --platform linux --ignore-missing-imports --no-error-summary --hide-error-context
     --no-color-output --cache-dir""".split()
-NOT_FOLLOWED = """PIL cbor2 coverage greenlet hy hyrule mcap numpy prompt_toolkit pygments rich roslibpy scipy uvicorn websockets""".split()
+NOT_FOLLOWED = """PIL cbor2 coverage greenlet hy hyrule mcap numpy prompt_toolkit pygments rich roslibpy scipy uvicorn
+    websockets yaml""".split()
 """Packages of others that need not be there, or may be of any version: what they say of themselves must not change our figures."""
 FIGURES = Path(__file__).with_name("figures.json")
 CONSEQUENCES = {"no-untyped-call"}  # of what is counted already: that the function which is called has no types

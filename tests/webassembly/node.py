@@ -20,7 +20,7 @@ from cramhy_runtime.browser import pyodide_files, site
 
 ROOT = Path(__file__).parents[2]
 KEPT = pyodide_files.FETCHED / ".cramhy"
-PACKAGES = ("pytest", "_pytest", "pluggy", "iniconfig", "packaging", "pygments", "py", "hy", "hyrule", "funcparserlib")
+PACKAGES = ("pytest", "_pytest", "pluggy", "iniconfig", "packaging", "pygments", "py", "hy", "hyrule", "funcparserlib", "yaml")
 LIMIT = 3600 if SOAK else 360  # s
 
 

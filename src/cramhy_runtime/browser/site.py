@@ -35,7 +35,7 @@ from ..course import contents, web
 from ..view import page
 from . import bundling, left_out, packing, pyodide_files
 
-PACKAGES = ("cramhy", "cramhy_runtime", "hy", "hyrule", "funcparserlib")
+PACKAGES = ("cramhy", "cramhy_runtime", "hy", "hyrule", "funcparserlib", "yaml")
 POLICY = (
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; style-src 'self'; "
     "img-src 'self' data: blob:; font-src 'self'; base-uri 'none'; form-action 'none'"

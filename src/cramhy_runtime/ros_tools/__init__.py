@@ -7,7 +7,7 @@ Where the parts are:
 
 * `running`      a command from its words to its exit status, and the terminal it writes to
 * `arguments`        commands, options, usage; `definitions` and `filling` types, and data that fit them
-* `yaml_reading`, `yaml_writing`  values as they are typed and printed
+* `yaml_reading`  values as they are typed, with `yaml_library`, which is PyYAML; `message_text` messages as they are printed
 * `nodes`, `topics`, `topic_echo`, `publishing`, `calling`, `parameters`, `types`  the commands
 * `graph_access`        what they ask of a graph; `local_graph` the graph of this process, `remote_graph` the session of another terminal
 * `hosting`      programs that run in a session for a terminal elsewhere; `executables` which there are

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from . import definitions, filling, yaml_writing
+from . import definitions, filling, message_text
 from .graph_access import Refused
 from .arguments import TOOLS, CommandError, command, global_name, meant, one, option
 
@@ -84,4 +84,4 @@ def call(terminal, options, given):
                 "ERROR: transport error completing service call: unable to receive data from sender, check sender's logs for details", 2
             ) from None
         raise CommandError(f"ERROR: service [{name}] responded with an error: {str(refusal).encode()!r}", 2) from None
-    terminal.write("\n".join(yaml_writing.message_lines(response, parts[1])) + "\n")
+    terminal.write("\n".join(message_text.message_lines(response, parts[1])) + "\n")

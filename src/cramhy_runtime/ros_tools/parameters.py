@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 from .. import storage
-from . import yaml_reading, yaml_writing
+from . import yaml_reading
 from .arguments import TOOLS, CommandError, command, global_name, one, option
 
 
@@ -35,7 +35,10 @@ def _value(terminal, name, complaint):
 )
 def get(terminal, options, given):
     name = global_name(one(TOOLS["rosparam"]["get"], given, "parameter name"))
-    terminal.write(yaml_writing.parameter_text(_value(terminal, name, "ERROR: Parameter [{name}] is not set")))
+    value = _value(terminal, name, "ERROR: Parameter [{name}] is not set")
+    from .yaml_library import parameter_text
+
+    terminal.write(parameter_text(value))
 
 
 @command(
@@ -94,7 +97,10 @@ def dump(terminal, options, given):
     if len(given) > 2:
         raise TOOLS["rosparam"]["dump"].complaint("too many arguments")
     space = global_name(given[1]) if len(given) > 1 else "/"
-    text = yaml_writing.parameter_file(_value(terminal, space, "ERROR: Parameter [{name}] is not set"))
+    value = _value(terminal, space, "ERROR: Parameter [{name}] is not set")
+    from .yaml_library import parameter_file
+
+    text = parameter_file(value)
     if not given or given[0] == "-":
         return terminal.write(text)
     try:

@@ -10,7 +10,7 @@ import math
 import re
 from collections import deque
 
-from . import definitions, yaml_writing
+from . import definitions, message_text
 from .graph_access import SessionEnded
 from .arguments import TOOLS, CommandError, command, global_name, meant, one, option
 
@@ -127,9 +127,9 @@ def _blocks(terminal, options):
 
     def show(stamp, definition, field, data):
         if field is None:
-            lines = yaml_writing.message_lines(data, definition, keep=keep)
+            lines = message_text.message_lines(data, definition, keep=keep)
         else:
-            lines = yaml_writing.field_lines(field, data, keep)
+            lines = message_text.field_lines(field, data, keep)
         clear = "\x1b[2J\x1b[;H" if "clear" in options else ""
         terminal.write(clear + "".join(line + "\n" for line in lines) + "---\n")
 
@@ -141,9 +141,9 @@ def _table(terminal, options):
 
     def show(stamp, definition, field, data):
         if definition is not None:
-            names, values = yaml_writing.csv_names(definition), yaml_writing.csv_values(data, definition)
+            names, values = message_text.csv_names(definition), message_text.csv_values(data, definition)
         else:
-            names, values = ["field"], [yaml_writing.inline_text(field, data)]
+            names, values = ["field"], [message_text.inline_text(field, data)]
         if not headed:
             headed.append(True)
             terminal.line(",".join(["%time", *names]))

@@ -1,18 +1,16 @@
-"""Values printed as the ROS tools print them: messages by ``rostopic echo``, parameters by ``rosparam get``.
+"""Messages printed as ``rostopic echo`` prints them.
 
 Messages come as plain data (`ros.message_json`), and their `Definition` says how each field looks: a text in quotes, a time as two
-lines, the elements of a list of messages each below a dash. Parameters are YAML as PyYAML writes it in block style.
+lines, the elements of a list of messages each below a dash. (Parameters are YAML, as `yaml_library` writes them.)
 """
 
 from __future__ import annotations
 
 import base64
 import json
-import math
 import re
 
 from .definitions import message_definition
-from .yaml_reading import scalar
 
 _TIMES = ("time", "duration")
 
@@ -93,69 +91,3 @@ def csv_values(data, definition):
             yield str(value) if field.base == "string" else str(int(value)) if field.base == "bool" else _plain(value)
         else:
             yield from csv_values(value, message_definition(field.base))
-
-
-# -------------------------------------------------------------------------------------------------------------- parameters
-
-
-def parameter_text(value):
-    """A parameter as ``rosparam get`` prints it, with the end of its last line."""
-    if isinstance(value, (dict, list)) and value:
-        return "\n".join(_block(value, "")) + "\n\n"
-    return _scalar_text(value, "") + "\n"
-
-
-def parameter_file(value):
-    """A tree of parameters as the text of a file, which ``rosparam load`` reads."""
-    return "\n".join(_block(value, "")) + "\n" if value else "{}\n"
-
-
-def _block(value, indent):
-    if isinstance(value, dict):
-        for key in sorted(value, key=str):
-            below, name = value[key], _scalar_text(key, indent)
-            if isinstance(below, (dict, list)) and below:
-                yield f"{indent}{name}:"
-                yield from _block(below, indent + "  " if isinstance(below, dict) else indent)
-            else:
-                yield f"{indent}{name}: {_scalar_text(below, indent)}"
-    else:
-        for element in value:
-            if isinstance(element, (dict, list)) and element:
-                first, *rest = _block(element, indent + "  ")
-                yield f"{indent}- {first[len(indent) + 2 :]}"
-                yield from rest
-            else:
-                yield f"{indent}- {_scalar_text(element, indent)}"
-
-
-def _scalar_text(value, indent):
-    if value is None:
-        return "null"
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, float):
-        return _float_text(float(value))
-    if not isinstance(value, str):
-        return str(value) if value or isinstance(value, int) else "{}" if isinstance(value, dict) else "[]"
-    if re.search(r"[^\n -~\x85\xa0-\ufffd]", value) or re.search(r" \n|\n ", value):
-        return quoted(value)
-    if "\n" in value or not _is_plain(value):
-        folded = re.sub(r"\n+", lambda gap: gap.group() + "\n" + indent + "  ", value.replace("'", "''"))
-        return f"'{folded}'"
-    return value
-
-
-def _is_plain(text):
-    if not text or text != text.strip() or scalar(text) != text or text[0] in ",[]{}#&*!|>'\"%@`" or text in ("=", "<<", "---", "..."):
-        return False
-    if text[0] in "-?:" and (len(text) == 1 or text[1] == " "):
-        return False
-    return not re.search(r":(\s|$)|\s#", text)
-
-
-def _float_text(value):
-    if not math.isfinite(value):
-        return ".nan" if value != value else ".inf" if value > 0 else "-.inf"
-    text = repr(value)
-    return text.replace("e", ".0e") if "e" in text and "." not in text else text
