@@ -9,10 +9,8 @@ import os
 import sys
 from pathlib import Path
 
-from cramhy_runtime.storage.checksummed_code import Unusable, sealed, unsealed
-from cramhy_runtime.storage.kept_files import keep, kept_path
-
-_STAMP_LINE = b"# cramhy stamp 1\n"
+from cramhy_runtime.storage import kept_code
+from cramhy_runtime.storage.checksummed_code import Unusable
 
 
 @functools.cache
@@ -30,14 +28,14 @@ def stamp():
     text = "".join([python, *(f"{path} {status.st_mtime_ns} {status.st_size} " for path, status in states)])
     state = sha256(text.encode(errors="surrogatepass")).hexdigest()
     place = Path(__file__).with_name("stamp")
-    with contextlib.suppress(Unusable, OSError):
-        return unsealed(kept_path(place), _STAMP_LINE, state).decode()
+    with contextlib.suppress(Unusable):
+        return kept_code.find(place, state)
     digest = sha256(python.encode())
     for folder, entry in files:
         data = Path(entry.path).read_bytes()
         digest.update(f"{folder}/{entry.name} {len(data)} ".encode(errors="surrogatepass") + data)
     made = digest.hexdigest()
-    keep(place, lambda: sealed(_STAMP_LINE, state, made.encode()))
+    kept_code.keep(place, state, made)
     return made
 
 
