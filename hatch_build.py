@@ -36,6 +36,8 @@ for source in pathlib.Path(cramhy.__file__).parent.glob("*.hy"):
     header = importlib.util.MAGIC_NUMBER + (3).to_bytes(4, "little") + importlib.util.source_hash(source.read_bytes())
     bytecode.write_bytes(header + bytecode.read_bytes()[16:])
 from cramhy_runtime.session.session import current
+from cramhy_runtime.storage import kept_files
+kept_files.keep_own_beside()
 for system in sys.argv[1:]:
     current().load(system)
 """

@@ -18,7 +18,7 @@ from cramhy_runtime.languages import compiler_stamp
 from cramhy_runtime.languages.commonlisp.systems import program_files
 from cramhy_runtime.languages.commonlisp.systems import loader
 from cramhy_runtime.repl.session import Session
-from cramhy_runtime.storage import kept_code
+from cramhy_runtime.storage import kept_code, kept_files
 from cramhy_runtime.storage.checksummed_code import Unusable, sealed, unsealed
 from cramhy_runtime.storage.kept_files import kept_path
 
@@ -124,6 +124,42 @@ def test_what_the_wheel_brings_is_used_where_the_user_cannot_write(session, kept
         loader.load_file(kept[0])
         assert len(read) == reads and loaded(session) == [7]
     assert kept_path(kept[0]).is_file()
+
+
+@pytest.mark.parametrize("library", ["alexandria", "cram-location-costmap"])
+def test_code_of_a_library_of_ours_is_kept_in_the_users_cache(session, monkeypatch, tmp_path, library):
+    """Nobody finds files in a clone of cramhy that its sources do not have."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    source = next((Path(kept_files.__file__).parents[1] / "libraries" / library).rglob("*.lisp"))
+    assert kept_path(source).parent == tmp_path / "cache" / "cramhy"
+    assert kept_path(source).name.endswith(f"-{source.name}.{sys.implementation.cache_tag}.cramhy")
+
+
+def test_what_a_wheel_brings_of_ours_is_used_until_the_source_changes(session, read, monkeypatch, tmp_path):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    source = tmp_path / "ours" / "x.lisp"
+    source.parent.mkdir(mode=0o755)
+    source.write_text("(defparameter cl-user::*loaded* 7)")
+    loader.load_file(source)
+    monkeypatch.setattr(kept_files._Own, "folders", (f"{source.parent}{os.sep}",))
+    loader.load_file(source)
+    assert len(read) == 1 and not (tmp_path / "cache").exists()
+    source.write_text("(defparameter cl-user::*loaded* 8)")
+    loader.load_file(source)
+    assert loader.why_not_kept(source).kind == "outdated" and kept_path(source).is_file()
+    loader.load_file(source)
+    assert len(read) == 2 and loaded(session) == [8]
+
+
+def test_old_files_leave_the_users_cache_and_others_stay(monkeypatch, tmp_path):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    kept_files.drop_old(".cramhy")  # there is no folder
+    (tmp_path / "cramhy").mkdir()
+    for name, age in (("a.cramhy", 0), ("b.cramhy", kept_files.OLD - 1), ("c.cramhy", kept_files.OLD + 1), ("history", kept_files.OLD + 1)):
+        (tmp_path / "cramhy" / name).write_text(name)
+        os.utime(tmp_path / "cramhy" / name, (2e9 - age, 2e9 - age))
+    kept_files.drop_old(".cramhy")
+    assert sorted(os.listdir(tmp_path / "cramhy")) == ["a.cramhy", "b.cramhy", "history"]
 
 
 @pytest.fixture

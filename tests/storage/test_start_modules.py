@@ -172,6 +172,7 @@ def test_the_command_line_keeps_what_it_starts_with(tmp_path):
         shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("*.cramhy", "tutorials"))
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     environment["PYTHONPATH"] = os.pathsep.join([str(tmp_path / "src"), str(tmp_path / "hy_src")])
+    environment["XDG_CACHE_HOME"] = str(tmp_path / "cache")
     program = (
         "import atexit, sys\n"
         "from cramhy_runtime import cli\n"
@@ -185,3 +186,5 @@ def test_the_command_line_keeps_what_it_starts_with(tmp_path):
         )
         answer, kept_ones = done.stdout.splitlines()
         assert (json.loads(answer)["values"], kept_ones, done.stderr, done.returncode) == (["3"], found, "", 0)
+    assert not list((tmp_path / "src").rglob("*.cramhy")), "what cramhy keeps of itself is in the user's cache folder"
+    assert list((tmp_path / "cache" / "cramhy").glob("*-start.*.cramhy"))

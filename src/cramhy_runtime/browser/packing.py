@@ -54,9 +54,11 @@ def compile_all(folder: Path, packages: list[str]) -> None:
     importlib.import_module("hy")
     from .. import kernel
     from ..session.session import Session
+    from ..storage import kept_files
 
     for file in sorted((folder / "cramhy").glob("*.hy")):
         importlib.import_module(f"cramhy.{file.stem}")
+    kept_files.keep_own_beside()  # as a tab finds it
     session = Session(time="virtual")
     session.evaluate_text('(ros-load:load-system "{}" :{})'.format(*SYSTEMS))
     importlib.import_module("cramhy_runtime.browser.tab")

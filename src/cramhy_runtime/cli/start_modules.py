@@ -23,7 +23,7 @@ from pathlib import Path
 import cramhy_runtime
 from cramhy_runtime.storage.checksummed_code import Unusable, trusted_bytes
 from cramhy_runtime.storage.kept_files import keep as keep_file
-from cramhy_runtime.storage.kept_files import kept_path
+from cramhy_runtime.storage.kept_files import drop_old, kept_path
 
 FIRST_LINE = b"# cramhy start modules 4\n"
 SIZES = struct.Struct("<QII")
@@ -138,6 +138,7 @@ def keep():
     _Start.wanted = None
     names = sorted({*wanted, *finder.modules})
     keep_file(_source(), lambda: _written(finder.root, {name: kept for name in names if (kept := _bytecode(finder, name))}))
+    drop_old(".cramhy")  # of a cramhy that is gone
 
 
 def _bytecode(finder, name):

@@ -5,9 +5,9 @@ what follows ``(in-package ...)`` is the same language, so they are loaded in th
 ``in-package`` takes the reader over: see ``hy_src/cramhy/language.hy``). A ``.hy`` file that goes into no package, or comes back by
 ``(in-hy)``, is Hy's alone.
 
-What was compiled is kept beside the source in ``__pycache__`` (or, where that cannot be written or belongs to another user, in the user's
-cache folder). A kept file is used only if nothing has changed that it was made from: its text, the files loaded before it in its system,
-cramhy itself and Python; and only if this user or root has written it and its checksum is right (`storage.checksummed_code`).
+What was compiled is kept beside the source in ``__pycache__`` (or, where that cannot be written, belongs to another user or is cramhy's, in
+the user's cache folder). A kept file is used only if nothing has changed that it was made from: its text, the files loaded before it in
+its system, cramhy itself and Python; and only if this user or root has written it and its checksum is right (`storage.checksummed_code`).
 `why_not_kept` tells why one was not used. So an unchanged system loads without compiling, and without importing Hy.
 """
 
