@@ -1,6 +1,5 @@
 """Stacks: deep recursion, running out of it, and running out of threads."""
 
-import os
 import sys
 
 import pytest
@@ -107,37 +106,6 @@ def test_a_task_that_gets_no_thread_dies_of_it_and_the_others_go_on(start, backe
     assert kernel.unpark(first)
     first.join()
     assert issubclass(NoStack, Exception)
-
-
-@pytest.mark.skipif(not hasattr(os, "sched_getaffinity"), reason="only Linux tells")
-def test_tasks_run_on_all_processors_although_they_are_woken_where_the_waker_was(k):
-    everywhere = os.sched_getaffinity(0)
-    seen = []
-
-    def look():
-        for _ in range(5):
-            seen.append(os.sched_getaffinity(0))
-            kernel.yield_()
-        kernel.run_blocking(lambda: seen.append(os.sched_getaffinity(0)))
-
-    tasks = [kernel.spawn(look) for _ in range(3)]
-    for task in tasks:
-        task.join()
-        seen.append(os.sched_getaffinity(0))
-    assert seen == [everywhere] * len(seen)
-
-
-def test_where_processors_cannot_be_chosen_everything_goes_on_without(start, monkeypatch):
-    from cramhy_runtime.kernel.backends import affinity
-
-    def forbidden(*_):
-        raise PermissionError
-
-    monkeypatch.setattr(os, "sched_setaffinity", forbidden, raising=False)
-    assert affinity.affinity() is None
-    monkeypatch.setattr(threads, "_affinity", None)
-    start()
-    assert kernel.spawn(lambda: kernel.sleep(1) or "woken").join() == "woken"
 
 
 def test_many_threads_ask_once_for_a_wide_table_of_those_that_wait(start, backend, monkeypatch):

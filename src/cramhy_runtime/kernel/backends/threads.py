@@ -20,15 +20,12 @@ from ..clocks import LONGEST_WAIT, Bell
 from ..depth import STACK_SIZE
 from ..errors import NoStack, Terminated
 from ..images import in_forked_child
-from .affinity import affinity
 from .futexes import MANY, Table
 
 KEEP = 16_384  # idle threads in the pool; each holds some 10 KiB, and a new one takes up to 0.6 ms to get its memory
 KEEP_AFTERWARDS = 1024
 
-_native_id = getattr(_thread, "get_native_id", _thread.get_ident)  # only `affinity` asks, where there is such a thing
 _idle = deque()
-_affinity = None  # see `affinity`; asked for when the first kernel starts
 _table = Table()
 in_forked_child(_idle.clear)  # threads do not come along
 in_forked_child(_table.forget)
@@ -37,7 +34,7 @@ in_forked_child(_table.forget)
 class ThreadCarrier:
     """A thread with its lock."""
 
-    __slots__ = ("lock", "job", "ident", "tid")
+    __slots__ = ("lock", "job", "ident")
     direct = False
 
     def __init__(self):
@@ -45,7 +42,6 @@ class ThreadCarrier:
         self.lock.acquire()
         self.job = None
         self.ident = None
-        self.tid = None  # the system's name for it, known as soon as it runs
 
 
 def borrow(job):
@@ -93,12 +89,9 @@ def _carry_on(carrier):
     trace = threading.gettrace()
     if trace is not None:
         sys.settrace(trace)  # debuggers and coverage ask `threading` for this; we don't come by there
-    carrier.tid = _native_id()
     lock = carrier.lock
     lock.acquire()
     while True:
-        if _affinity is not None:
-            _affinity.let_go()
         job, carrier.job = carrier.job, None
         if job is None:
             return  # the pool keeps it no longer
@@ -108,18 +101,11 @@ def _carry_on(carrier):
         if keep:
             _idle.append(carrier)
         if successor is not None:
-            _wake(successor)
+            successor.lock.release()
             successor = None
         if not keep:
             return
         lock.acquire()
-
-
-def _wake(carrier):
-    """Give the baton to CARRIER, as the last thing before going to sleep."""
-    if _affinity is not None and carrier.tid is not None:
-        _affinity.bring(carrier.tid)
-    carrier.lock.release()
 
 
 class ThreadBackend:
@@ -135,22 +121,16 @@ class ThreadBackend:
 
     def adopt(self, kernel):
         self._kernel = kernel
-        global _affinity
-        if _affinity is None:
-            _affinity = affinity()
         self._root = carrier = ThreadCarrier()
         carrier.ident = _thread.get_ident()
-        carrier.tid = _native_id()
         return carrier
 
     def carrier(self, job):
         return borrow(job)
 
     def transfer(self, mine, other):
-        _wake(other)
+        other.lock.release()
         self._wait(mine)
-        if _affinity is not None:
-            _affinity.let_go()
 
     def _wait(self, mine):
         """Wait for the baton. In the main thread Python runs signal handlers meanwhile, and one may raise."""
@@ -194,8 +174,6 @@ class ThreadBackend:
         finally:
             kernel.post(lambda: kernel.comes_back(task))
             self._wait(task.carrier)
-            if _affinity is not None:
-                _affinity.let_go()
 
     def frame(self, carrier):
         return sys._current_frames().get(carrier.ident)
