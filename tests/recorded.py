@@ -96,7 +96,7 @@ RECORDINGS = [
         "lisp/sbcl",
         *(
             f"{name}.txt"
-            for name in "arrays characters compiler corners equality hash_tables lists loop odds reader sequences strings".split()
+            for name in "arrays characters compiler corners equality hash_tables lists loop odds passes reader sequences strings".split()
         ),
         comments=True,
     ),

@@ -10,7 +10,8 @@ import warnings
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.languages.commonlisp.compiler import facts, generate, nodes, support
+from cramhy_runtime.languages.commonlisp.compiler import facts, nodes, support
+from cramhy_runtime.languages.commonlisp.compiler.generator import functions
 from cramhy_runtime.ground.conditions import CompileError, Condition
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.packages.package_errors import SymbolPackageLockedError
@@ -315,7 +316,7 @@ def _nodes_anywhere(thing, found):
 
 def test_a_walk_meets_all_nodes_below_a_node(evaluate, monkeypatch):
     seen = []
-    monkeypatch.setattr(generate, "study", lambda root: (seen.extend(facts.walk([root])), facts.study(root)))
+    monkeypatch.setattr(functions, "study", lambda root: (seen.extend(facts.walk([root])), facts.study(root)))
     evaluate(
         """(defun walked (a &optional (b (list 1 a)) &rest r &key (c (car b)) d)
              (declare (type integer a))

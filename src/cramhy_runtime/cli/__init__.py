@@ -176,7 +176,7 @@ def _main(arguments):
         if options.command in DEFAULT_TIMES:
             start_modules.install()
             gc.disable()  # looking for garbage takes a twelfth of the time that a session takes to start, and there is none
-        if hasattr(options, "time") and (complaint := _wrong_time()):
+        if hasattr(options, "time") and (complaint := _wrong_variable()):
             print(f"cramhy: {complaint}", file=sys.stderr)
             return 2
         return globals()[f"_{options.command.replace('-', '_')}"](options) or 0
@@ -189,12 +189,16 @@ def _main(arguments):
         start_modules.keep()
 
 
-def _wrong_time():
-    """What is wrong with the variable CRAMHY_TIME, or ``None``."""
+def _wrong_variable():
+    """What is wrong with the variable CRAMHY_TIME or CRAMHY_PASSES, or ``None``."""
     from cramhy_runtime.session import time_setting
 
     try:
         time_setting.decide()
+        if os.environ.get("CRAMHY_PASSES"):
+            from cramhy_runtime.languages.commonlisp.compiler.passes import from_environment
+
+            from_environment()
     except ValueError as problem:
         return problem
     return None

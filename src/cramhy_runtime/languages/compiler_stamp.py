@@ -1,4 +1,4 @@
-"""A fingerprint of what compiles: cramhy, its macros, and Python. Code that others have compiled is not used."""
+"""A fingerprint of what compiles: cramhy, its passes, its macros, and Python. Code that others have compiled is not used."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ def stamp():
 
     files = [(folder.name, entry) for folder in _compiling_folders() for entry in sorted(os.scandir(folder), key=lambda entry: entry.name)]
     files = [(folder, entry) for folder, entry in files if entry.name.endswith((".py", ".pyc", ".hy", ".lisp"))]  # .pyc: in a tab
-    python = f"{sys.implementation.cache_tag} {importlib.util.MAGIC_NUMBER.hex()}"
+    passes = os.environ.get("CRAMHY_PASSES", "")
+    python = f"{sys.implementation.cache_tag} {importlib.util.MAGIC_NUMBER.hex()}{passes and f' {passes}.'}"
     states = [(entry.path, entry.stat()) for _, entry in files]
     text = "".join([python, *(f"{path} {status.st_mtime_ns} {status.st_size} " for path, status in states)])
     state = sha256(text.encode(errors="surrogatepass")).hexdigest()

@@ -40,7 +40,8 @@ from .nodes import (
     SetGlobal,
     SetLocal,
 )
-from .open_coding import OPEN_CODED, call_of_next, open_coded
+from .open_coding import call_of_next, open_coded
+from .passes import WRITTEN_OUT
 from .style_checks import CRAMHY, Scrutiny, tuple_of
 
 SPECIAL_FORMS: dict = {}
@@ -141,7 +142,7 @@ class Analyzer(Scrutiny):
                 expansion, expanded = self.expand(form, env)
                 if expanded:
                     return self.form(expansion, env)
-            if head in OPEN_CODED and head not in self.notinline:
+            if head in WRITTEN_OUT and head not in self.notinline:
                 loop = open_coded(form, env.function)
                 if loop is not None:
                     self.positions.inherit(loop, form)

@@ -8,12 +8,15 @@ __all__ = ["NONE", "TRUE"]
 
 
 class Destination:
-    """Where a value goes. ``multiple``: all values are wanted, not only the first. ``raw``: singles come as Python's floats."""
+    """Where a value goes. ``multiple``: all values are wanted, not only the first. ``raw``: singles come as Python's floats.
 
-    __slots__ = ("kind", "name", "multiple", "raw")
+    through: a function (generator, expression) of what is returned, which gives what is returned instead.
+    """
 
-    def __init__(self, kind, name=None, multiple=False, raw=False):
-        self.kind, self.name, self.multiple, self.raw = kind, name, multiple, raw
+    __slots__ = ("kind", "name", "multiple", "raw", "through")
+
+    def __init__(self, kind, name=None, multiple=False, raw=False, through=None):
+        self.kind, self.name, self.multiple, self.raw, self.through = kind, name, multiple, raw, through
 
 
 EFFECT = Destination("effect")
@@ -23,5 +26,3 @@ VALUES = Destination("value", multiple=True)
 FIRST_OF_VALUES = Destination("value", multiple=True)
 """The first value is wanted, and who wants it takes it out of several: so it need not be done before."""
 RETURN = Destination("return", multiple=True)
-RETURN_TUPLE = Destination("return", multiple=True)
-"""The values are returned as a tuple (``several_values.py``)."""

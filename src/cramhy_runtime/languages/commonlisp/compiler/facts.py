@@ -12,6 +12,7 @@ from cramhy_runtime.kernel.typing_names import annotations_of
 from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.packages import sym
 from . import nodes
+from .passes import ON
 from .kinds import ABS, ANY, DIVIDE, MAX, MIN, MINUS, NONE_YET, PLUS, SMOOTH, SQRT, STEPS, TIMES, kind_of, raw
 
 OPERANDS_OF = {PLUS, MINUS, TIMES, DIVIDE, MAX, MIN, ABS, SQRT, *STEPS, *SMOOTH, *map(sym, "< > <= >= = ZEROP PLUSP MINUSP".split())}
@@ -60,7 +61,10 @@ def walk(roots):
 
 
 def study(root):
-    """Note on each variable bound in ``root`` its ``reads``, ``writes`` and ``kind``, and whether it is ``raw``."""
+    """Note on each variable bound in ``root`` its ``reads``, ``writes`` and ``kind``, and whether it is ``raw``.
+
+    Without the pass ``kinds`` all variables are of ``ANY`` kind.
+    """
     bound = []
     for node in walk([root]):
         kind = node.__class__
@@ -86,7 +90,11 @@ def study(root):
         value = variable.values[0]
         if not variable.writes and value.__class__ is nodes.LocalVariable:  # another name
             value.variable.operand_uses += variable.operand_uses
-    find_kinds(bound)
+    if "kinds" in ON:
+        find_kinds(bound)
+    else:
+        for variable in bound:
+            variable.kind = ANY
 
 
 def find_kinds(bound):

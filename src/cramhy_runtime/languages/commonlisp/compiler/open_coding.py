@@ -18,6 +18,7 @@ from ..syntax.lambda_lists import gensym
 from ..loop.loop_support import CAR_OF_CONS, CDR_OF_CONS, COLLECT, COLLECT_NCONC, END_OF_LIST
 from cramhy_runtime.ground.packages import sym
 from .nodes import CallLocal, LocalVariable, Support
+from .passes import ON, WRITTEN_OUT, enter
 
 MAPCAR, MAPC, MAPCAN = map(sym, "MAPCAR MAPC MAPCAN".split())
 LET, LET_STAR, TAGBODY, IF, GO, SETQ, PROGN, ATOM, CONS, FUNCTION, LAMBDA = map(
@@ -27,7 +28,13 @@ MAPPING = {MAPCAR: COLLECT, MAPC: None, MAPCAN: COLLECT_NCONC}
 SEARCHING: dict = {}
 """Symbol of a function of a predicate and a sequence → the function that writes the loop."""
 MAPHASH, REDUCE, INITIAL_VALUE = map(sym, "MAPHASH REDUCE :INITIAL-VALUE".split())
-OPEN_CODED = {*MAPPING, MAPHASH, REDUCE}
+
+
+@enter("mapping")
+def _mapping():
+    WRITTEN_OUT.update({*MAPPING, MAPHASH, REDUCE})
+
+
 SIMPLE = {
     sym(name)
     for name in """CAR CDR CAAR CADR CDDR FIRST SECOND THIRD REST 1+ 1- - NOT NULL EVENP ODDP ZEROP PLUSP MINUSP CONSP ATOM LISTP SYMBOLP
@@ -110,7 +117,7 @@ def searching(name):
 
     def define(function):
         SEARCHING[sym(name)] = function
-        OPEN_CODED.add(sym(name))
+        enter("searching")(lambda: WRITTEN_OUT.add(sym(name)))
         return function
 
     return define
@@ -222,7 +229,7 @@ def next_method(name, body):
     """What the local function ``name`` with the forms ``body`` means: its name, the variables of the next method and of that for other
     arguments, and those of the arguments; ``None`` if it is none of the two functions."""
     form = body.car if isinstance(body, Cons) else None
-    if not isinstance(form, Cons):
+    if not isinstance(form, Cons) or "next-methods" not in ON:
         return None
     if name is CALL and form.car is NEXT_VALUES:
         _, following, changed, _, *given = form

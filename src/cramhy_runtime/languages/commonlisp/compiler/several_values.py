@@ -12,32 +12,8 @@ from types import FunctionType
 
 from cramhy_runtime.ground.data import Symbol, all_values
 from cramhy_runtime.ground.packages import sym
-from . import nodes
-from .facts import walk
 
 VALUES = sym("VALUES")
-LARGEST = 60
-"""The most nodes of a body that is made twice. In a larger one, or one that loops, 120 ns do not count."""
-
-
-def gives_several(node):
-    """Whether the `Lambda` ``node`` is made twice."""
-    if not _ends_in_values(node.body) or node.scope.loops:
-        return False
-    return sum(1 for _ in walk([node.body])) <= LARGEST
-
-
-def _ends_in_values(node):
-    kind = node.__class__
-    if kind is nodes.Call:
-        return node.symbol is VALUES and len(node.arguments) > 1
-    if kind is nodes.If:
-        return _ends_in_values(node.then) or _ends_in_values(node.otherwise)
-    if kind is nodes.Progn:
-        return _ends_in_values(node.forms[-1])
-    if kind is nodes.BlockNode:
-        return any(map(_ends_in_values, (node.body, *node.block.values)))
-    return kind in (nodes.Let, nodes.Functions, nodes.MultipleValueBind) and _ends_in_values(node.body)
 
 
 def beside(function, other):
@@ -94,4 +70,4 @@ def first_of(values, count):
     return (*values, *(None,) * count)[:count]
 
 
-__all__ = ["ValuesCalls", "beside", "first_of", "gives_several", "gives_tuple", "values_calls"]
+__all__ = ["ValuesCalls", "beside", "first_of", "gives_tuple", "values_calls"]

@@ -10,8 +10,9 @@ from ..compiler.analyze import SPECIAL_FORMS, Analyzer
 from ..compiler.constants import Constants, NotStorable
 from ..compiler.deep_blocks import flatten
 from ..compiler.environment import Env, FunctionScope, LocalMacro, SymbolMacro
-from ..compiler.generate import Generator
+from ..compiler.generator.functions import toplevel as generated
 from ..compiler.nodes import Lambda, Parameters
+from ..compiler import openings  # noqa: F401  they offer shorter code
 from ..compiler.python_code import allow_exits_from_cleanup, compiled
 from ..compiler.python_code import module as python_tree
 
@@ -38,11 +39,11 @@ def toplevel_with_macros(analyzer, form, environment):
 __all__ = [
     "Analyzer",
     "Constants",
-    "Generator",
     "NotStorable",
     "allow_exits_from_cleanup",
     "compiled",
     "flatten",
+    "generated",
     "is_special",
     "python_tree",
     "toplevel_with_macros",

@@ -66,7 +66,7 @@ class Unit:
         analyzer.circle_check = self.check_expansion if self.circular else None
         try:
             node = analyzer.toplevel(form, self.names)
-            statements = backend.Generator(self.constants).toplevel(node)
+            statements = backend.generated(self.constants, node)
         except RecursionError:
             too_deep(analyzer.place())
         self.names.clear()
@@ -256,7 +256,7 @@ def compile_lambda(form, environment=None, text=None):
     analyzer.source, analyzer._at = text.source, text.positions.get(id(text.source))
     analyzer.circle_check = unit.check_expansion if unit.circular else None
     node = analyzer.toplevel(form) if environment is None else backend.toplevel_with_macros(analyzer, form, environment)
-    statements = backend.Generator(unit.constants).toplevel(node)
+    statements = backend.generated(unit.constants, node)
     unit.namespace.update(unit.constants.take_objects())
     return one(unit.run(backend.compiled(backend.python_tree(statements), text.filename)))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from cramhy_runtime.ground.floats import LARGEST_SINGLE, SPLITTER
+
 from .. import nodes
 from ..core import expression, word
 from ..kinds import INT, SINGLE, bits, kind_of, never_negative

@@ -12,11 +12,30 @@ from contextlib import contextmanager
 
 from cramhy_runtime.ground.data import Symbol
 from cramhy_runtime.ground.packages import sym
+
 from .. import nodes
+from ..core import expression, word
+from ..destinations import RETURN
 from ..facts import OPERANDS_OF, find_kinds, walk
+from ..kinds import (
+    BOOLEAN,
+    DIVIDE,
+    DOUBLE,
+    FIXNUM_BITS,
+    FLOATS,
+    INFINITE,
+    INT,
+    NONE_YET,
+    SINGLE,
+    SMOOTH,
+    SQRT,
+    THING,
+    kind_of,
+    kind_of_type,
+)
+from ..passes import ENTRIES, opens
+from ..words import AND, FLOAT_CLASS, INT_CLASS, IS, SINGLE_CLASS, class_of, fixnum_test
 from .comparisons import COMPARISONS
-from ..kinds import BOOLEAN, DIVIDE, DOUBLE, FIXNUM_BITS, FLOATS, INFINITE, INT, NONE_YET, SINGLE, SMOOTH, SQRT, THING, kind_of
-from ..kinds import kind_of_type
 
 WHOLE_ARGUMENTS = {sym(name) for name in "MOD REM EVENP ODDP LOGAND LOGIOR LOGXOR ASH GCD LCM ISQRT".split()}
 INDEXED = {sym(name) for name in "AREF SVREF ELT".split()}
@@ -140,3 +159,37 @@ def assumed(node, found):
         for variable, facts in saved:
             for name, value in zip(_FACTS, facts, strict=True):
                 setattr(variable, name, value)
+
+
+@opens("versions", ENTRIES)
+def second_body(generator, node, returning):
+    """Emit the body for arguments of the usual classes, behind a test of them, if that pays."""
+    found = guesses(node) if returning is RETURN else None
+    if not found:
+        return
+    tests = []
+    for variable, kind in found.items():
+        name = word(variable.name)
+        tests.append(expression(IS, class_of(name), {INT: INT_CLASS, SINGLE: SINGLE_CLASS, DOUBLE: FLOAT_CLASS}[kind]))
+        if kind == INT and bounded(node, variable):
+            tests.append(fixnum_test(name))
+
+    def body():
+        for variable in found:
+            if variable.raw:
+                generator.assign(variable.name, generator.call("float", word(variable.name)))
+        generator.gen(node.body, RETURN)
+
+    with assumed(node, found):
+        statements, _ = generator.captured(body)
+    generator.emit(word("when"), tests[0] if len(tests) == 1 else expression(AND, *tests), *statements)
+
+
+@opens("classes", ENTRIES)
+def noted_classes(generator, node, returning):
+    """Note the class of each parameter that is an operand more than once."""
+    for variable in node.parameters.required:
+        if variable.operand_uses > 1 and not (variable.writes or variable.captured or variable.proven):
+            noted = generator.temporary("Lk")
+            generator.assign(noted, class_of(word(variable.name)))
+            generator.noted[variable.name] = word(noted)
