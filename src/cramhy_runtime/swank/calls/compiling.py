@@ -12,7 +12,7 @@ from cramhy_runtime.ground import conditions
 from cramhy_runtime.ground.condition_types import CompileError, StyleWarning
 from cramhy_runtime.ground.dynamic import binding
 from cramhy_runtime.languages.commonlisp.compiler import compilation_unit
-from cramhy_runtime.languages.commonlisp.compiler.generator.functions import DEBUGGED
+from cramhy_runtime.languages.commonlisp.compiler.frame_exits import DEBUGGED
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.systems import program_files
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for, report_text

@@ -3,6 +3,9 @@
 A variable that only ever gets integers needs no test before ``+``: the kind (``kinds.py``) of a variable joins the kinds of all
 forms that give it a value. Variables may depend on each other and on themselves (``(setq s (+ s j))``), so the kinds are the least
 solution: all begin as ``NONE_YET`` and are widened until nothing changes. Parameters are of ``ANY`` kind.
+
+Rows of ``make bench`` without the pass ``kinds``, as times of the row with it: (* i 0.5) in a loop 29, nested dotimes 3.0, sines of
+single-floats 2.8.
 """
 
 from __future__ import annotations

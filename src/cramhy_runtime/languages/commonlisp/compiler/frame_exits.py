@@ -8,6 +8,12 @@ from __future__ import annotations
 
 import sys
 
+from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.ground.dynamic import special
+
+DEBUGGED = special(Symbol("*DEBUGGED*"), False)
+"""Whether functions are compiled so that a debugger can leave their calls. It costs a block around the body."""
+
 
 class FrameExit(BaseException):
     """Unwinds the stack to ``frame``. value: what the call returns; again: the call begins anew instead, with its variables as they are."""
@@ -31,4 +37,4 @@ def can_be_left(frame):
     return "LFrameExit" in frame.f_code.co_names
 
 
-__all__ = ["FrameExit", "can_be_left", "ends_here"]
+__all__ = ["DEBUGGED", "FrameExit", "can_be_left", "ends_here"]

@@ -9,6 +9,9 @@ several lists end with the shortest. What has another shape (a lambda list with 
 A method that uses ``call-next-method`` and ``next-method-p`` has them as local functions, so that it can give them away, too. Where its
 parameters are all required, the definitions of these functions say which variable holds the function of the next method, and which the
 arguments. Then a call of ``call-next-method`` is a call of that function, and no closure is made.
+
+Rows of ``make bench`` without a pass, as times of the row with it. ``mapping``: mapcar 1.17. ``searching``: remove-if, reduce 1.11.
+``next-methods``: call-next-method 3.1.
 """
 
 from __future__ import annotations

@@ -20,6 +20,7 @@ from cramhy_runtime.ground.dynamic import special
 from cramhy_runtime.ground.packages import COMMON_LISP, COMMON_LISP_USER, sym
 from ..reader.form_places import FormPlaces
 from .circular_code import refuse_circular_code
+from .plain_calls import code_of_plain_call
 from ..compiler.compilation_unit import compilation_unit, current, expanding
 from ..syntax.body_parts import body_parts
 from ..syntax.lambda_lists import destructure, gensym
@@ -46,14 +47,15 @@ class Unit:
     """
 
     def __init__(self, filename="<form>", positions=None, namespace=None, stored=False, as_source=False):
-        backend = compiler()
+        from ..compiler.constants import Constants
+
         self.filename = filename
         self.positions = positions if positions is not None else FormPlaces()
         self.namespace = namespace if namespace is not None else new_namespace(filename)
         self.stored = stored
         self.at_once = not stored
         self.situations = EXECUTE if as_source or not stored else SITUATIONS
-        self.constants = backend.Constants()
+        self.constants = Constants()
         self.names = {}
         self.alone, self.source = False, None
         self.circular = False  # whether a circle stands in a call of a user's macro
@@ -107,6 +109,10 @@ class Unit:
         result = None
         self.refuse_circle(form)
         with compilation_unit("form") as notes:
+            code = code_of_plain_call(form, self) if form.__class__ is Cons else None
+            if code is not None:
+                notes.finish()
+                return self.run(code)
             for part in self.toplevel_parts(form):
                 code = self.compile(part)
                 if self.alone:  # nothing that follows in the form can define what this part uses

@@ -1,4 +1,7 @@
-"""Comparisons of two numbers: Python's operators behind a test that both are of classes whose values Python compares as Lisp does."""
+"""Comparisons of two numbers: Python's operators behind a test that both are of classes whose values Python compares as Lisp does.
+
+Rows of ``make bench`` without it, as times of the row with it: Collatz 5.6, fib 5.2.
+"""
 
 from __future__ import annotations
 

@@ -2,6 +2,9 @@
 
 A simple vector is a Python list or a `TypedVector`, and an element of it is one subscript behind the tests of the class and the bounds.
 Of a simple array with two axes the element is found by its row and its column. Other arrays, and all errors, are the functions' business.
+
+Rows of ``make bench`` without it, as times of the row with it: matrix multiplication by
+aref 17.5, the sieve 7.7.
 """
 
 from __future__ import annotations

@@ -2,6 +2,9 @@
 
 Each is a function of Python's ``math``, or an operator, behind a test that the argument is of a class and in a range where both mean
 the same; what the test refuses is called as it stands.
+
+Rows of ``make bench`` without it, as times of the row with it: sines of double-floats 12,
+a pendulum, by sin 7.4.
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""Sums, differences, products and quotients: the openings of ``+ - * / 1+ 1-``."""
+"""Sums, differences, products and quotients: the openings of ``+ - * / 1+ 1-``.
+
+Rows of ``make bench`` without it, as times of the row with it: (* i 0.5) in a loop 37,
+double-float arithmetic in a loop 27, Mandelbrot 17.
+"""
 
 from __future__ import annotations
 

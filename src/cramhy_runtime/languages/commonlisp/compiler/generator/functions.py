@@ -6,21 +6,18 @@ use keywords. A variable that must be caught anew in each turn of a loop comes a
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, Symbol
-from cramhy_runtime.ground.dynamic import special
+from cramhy_runtime.ground.data import Cons
 from cramhy_runtime.ground.keyword_calls import GIVEN, name_of_key
 from cramhy_runtime.ground.packages import symbol_name
 from cramhy_runtime.ground.python_names import python_name
 
 from .. import nodes
+from ..frame_exits import DEBUGGED
 from ..core import NONE, TRUE, List, Tuple, expression, word
 from ..destinations import RETURN, Destination
 from ..facts import study
 from ..passes import ENTRIES, FUNCTIONS
 from .output import Generator, generates
-
-DEBUGGED = special(Symbol("*DEBUGGED*"), False)
-"""Whether functions are compiled so that a debugger can leave their calls. It costs a block around the body."""
 
 
 @generates(nodes.Lambda)

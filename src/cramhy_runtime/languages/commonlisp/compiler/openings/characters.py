@@ -1,4 +1,7 @@
-"""Characters: ``char=`` and ``find`` in a constant text."""
+"""Characters: ``char=`` and ``find`` in a constant text.
+
+Rows of ``make bench`` without it, as times of the row with it: characters of a text 4.7.
+"""
 
 from __future__ import annotations
 

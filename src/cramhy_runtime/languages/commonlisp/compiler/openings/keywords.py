@@ -2,6 +2,9 @@
 
 A standard function with keywords is a Python function with keyword-only parameters behind one that sorts keyword objects
 (`ground.keyword_calls`). A call that names its keywords is sorted here, once, and calls the Python function itself.
+
+Rows of ``make bench`` without a pass, as times of the row with it. ``keywords``: structures 3.4, calls with &key 1.6.
+``standard-keywords``: no row has such a call in its loop; a loop of ``find``, ``position`` and ``member`` with keywords 1.6.
 """
 
 from __future__ import annotations

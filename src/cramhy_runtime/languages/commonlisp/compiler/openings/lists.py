@@ -1,4 +1,8 @@
-"""Lists: ``car``, ``cdr``, ``cons`` and ``list`` in place, and cells that are made without a call of Python's constructor."""
+"""Lists: ``car``, ``cdr``, ``cons`` and ``list`` in place, and cells that are made without a call of Python's constructor.
+
+Rows of ``make bench`` without a pass, as times of the row with it. ``lists``: destructuring-bind 1.95, a call of a generic function 1.43,
+call-next-method 1.33. ``growth``: mapcar 1.54, loop collect when 1.42.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Loops: a ``tagbody`` that is a loop (``loop_shapes.py``) becomes Python's loop, and one that counts Python's ``for``."""
+"""Loops: a ``tagbody`` that is a loop (``loop_shapes.py``) becomes Python's loop, and one that counts Python's ``for``.
+
+Rows of ``make bench`` without a pass, as times of the row with it. ``loops``: characters of a text 16.7, three-argument + 1.6, nested
+dotimes 1.5. ``counting``: characters of a text 16.3, three-argument + 1.5, a special variable 1.3.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Variables: ``incf`` of one changes it in place, and a variable that only has another's value has no name of its own."""
+"""Variables: ``incf`` of one changes it in place, and a variable that only has another's value has no name of its own.
+
+Rows of ``make bench`` without a pass, as times of the row with it. ``places``: matrices of single-floats 1.58, of double-floats 1.21.
+``copies``: remove-if, reduce 1.18, a hash table filled and read 1.09.
+"""
 
 from __future__ import annotations
 

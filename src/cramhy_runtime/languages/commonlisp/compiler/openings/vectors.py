@@ -1,4 +1,7 @@
-"""``vector-push`` and ``vector-push-extend`` where the vector has room."""
+"""``vector-push`` and ``vector-push-extend`` where the vector has room.
+
+Rows of ``make bench`` without it, as times of the row with it: vector-push-extend 1.3.
+"""
 
 from __future__ import annotations
 
