@@ -13,7 +13,7 @@ from __future__ import annotations
 import os
 
 NAMES = frozenset(
-    """arithmetic characters checks classes comparisons copies counting elements errors format generic-calls growth hash-tables
+    """arithmetic characters checks comparisons copies counting elements errors format generic-calls growth hash-tables
 instances keywords kinds lists loops mapping next-methods number-functions places predicates searching several-values slots
 standard-keywords vector-push versions""".split()
 )

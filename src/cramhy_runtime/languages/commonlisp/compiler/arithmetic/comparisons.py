@@ -11,8 +11,8 @@ from cramhy_runtime.ground.packages import sym
 from ..core import NONE, expression, word
 from ..kinds import INT, MACHINE, NUMBER, THING, exactly
 from ..passes import opens_test
-from ..words import AND, CLASSES, FLOAT_CLASS, IF, INT_CLASS, IS, IS_NOT, OR, SETX, SINGLE_CLASS
-from .operations import Operation, class_noted, generic_call, noted_class, operands_of, settle
+from ..words import AND, CLASSES, FLOAT_CLASS, IF, INT_CLASS, IS, IS_NOT, OR, SETX, SINGLE_CLASS, class_of
+from .operations import Operation, generic_call, noted_class, operands_of, settle
 
 COMPARISONS = {sym(name): word(name) for name in ("<", ">", "<=", ">=", "=")}
 
@@ -48,7 +48,7 @@ def comparison_test(generator, node):
 
 def real_test(generator, operand):
     """A test that an operand is of a class whose values Python compares as Lisp does."""
-    noted, again = noted_class(generator, operand.first)
+    noted, again = noted_class(operand.first)
     classes = [INT_CLASS, FLOAT_CLASS] if operand.kind & INT or not operand.raw else [FLOAT_CLASS]
     if not operand.raw:
         classes.append(SINGLE_CLASS)
@@ -62,8 +62,8 @@ def same_class(generator, one, other):
         return real_test(generator, one)
     second = other.first
     if second.__class__ is Symbol:
-        first, second = expression(SETX, CLASSES, class_noted(generator, one.first)), class_noted(generator, second)
+        first, second = expression(SETX, CLASSES, class_of(one.first)), class_of(second)
     else:
-        first, second = class_noted(generator, one.first), expression(SETX, CLASSES, class_noted(generator, second))
+        first, second = class_of(one.first), expression(SETX, CLASSES, class_of(second))
     classes = (INT_CLASS, FLOAT_CLASS, SINGLE_CLASS)
     return expression(AND, expression(IS, first, second), expression(OR, *(expression(IS, CLASSES, each) for each in classes)))

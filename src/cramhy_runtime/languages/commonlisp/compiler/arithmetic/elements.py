@@ -17,8 +17,8 @@ from ..core import TRUE, expression, word
 from ..generator.output import SINGLE_VALUE
 from ..kinds import INT, exactly, never_negative
 from ..passes import opens_call, opens_setter
-from ..words import AND, DOT, IF, INT_CLASS, IS, OR
-from .operations import class_noted, generic_call, operands_of, settle
+from ..words import AND, DOT, IF, INT_CLASS, IS, OR, class_of
+from .operations import generic_call, operands_of, settle
 
 AREF, SVREF, ELT, LENGTH = map(sym, "AREF SVREF ELT LENGTH".split())
 ELEMENTS = {AREF, SVREF, ELT}
@@ -45,7 +45,7 @@ def element_read(generator, node, symbol, arguments):
         slow = generator.positioned(
             expression(word(generator.constants.name("function", symbol)), generator.call("one", vector.later)), node
         )
-        return expression(IF, expression(IS, class_noted(generator, vector.first), VECTOR), generator.call("len", vector.later), slow)
+        return expression(IF, expression(IS, class_of(vector.first), VECTOR), generator.call("len", vector.later), slow)
     if symbol not in ELEMENTS or len(arguments) != 2 and (len(arguments) != 3 or symbol is not AREF):
         return None
     operands = operands_of(generator, arguments)
@@ -56,7 +56,7 @@ def element_read(generator, node, symbol, arguments):
     if tests is None:
         return slow
     if symbol is not SVREF and len(operands) == 2:
-        typed = expression(IS, class_noted(generator, operands[0].later), TYPED_VECTOR)
+        typed = expression(IS, class_of(operands[0].later), TYPED_VECTOR)
         tests[0] = expression(OR, tests[0], typed)
     return expression(IF, expression(AND, *tests), place, slow)
 
@@ -82,13 +82,13 @@ def element_place(generator, operands):
     ):
         return None, None
     matrix = len(subscripts) == 2
-    tests = [expression(IS, class_noted(generator, array.later), MATRIX if matrix else VECTOR)]
+    tests = [expression(IS, class_of(array.later), MATRIX if matrix else VECTOR)]
     ends = [expression(DOT, array.later, ROWS), expression(DOT, array.later, COLUMNS)]
     if not matrix:
         ends = [generator.call("len", array.later)]
     for subscript, end in zip(subscripts, ends):
         if not exactly(subscript.kind, INT):
-            tests.append(expression(IS, class_noted(generator, subscript.later), INT_CLASS))
+            tests.append(expression(IS, class_of(subscript.later), INT_CLASS))
         below = [] if never_negative(subscript.node) else [-1]
         tests.append(expression(LESS, *below, subscript.later, end))
     if not matrix:

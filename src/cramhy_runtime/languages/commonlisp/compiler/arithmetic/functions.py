@@ -40,9 +40,9 @@ from ..kinds import (
     raw,
 )
 from ..passes import opens_call
-from ..words import AND, FLOAT_CLASS, IF, INT_CLASS, IS, OR, SINGLE_CLASS
+from ..words import AND, FLOAT_CLASS, IF, INT_CLASS, IS, OR, SINGLE_CLASS, class_of
 from .comparisons import real_test, same_class
-from .operations import LARGEST, class_noted, generic_call, named_arguments, nested, noted_class, operands_of, settle
+from .operations import LARGEST, generic_call, named_arguments, nested, noted_class, operands_of, settle
 from .single_rounding import rounded
 from .sums import MOST_TERMS
 
@@ -128,13 +128,13 @@ def smooth_function(generator, node, symbol, arguments):
         if operand.kind & INT:
             settle(generator, [operand])
             return slow, is_raw
-        noted, _ = noted_class(generator, operand.first)
+        noted, _ = noted_class(operand.first)
         tests = [expression(IS, noted, FLOAT_CLASS), inside(operand.later)]
         model = rounded(model) if is_raw else generator.call("new_single", rounded(model))
         return behind_tests(tests, model, slow), is_raw
     if is_raw:  # the other two answers are not raw here
         slow = function_called(generator, node, symbol, [operand])
-    noted, again = noted_class(generator, operand.first)
+    noted, again = noted_class(operand.first)
     test = inside(operand.later)
     single = generator.call("new_single", rounded(model))
     if test is None:
@@ -142,7 +142,7 @@ def smooth_function(generator, node, symbol, arguments):
         return expression(IF, expression(IS, noted, FLOAT_CLASS), model, both), False
     # the class once more after the range, which must not be asked of what is no number
     one = expression(AND, expression(IS, noted, FLOAT_CLASS), test)
-    other = expression(AND, expression(IS, class_noted(generator, operand.later), SINGLE_CLASS), test)
+    other = expression(AND, expression(IS, class_of(operand.later), SINGLE_CLASS), test)
     return expression(IF, one, model, expression(IF, other, single, slow)), False
 
 
@@ -160,7 +160,7 @@ def angle_of(generator, node, symbol, arguments):
     slow = function_called(generator, node, symbol, operands)
     if one.raw or other.raw:
         return (generator.unwrapped(slow, 0), True) if raw(kind) else (slow, False)
-    test = expression(IS, class_noted(generator, one.later), class_noted(generator, other.later), FLOAT_CLASS)
+    test = expression(IS, class_of(one.later), class_of(other.later), FLOAT_CLASS)
     return expression(IF, test, model, slow), False
 
 
@@ -197,14 +197,14 @@ def changed_sign(generator, node, symbol, arguments):
     if operand.raw:
         settle(generator, [operand])
         return (generator.unwrapped(slow, 0), True) if raw(kind_of(node)) else (slow, False)
-    noted, again = noted_class(generator, operand.first)
+    noted, again = noted_class(operand.first)
     test = expression(OR, expression(IS, noted, INT_CLASS), expression(IS, again, FLOAT_CLASS))
     return expression(IF, test, change(operand.later), slow), False
 
 
 def integers_test(generator, operands):
     """A test that all ``operands``, which are settled, are integers; ``None`` if they surely are."""
-    unsure = [class_noted(generator, operand.later) for operand in operands if not exactly(operand.kind, INT)]
+    unsure = [class_of(operand.later) for operand in operands if not exactly(operand.kind, INT)]
     return expression(IS, *unsure, INT_CLASS) if unsure else None
 
 
@@ -257,7 +257,7 @@ def whole_part(generator, node, symbol, arguments):
         quotient = expression(WHOLE_QUOTIENT, one.later, rest[0].later)
         return behind_tests([integers_test(generator, operands), rest[0].later], quotient, slow), False
     if not rest and not one.raw and one.kind & FLOATS:
-        of_float = [expression(IS, class_noted(generator, one.later), each) for each in (FLOAT_CLASS, SINGLE_CLASS)]
+        of_float = [expression(IS, class_of(one.later), each) for each in (FLOAT_CLASS, SINGLE_CLASS)]
         tests = [expression(OR, *of_float), _finite(one.later)]
         return behind_tests(tests, generator.call(IN_PYTHON[symbol], one.later), slow), False
     return slow, False

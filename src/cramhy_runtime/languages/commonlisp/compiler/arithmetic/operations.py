@@ -111,16 +111,9 @@ def bare(symbol, one, other, size, other_size):
     return combined(one, other)
 
 
-def class_noted(generator, model):
-    """The class of the value of ``model``; that of a parameter that is often an operand was noted on entry."""
-    noted = generator.noted.get(model) if model.__class__ is Symbol else None
-    return class_of(model) if noted is None else noted
-
-
-def noted_class(generator, model):
+def noted_class(model):
     """(first use, later use) of the class of the value of ``model``."""
-    known = class_noted(generator, model)
-    return (known, known) if known.__class__ is Symbol else (expression(SETX, CLASSES, known), CLASSES)
+    return expression(SETX, CLASSES, class_of(model)), CLASSES
 
 
 def operands_of(generator, arguments, all_values=False):
@@ -322,8 +315,8 @@ def worlds_of(generator, operation, operands, unknown, is_raw):
 
 def chosen_world(generator, operation, unknown, worlds, slow, is_raw):
     """The bare expression of the first of ``worlds`` that the classes of ``unknown`` make, or ``slow``."""
-    tests = [class_noted(generator, operand.first) for operand in unknown]
-    again = [class_noted(generator, operand.later) for operand in unknown]
+    tests = [class_of(operand.first) for operand in unknown]
+    again = [class_of(operand.later) for operand in unknown]
     both = [assumed for assumed, _ in worlds[:2]] == [INT, DOUBLE]  # in this order: see `worlds`
     checked = [needs_check(generator, operation, kind) for _, kind in worlds]
     if both and not any(checked[:2]):
@@ -474,7 +467,7 @@ def sum_of_numbers(generator, operation, operands):
             slow = generator.positioned(expression(ARITHMETIC[operation.symbol], one.later, other.first), operation.node)
     else:
         return None
-    noted, again = noted_class(generator, tested.first)
+    noted, again = noted_class(tested.first)
     test = expression(OR, expression(IS, noted, INT_CLASS), expression(IS, again, FLOAT_CLASS))
     return expression(IF, test, expression(OPERATORS[operation.symbol], *models), slow)
 

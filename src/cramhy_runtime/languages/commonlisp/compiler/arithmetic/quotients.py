@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from ..core import expression, word
 from ..kinds import DIVIDE, DOUBLE, FLOATS, INT, NUMBER, SINGLE, THING, exactly, raw
-from ..words import AND, IF, INT_CLASS, IS
-from .operations import ARITHMETIC, FIXNUM, Operand, Operation, bare_model, class_noted, generic_call, kind_in, settle, world_test
+from ..words import AND, IF, INT_CLASS, IS, class_of
+from .operations import ARITHMETIC, FIXNUM, Operand, Operation, bare_model, generic_call, kind_in, settle, world_test
 
 OVER, WHOLE_OVER, REST, NOT = map(word, "/ // % not".split())
 
@@ -46,7 +46,7 @@ def divided(generator, operation, operands, is_raw):
     for assumed in reversed(worlds):
         kind = kind_in(generator, operation, assumed)
         if kind and raw(kind) >= is_raw:
-            test = world_test(assumed, [class_noted(generator, operand.later) for operand in unknown], unknown)
+            test = world_test(assumed, [class_of(operand.later) for operand in unknown], unknown)
             model = bare_model(generator, operation, assumed, None)
             if raw(kind) and not is_raw:
                 model = generator.wrapped(model, kind)
@@ -63,7 +63,7 @@ def nonzero(tests, divisor):
 
 def whole_quotient(generator, one, other, unknown, slow):
     """The quotient of two integers, of which ``unknown`` are yet to be tested, if it is whole."""
-    tests = [expression(IS, *(class_noted(generator, operand.later) for operand in unknown), INT_CLASS)] if unknown else []
+    tests = [expression(IS, *(class_of(operand.later) for operand in unknown), INT_CLASS)] if unknown else []
     if other.later.__class__ is not int:
         tests.append(other.later)
     tests.append(expression(NOT, expression(REST, one.later, other.later)))

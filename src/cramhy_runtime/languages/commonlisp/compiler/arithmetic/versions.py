@@ -186,13 +186,3 @@ def second_body(generator, node, returning):
     with assumed(node, found):
         statements, _ = generator.captured(body)
     generator.emit(word("when"), tests[0] if len(tests) == 1 else expression(AND, *tests), *statements)
-
-
-@opens("classes", ENTRIES)
-def noted_classes(generator, node, returning):
-    """Note the class of each parameter that is an operand more than once."""
-    for variable in node.parameters.required:
-        if variable.operand_uses > 1 and not (variable.writes or variable.captured or variable.proven):
-            noted = generator.temporary("Lk")
-            generator.assign(noted, class_of(word(variable.name)))
-            generator.noted[variable.name] = word(noted)

@@ -45,12 +45,10 @@ def definition(generator, node, name, given, returning):
     generator.out, generator.frames, generator.scope = [], [], node.scope
     outer_before, generator.before = generator.before, []
     parameters = python_parameters(generator, node)
-    outer_noted, generator.noted = generator.noted, {}
     for opening in ENTRIES:
         opening(generator, node, returning)
     before, generator.before = generator.before, outer_before
     generator.gen(node.body, returning)
-    generator.noted = outer_noted
     statements = generator.out
     scope = node.scope
     generator.out, generator.frames, generator.scope = saved

@@ -61,7 +61,6 @@ class Generator:
         self.scope = None
         self.destinations = {}
         self.jump_codes = {}
-        self.noted = {}  # what openings note of the function being generated
         self.cases = []  # the ``handler-case`` forms around in which a function of `JUMPS` is called, see `catching_statements`
         self.before = []  # statements that must stand before the definition of the function being generated
         self.hoisted = []  # (name, node) of the values that are computed when the code is loaded

@@ -63,7 +63,7 @@ def checked_value(generator, node, destination):
     if not classes:  # it is of another kind for sure
         settle(generator, [operand])
         return generator.finish(slow, node, destination, raw=operand.raw)
-    noted, again = noted_class(generator, operand.first)
+    noted, again = noted_class(operand.first)
     tests = [expression(IS, again if index else noted, each) for index, each in enumerate(classes)]
     test = tests[0] if len(tests) == 1 else expression(OR, *tests)
     if not fits:

@@ -10,12 +10,12 @@ from cramhy_runtime.ground.packages import sym
 
 from .. import nodes
 from ..arithmetic.elements import GET, as_argument, as_arguments
-from ..arithmetic.operations import class_noted, operands_of, settle
+from ..arithmetic.operations import operands_of, settle
 from ..core import TRUE, Tuple, expression, word
 from ..destinations import FIRST_OF_VALUES
 from ..generator.output import SINGLE_VALUE
 from ..passes import ONE_VALUE, VALUES, enter, opens, opens_call, opens_setter
-from ..words import AND, DOT, IF, IS
+from ..words import AND, DOT, IF, IS, class_of
 
 GETHASH = sym("GETHASH")
 IN, SETV = map(word, "in setv".split())
@@ -58,8 +58,8 @@ def entry_test(generator, operands):
     """(a test whether the dictionary behind a table has the value under the key itself, that dictionary). ``operands`` are the key, the
     table, and perhaps a default."""
     key, table, *_ = operands
-    known = expression(IS, class_noted(generator, table.later), word("Lhash_table"))
-    plain = expression(IN, class_noted(generator, key.later), expression(DOT, table.later, word("plain")))
+    known = expression(IS, class_of(table.later), word("Lhash_table"))
+    plain = expression(IN, class_of(key.later), expression(DOT, table.later, word("plain")))
     return expression(AND, known, plain), expression(DOT, table.later, word("entries"))
 
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 from cramhy_runtime.ground.packages import sym
 
 from .. import nodes
-from ..arithmetic.operations import class_noted, named_value
+from ..arithmetic.operations import named_value
 from ..core import NONE, expression, word
 from ..generator.output import GENERATORS, SINGLE_VALUE
 from ..passes import opens_call, opens_node
-from ..words import DOT, IF, IS
+from ..words import DOT, IF, IS, class_of
 
 CAR, CDR, FIRST, REST, CONS, LIST = map(sym, "CAR CDR FIRST REST CONS LIST".split())
 PARTS = {CAR: "car", FIRST: "car", CDR: "cdr", REST: "cdr"}
@@ -28,7 +28,7 @@ def _part(generator, node, destination):
     model, name = named_value(generator, node.arguments[0])
     slow = generator.positioned(expression(word(generator.constants.name("function", node.symbol)), name), node)
     part = expression(DOT, name, word(PARTS[node.symbol]))
-    test = expression(IS, class_noted(generator, model), word("LCons"))
+    test = expression(IS, class_of(model), word("LCons"))
     return (generator.finish(expression(IF, test, part, slow), node, destination),)
 
 

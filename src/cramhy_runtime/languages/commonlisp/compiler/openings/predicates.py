@@ -10,7 +10,7 @@ from cramhy_runtime.ground.packages import sym
 
 from .. import nodes
 from ..arithmetic.comparisons import COMPARISONS, real_test
-from ..arithmetic.operations import class_noted, generic_call, named_value, operands_of
+from ..arithmetic.operations import generic_call, named_value, operands_of
 from ..core import NONE, expression, word
 from ..kinds import INT, MACHINE, exactly, kind_of
 from ..passes import opens_test
@@ -37,7 +37,7 @@ def _property(generator, node):
 def _consp(generator, node):
     if len(node.arguments) != 1:
         return None
-    model = class_noted(generator, generator.value(node.arguments[0]))
+    model = class_of(generator.value(node.arguments[0]))
     return expression(IS if node.symbol is CONSP else IS_NOT, model, word("LCons"))
 
 
@@ -71,7 +71,7 @@ def property_test(generator, node, symbol, arguments):
     slow = expression(
         IS_NOT, generator.positioned(expression(function, generator.call("one", generic_call(generator, operand))), node), NONE
     )
-    quick = real_test(generator, operand) if symbol in SIGNS else expression(IS, class_noted(generator, operand.first), INT_CLASS)
+    quick = real_test(generator, operand) if symbol in SIGNS else expression(IS, class_of(operand.first), INT_CLASS)
     return expression(IF, quick, test(operand.later), slow)
 
 
@@ -88,7 +88,7 @@ def sameness_test(generator, arguments):
             first, later = named_value(generator, arguments[1 - index])
             if kind_of(arguments[1 - index]) == INT:
                 return expression(word("="), first, value)
-            return expression(AND, expression(IS, class_noted(generator, first), INT_CLASS), expression(word("="), later, value))
+            return expression(AND, expression(IS, class_of(first), INT_CLASS), expression(word("="), later, value))
         if value is True or value.__class__.__name__ in ("Symbol", "Keyword", "Character"):
             return expression(IS, generator.value(arguments[1 - index]), generator.literal(value))
     return None

@@ -8,7 +8,7 @@ from __future__ import annotations
 from .. import core, nodes
 from ..arithmetic.elements import as_arguments
 from ..arithmetic.functions import FLOOR, TRUNCATE
-from ..arithmetic.operations import class_noted, known_function, named_value, operands_of, settle
+from ..arithmetic.operations import known_function, named_value, operands_of, settle
 from ..core import NONE, TRUE, Tuple, expression, word
 from ..facts import walk
 from ..destinations import RETURN, Destination
@@ -130,7 +130,7 @@ def quotient_and_rest(generator, node, symbol, arguments):
         return None
     operands = number, divisor = operands_of(generator, arguments)
     settle(generator, operands)
-    tests = [expression(IS, class_noted(generator, each.later), INT_CLASS) for each in operands if not exactly(each.kind, INT)]
+    tests = [expression(IS, class_of(each.later), INT_CLASS) for each in operands if not exactly(each.kind, INT)]
     certain = _is_number(divisor.node) and (symbol is FLOOR or divisor.node.value > 0)
     if symbol is TRUNCATE:
         tests.append(expression(word("<="), 0, number.later))
