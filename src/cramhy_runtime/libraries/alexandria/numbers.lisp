@@ -11,7 +11,7 @@
 
 (defun lerp (v a b)
   "The number that is V of the way from A to B."
-  (+ a (* v (- b a))))
+  (+ (* (- 1.0 v) a) (* v b)))  ; exactly B where V is 1, which A plus a part of the difference is not
 
 (defun gaussian-random (&optional min max)
   "Two normally distributed random double-floats, between MIN and MAX if they are given."

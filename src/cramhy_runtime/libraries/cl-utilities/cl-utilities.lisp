@@ -6,7 +6,8 @@
   (:import-from #:alexandria #:with-unique-names #:with-gensyms #:once-only #:compose #:copy-array)
   (:export #:split-sequence #:split-sequence-if #:split-sequence-if-not #:partition #:partition-if #:partition-if-not
            #:extremum #:no-extremum #:extremum-fastkey #:extrema #:n-most-extreme #:n-most-extreme-not-enough-elements
-           #:read-delimited #:expt-mod #:collecting #:collect #:with-collectors #:with-unique-names #:with-gensyms #:once-only
+           #:read-delimited #:read-delimited-bounds-error #:read-delimited-bounds-error-start
+           #:read-delimited-bounds-error-end #:read-delimited-bounds-error-sequence #:expt-mod #:collecting #:collect #:with-collectors #:with-unique-names #:with-gensyms #:once-only
            #:rotate-byte #:copy-array #:compose))
 
 (in-package #:cl-utilities)
@@ -89,6 +90,8 @@
 
 (defun expt-mod (n exponent modulus)
   "N to the power EXPONENT, modulo MODULUS."
+  (unless (and (integerp n) (integerp exponent) (integerp modulus))
+    (return-from expt-mod (mod (expt n exponent) modulus)))
   (loop with result = 1
         for square = n then (mod (* square square) modulus)
         for rest = exponent then (ash rest -1)
@@ -104,11 +107,34 @@
         (let ((count (mod count size)) (field (ldb bytespec integer)))
           (dpb (logior (ldb (byte size 0) (ash field count)) (ash field (- count size))) bytespec integer)))))
 
+(define-condition read-delimited-bounds-error (error)
+  ((start :initarg :start :reader read-delimited-bounds-error-start)
+   (end :initarg :end :reader read-delimited-bounds-error-end)
+   (sequence :initarg :sequence :reader read-delimited-bounds-error-sequence))
+  (:report (lambda (condition stream)
+             (format stream "The bounding indices ~S and ~S are bad for a sequence of length ~S"
+                     (read-delimited-bounds-error-start condition) (read-delimited-bounds-error-end condition)
+                     (length (read-delimited-bounds-error-sequence condition))))))
+
+(defun bounds (sequence start end)
+  "START and END, the length of SEQUENCE where they are left out; an error with a remedy where they are no bounds of SEQUENCE."
+  (let* ((length (length sequence)) (first (or start 0)) (last (or end length)))
+    (flet ((in-place-of (remedy first last)
+             (restart-case (error 'read-delimited-bounds-error :start start :end end :sequence sequence)
+               (continue () :report (lambda (stream) (write-string remedy stream)) (bounds sequence first last)))))
+      (cond ((not (<= 0 first length)) (in-place-of "Use default for START instead" 0 last))
+            ((not (<= 0 last length)) (in-place-of "Use default for END instead" first length))
+            ((< last first) (in-place-of "Switch start and end" last first))
+            (t (values first last))))))
+
 (defun read-delimited (sequence stream &key (start 0) end (delimiter #\Newline) (test #'eql) (key #'identity))
   "Read elements of STREAM into SEQUENCE up to DELIMITER. The index after the last one, and whether the delimiter was read."
-  (loop for index from start below (or end (length sequence))
-        for element = (read-char stream nil)
-        do (cond ((null element) (return (values index nil)))
-                 ((funcall test (funcall key element) delimiter) (return (values index t)))
-                 (t (setf (elt sequence index) element)))
-        finally (return (values index nil))))
+  (check-type start (or integer null))
+  (check-type end (or integer null))
+  (multiple-value-bind (start end) (bounds sequence start end)
+    (loop for index from start below end
+          for element = (read-char stream nil)
+          do (cond ((null element) (return (values index nil)))
+                   ((funcall test (funcall key element) delimiter) (return (values index t)))
+                   (t (setf (elt sequence index) element)))
+          finally (return (values end nil)))))

@@ -37,13 +37,18 @@
                    (if at (setf left (1+ at)) (return (values (nreverse parts) end)))
                 finally (return (values (nreverse parts) left)))))))
 
+(define-condition both-tests-given (program-error) ()
+  (:report "SPLIT-SEQUENCE: :TEST and :TEST-NOT cannot both be given."))
+
 (defun split-sequence (delimiter sequence &key (start 0) (end nil) (from-end nil) (count nil) (remove-empty-subseqs nil)
-                                            (test #'eql test-p) (test-not nil test-not-p) (key #'identity))
+                                            (test #'eql test-p) (test-not #'eql test-not-p) (key #'identity))
   "The parts of SEQUENCE between elements equal to DELIMITER, and the index at which COUNT ended it."
   (when (and test-p test-not-p)
-    (error "SPLIT-SEQUENCE: :TEST and :TEST-NOT cannot both be given."))
+    (error 'both-tests-given))
+  (check-type test (and (or function symbol) (not null)))
+  (check-type test-not (and (or function symbol) (not null)))
   (split sequence
-         (if test-not
+         (if test-not-p
              (lambda (element) (not (funcall test-not delimiter (funcall key element))))
              (lambda (element) (funcall test delimiter (funcall key element))))
          start end from-end count remove-empty-subseqs))
