@@ -7,8 +7,8 @@ their `Loader` asks the keeper: code that it has is used if its record holds. El
 what its macros ask of the world.
 
 ``hy FILE`` looks into ``__pycache__`` before anybody has loaded cramhy, and compiles a file that is not there. So in Python's file the code
-of a text that our macros have seen (`seen`) is a call of `run`, which asks the keeper and compiles again what that does not have. Two
-functions bring it there: `compiled_apart`, where ``(require cramhy ...)`` is the first form, and `guard`, where others stand before it.
+of a text that our macros have seen (`seen`) is a call of `run`, which asks the keeper and compiles again what that does not have. What Hy
+compiles then calls `guard` when it begins to run, which brings it there (`loading`).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from importlib import _bootstrap_external
 from importlib.machinery import PathFinder, SourceFileLoader
 from pathlib import Path
 from types import CodeType, ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import hy
 import hy.compiler
@@ -39,6 +39,9 @@ from cramhy_runtime.storage.dependency_tracing import Trace, is_library, tracing
 
 from .compiler_stamp import stamp
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
 _CALL = "__import__('cramhy').kept_code.run(globals(), {filename!r}, {code!r})"
 _BEGINS_WITH_US = re.compile(rb'\A(?:#!.*\n)?(?:\s|;.*\n|"[^"]*"|\(import (?:cramhy|hy)\))*\(require cramhy\b')
 """A text whose first form requires cramhy: nothing of it was compiled before that."""
@@ -49,8 +52,8 @@ _OURS = os.path.join(os.path.abspath(os.path.join(__file__, "..", "..", "..")), 
 _filenames: set[str] = set()
 """The files that our macros have seen since Python began."""
 
-_compiled: dict[str, CodeType] = {}
-"""Path of each file that `compiled_apart` has compiled, and that did not run yet → its code."""
+_loading: dict[str, Trace | None] = {}
+"""Path of each file that `loading` has compiled, and that did not run yet → what its macros ask, or ``None``: it is compiled again then."""
 
 
 def seen(filename: str) -> None:
@@ -177,39 +180,51 @@ def _keep(trace, path, source, code):
 # ------------------------------------------------------------------------------------------------------------ Python's files
 
 
-def compiled_apart(compiler: Any, filename: str) -> list[ast.stmt] | None:
-    """Python's statements that run the whole file, instead of the rest of it that Hy would compile now; ``None`` if it is not to be so.
+@contextlib.contextmanager
+def loading(compiler: Any, filename: str) -> Iterator[tuple[Any, list[ast.stmt]]]:
+    """In the block the rest of the file of that name is compiled: the compiler to take, and Python's statements that come before it.
 
-    It is so where a loader of Python's or Hy's compiles a file whose first form requires cramhy. Then our own loader compiles it.
+    compiler: the one at work. If a loader of Python's or Hy's has called it, as ``hy FILE`` does, the statements call `guard`, and where
+    nothing stands before ``(require cramhy ...)`` the rest is compiled as by our own loader.
     """
-    if (
-        isinstance(compiler, Compiler)
-        or getattr(compiler.module, "__file__", None) != filename
-        or sys.dont_write_bytecode
-        or dependency_tracing.current() is not None
-    ):
-        return None
+    if isinstance(compiler, Compiler) or getattr(compiler.module, "__file__", None) != filename or sys.dont_write_bytecode:
+        yield compiler, []
+        return
     path = os.path.abspath(filename)
-    with contextlib.suppress(OSError):
-        source = Path(filename).read_bytes()
-        if not is_library(path) and _BEGINS_WITH_US.match(source):
-            seen(filename)
-            code = _compiled[path] = _code(Loader(compiler.module.__name__, filename), path, source)
-            return ast.parse(_CALL.format(filename=filename, code=marshal.dumps(code))).body
-    return None
+    guards = ast.parse(f"__import__('cramhy').kept_code.guard({filename!r})").body
+    _loading[path] = None
+    if dependency_tracing.current() is not None or not _begins_with_us(path):
+        yield compiler, guards
+        return
+    ours = Compiler(compiler.module, filename, compiler.source, compiler.extra_macros)
+    ours.anon_var_count, ours.local_state_stack = compiler.anon_var_count, compiler.local_state_stack
+    ours.scope.defined = compiler.scope.defined
+    with tracing(audited=True) as trace, ours.scope:
+        yield ours, guards
+    compiler.anon_var_count = ours.anon_var_count
+    _loading[path] = trace
 
 
-def guard_call(compiler: Any, filename: str) -> list[ast.stmt]:
-    """Python's statements that call `guard` where a loader of Python's or Hy's compiles a file; none elsewhere."""
-    if isinstance(compiler, Compiler) or getattr(compiler.module, "__file__", None) != filename:
-        return []
-    return ast.parse(f"__import__('cramhy').kept_code.guard({filename!r})").body
+def _begins_with_us(path):
+    try:
+        return not is_library(path) and _BEGINS_WITH_US.match(Path(path).read_bytes()) is not None
+    except OSError:
+        return False
 
 
 def guard(filename: str) -> None:
-    """The caller is the code of that file, in which our macros have been at work: let Python's file have a call of `run` instead of it."""
-    seen(filename)
-    Loader("__main__", filename).keep_for_python(os.path.abspath(filename), sys._getframe(1).f_code)
+    """The caller is the code of that file. If it was compiled just now: keep it, and let Python's file have a call of `run` instead."""
+    path = os.path.abspath(filename)
+    if path in _loading:
+        trace, code = _loading.pop(path), sys._getframe(1).f_code
+        seen(filename)
+        Loader("__main__", filename).keep_for_python(path, code)
+        if trace is not None:
+            with contextlib.suppress(OSError):
+                source = Path(path).read_bytes()
+                _finish(trace, path)
+                if not dependency_tracing.may_have_changed(path):
+                    _keep(trace, path, source, code)
 
 
 def run(namespace: dict[str, Any], *told: Any) -> None:
@@ -219,11 +234,7 @@ def run(namespace: dict[str, Any], *told: Any) -> None:
     calls with more before that.
     """
     *_, filename, code = told
-    path, caller = os.path.abspath(filename), sys._getframe(1).f_code
-    made = _compiled.pop(path, None)
-    if made is not None and caller.co_filename == filename:  # Python has written what calls this, and more
-        Loader("__main__", filename).keep_for_python(path, made)
-    exec(_code_of_file(namespace, filename, code) if made is None else made, namespace)
+    exec(_code_of_file(namespace, filename, code), namespace)
 
 
 def run_as_main(filename: str) -> None:
@@ -339,8 +350,8 @@ __all__ = [
     "Loader",
     "Reader",
     "calls_kept_code",
-    "compiled_apart",
-    "guard_call",
+    "guard",
+    "loading",
     "run",
     "run_as_main",
     "seen",

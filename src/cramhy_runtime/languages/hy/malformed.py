@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import linecache
 import re
+from contextlib import nullcontext
 
 import hy
 from hy.compiler import Result, builds_model
@@ -55,13 +56,13 @@ def _compile_form(compiler, wrapped):
 
 @builds_model(Rest)
 def _compile_rest(compiler, rest):
-    """What Hy's compiler makes of the rest of a text. The rest of a file that is loaded may be what our own loader has made of the file."""
-    statements = kept_hy.compiled_apart(compiler, rest.filename) if rest.program else None
-    if statements is not None:
-        return Result(stmts=statements)
-    forms = rest.forms()
-    with forms.reader.as_current_reader():
-        return Result(stmts=kept_hy.guard_call(compiler, rest.filename)) + compiler.compile(forms)
+    """What Hy's compiler makes of the rest of a text, and where it is a file that is loaded, what keeps the code of that."""
+    forms, keeps = rest.forms(), rest.program
+    with (
+        forms.reader.as_current_reader(),
+        kept_hy.loading(compiler, rest.filename) if keeps else nullcontext((compiler, [])) as (ours, first),
+    ):
+        return Result(stmts=first) + ours.compile(forms)
 
 
 def retold(problem, position=(None, None, None)):
