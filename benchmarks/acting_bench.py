@@ -19,8 +19,8 @@ from cramhy_runtime import designators as desig
 from cramhy_runtime import process_modules as pm
 from cramhy_runtime.designators.locations import generators, register_location_generator, validators
 from cramhy_runtime.designators.protocol import reference
-from cramhy_runtime.ground.data import lisp_list, one
-from cramhy_runtime.ground.packages import intern, keyword, sym
+from cramhy_runtime.lisp_core.data import lisp_list, one
+from cramhy_runtime.lisp_core.packages import intern, keyword, sym
 from cramhy_runtime.languages.commonlisp.reader.reader_functions import read_from_string
 from cramhy_runtime.languages.commonlisp.systems.systems import load_system
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string

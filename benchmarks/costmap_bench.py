@@ -16,8 +16,8 @@ from time import process_time
 from measuring import Table, repeat, rounds
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.data import one
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import one
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.languages.commonlisp.evaluation.evaluator import evaluate
 from cramhy_runtime.languages.commonlisp.reader.reader_functions import read_from_string
 from cramhy_runtime.session import fresh_start

@@ -19,7 +19,7 @@ from pathlib import Path
 
 from measuring import number
 
-from cramhy_runtime.ground.packages import intern
+from cramhy_runtime.lisp_core.packages import intern
 from cramhy_runtime.languages.hy.lisp_data import plan_package
 from cramhy_runtime.repl.session import Session
 

@@ -19,9 +19,9 @@ from prolog_programs import GOALS, LISTS, ZEBRA, edges, poses, swi_figures
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground.data import list_from
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import make_package, sym
+from cramhy_runtime.lisp_core.data import list_from
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import make_package, sym
 from cramhy_runtime.languages.commonlisp.reader.reader import read_from_string
 from cramhy_runtime.repl.session import quiet_collector
 

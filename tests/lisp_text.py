@@ -2,8 +2,8 @@
 
 import pytest
 
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string, princ_to_string
 from cramhy_runtime.languages.commonlisp.streams.streams import StringOutputStream
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for

@@ -12,7 +12,7 @@ import re
 
 from lisp_words import Literal, Marked, NotConvertible, implementation, is_declaration, is_hook, is_special, lisp_function, ours, read
 
-from cramhy_runtime.ground.packages import COMMON_LISP
+from cramhy_runtime.lisp_core.packages import COMMON_LISP
 from cramhy_runtime.languages.hy.call_parts import CODE
 from cramhy_runtime.languages.hy.expansion import DEFINITIONS
 from cramhy_runtime.languages.operators import OPERATORS

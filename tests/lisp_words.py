@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from cramhy_runtime.cpl import hooks
-from cramhy_runtime.ground.data import UndefinedFunction
-from cramhy_runtime.ground.packages import COMMON_LISP, find_package
+from cramhy_runtime.lisp_core.data import UndefinedFunction
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, find_package
 from cramhy_runtime.languages.hy.plan_macros import WITHOUT_PREFIX
 
 _TOKEN = re.compile(r"""\s+|;[^\n]*|(?P<token>\(|\)|'|`|,@|,|\#'|"(?:[^"\\]|\\.)*"|[^\s()'"`,;]+)""")

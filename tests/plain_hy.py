@@ -11,13 +11,13 @@ from lisp_to_hy import Writer
 from lisp_words import NotConvertible, read
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.classes import find_class_or_error
+from cramhy_runtime.lisp_core.classes import find_class_or_error
 from cramhy_runtime.cpl import hooks
-from cramhy_runtime.ground.conditions import handler_bind
-from cramhy_runtime.ground.data import list_from, one
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import handler_bind
+from cramhy_runtime.lisp_core.data import list_from, one
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string, princ_to_string
 from cramhy_runtime.languages.hy.malformed import ProgramForm
 from cramhy_runtime.repl.session import condition_of

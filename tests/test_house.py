@@ -16,14 +16,14 @@ from pathlib import Path
 import pytest
 from systems import takes_long
 
-from cramhy_runtime.ground import ports
+from cramhy_runtime.lisp_core import ports
 
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "cramhy_runtime"
 FLOORS = [
     ["extras"],
     ["kernel", "storage"],
-    ["ground"],
+    ["lisp_core"],
     ["utilities", "transforms"],
     ["cpl", "prolog", "ros"],
     ["designators", "turtlesim", "episodes", "actionlib", "rosbridge", "robot_world"],
@@ -209,7 +209,7 @@ LISTED = {
         f"cramhy_runtime.{home}" for rows in module.EXECUTABLES.values() for home, _ in rows.values()
     },
     "cramhy_runtime.languages.commonlisp.package": lambda module: {
-        f"cramhy_runtime.{name}" if name.startswith("ground.") else f"cramhy_runtime.languages.commonlisp.{name}"
+        f"cramhy_runtime.{name}" if name.startswith("lisp_core.") else f"cramhy_runtime.languages.commonlisp.{name}"
         for name in (*module.MODULES, *module.HELPERS)
     },
 }
@@ -250,11 +250,11 @@ def edges():
 
 
 PORT_INSTALLERS = {
-    "ground.conditions": {"signals"},
-    "ground.plain_answers": {"printer", "classes", "types", "output", "user", "systems", "definitions"},
+    "lisp_core.conditions": {"signals"},
+    "lisp_core.plain_answers": {"printer", "classes", "types", "output", "user", "systems", "definitions"},
     "languages.commonlisp.answers": {"printer", "classes", "types", "output", "user", "systems", "definitions"},
 }
-"""Who installs which ports of the ground: the plain answers, and those of the one language that is started."""
+"""Who installs which ports of the core: the plain answers, and those of the one language that is started."""
 SERVICE_INSTALLERS = {
     "prolog.compiler.compiler": {"compile_clauses"},
     "prolog.explanations.undefined": {"warn_undefined"},
@@ -337,7 +337,7 @@ def test_no_module_makes_up_names_when_they_are_asked_for():
 
 
 def test_rooms_beside_the_languages_know_one_kind_of_floats():
-    """Only Lisp has single-floats. Messages, poses and worlds have floats, and `ground/floats.py` says for all what a single is."""
+    """Only Lisp has single-floats. Messages, poses and worlds have floats, and `lisp_core/floats.py` says for all what a single is."""
 
     def names_singles(path):
         if room_of(path) == "languages":
@@ -347,7 +347,7 @@ def test_rooms_beside_the_languages_know_one_kind_of_floats():
         )
         return sorted({name for name in names if isinstance(name, str) and "single" in name.lower() and "float" in name.lower()})
 
-    assert offences(names_singles) == {"src/cramhy_runtime/ground/floats.py": ["SingleFloat"]}
+    assert offences(names_singles) == {"src/cramhy_runtime/lisp_core/floats.py": ["SingleFloat"]}
 
 
 def test_nobody_sets_the_names_of_another_module():
@@ -467,8 +467,8 @@ def test_one_file_below_languages_knows_single_floats():
     below = [room for floor in FLOORS[: FLOORS.index(["languages"])] for room in floor]
     paths = [path for room in below for path in (SOURCE / room).rglob("*.py")] + [SOURCE / f"{room}.py" for room in below]
     found = {path.relative_to(SOURCE).as_posix() for path in paths if path.exists() and SINGLES.search(path.read_text(encoding="utf-8"))}
-    assert found == {f"ground/{name}" for name in NAMED_ONLY}
-    listed = ast.parse((SOURCE / "ground" / "packages.py").read_text(encoding="utf-8"))
+    assert found == {f"lisp_core/{name}" for name in NAMED_ONLY}
+    listed = ast.parse((SOURCE / "lisp_core" / "packages.py").read_text(encoding="utf-8"))
     assert not [
         name for name in ast.walk(listed) if isinstance(name, ast.Name | ast.alias) and SINGLES.search(getattr(name, "id", "") or name.name)
     ]

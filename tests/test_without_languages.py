@@ -16,7 +16,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "cramhy_runtime"
-ROOMS = ("kernel", "ground", "utilities", "transforms", "cpl", "prolog", "ros", "designators", "turtlesim", "episodes", "actionlib")
+ROOMS = ("kernel", "lisp_core", "utilities", "transforms", "cpl", "prolog", "ros", "designators", "turtlesim", "episodes", "actionlib")
 ABOVE = ("occasions", "tf", "process_modules", "projection")
 NO_LANGUAGES = """
 import sys

@@ -19,15 +19,15 @@ PATTERN = """
 
 @functools.cache
 def package():
-    from cramhy_runtime.ground.packages import make_package
+    from cramhy_runtime.lisp_core.packages import make_package
 
     return make_package("PROLOG-ROWS", use=["COMMON-LISP", "CRAM-PROLOG"])
 
 
 def read(text):
     """The Lisp data that ``text`` is, in a package that uses Prolog's."""
-    from cramhy_runtime.ground.dynamic import binding
-    from cramhy_runtime.ground.packages import sym
+    from cramhy_runtime.lisp_core.dynamic import binding
+    from cramhy_runtime.lisp_core.packages import sym
     from cramhy_runtime.languages.commonlisp.reader.reader import read_from_string
 
     with binding(sym("*PACKAGE*"), package()):
@@ -107,7 +107,7 @@ def first_query(arguments):
     """Work that makes 100,000 facts of a predicate that is new, and asks once; only the query counts."""
 
     def prepare(session):
-        from cramhy_runtime.ground.data import lisp_list
+        from cramhy_runtime.lisp_core.data import lisp_list
         from cramhy_runtime.prolog import query
         from cramhy_runtime.prolog.engine import fact_groups
 

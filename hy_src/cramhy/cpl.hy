@@ -9,7 +9,7 @@ What the operators mean stands there, and in the sections of cpl.md that the com
         cramhy.operators *
         cramhy_runtime.cpl.logging [check-constant-tags]
         cramhy_runtime.cpl.failures.retry_counters [counter-variable]
-        cramhy_runtime.ground.conditions [CompileError SimpleWarning]
+        cramhy_runtime.lisp_core.conditions [CompileError SimpleWarning]
         cramhy_runtime.languages.commonlisp.compiler.compilation_unit [mention-type warn-of]
         cramhy_runtime.languages.commonlisp.printer.printer [prin1-to-string])
 

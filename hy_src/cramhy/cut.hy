@@ -2,7 +2,7 @@
 
 (eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *
-        cramhy_runtime.ground.packages [keyword]
+        cramhy_runtime.lisp_core.packages [keyword]
         cramhy-runtime.utilities.patterns [var-name])
 
 (setv package "CRAM-UTILITIES")

@@ -10,10 +10,10 @@ the first start, which takes seconds."
 
 (import cramhy_runtime.languages.commonlisp.syntax.body_parts [body-parts]
         cramhy_runtime.languages.commonlisp.syntax.operator_macros [define-operator malformed]
-        cramhy_runtime.ground.data [Cons Keyword Symbol :as LispSymbol list-from lisp-list]
-        cramhy_runtime.ground.conditions [CompileError error program-error]
+        cramhy_runtime.lisp_core.data [Cons Keyword Symbol :as LispSymbol list-from lisp-list]
+        cramhy_runtime.lisp_core.conditions [CompileError error program-error]
         cramhy_runtime.languages.commonlisp.syntax.lambda_lists [gensym]
-        cramhy_runtime.ground.packages [sym is-symbol symbol-name])
+        cramhy_runtime.lisp_core.packages [sym is-symbol symbol-name])
 
 (defmacro defoperator [name parameters #* body]
   "Define the macro `name` of the Lisp package that the variable `package` names.

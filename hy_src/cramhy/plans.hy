@@ -5,7 +5,7 @@ function, because the task tree and `expand-plan` show it."
 
 (eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *
-        cramhy_runtime.ground.conditions [SimpleStyleWarning style-warn]
+        cramhy_runtime.lisp_core.conditions [SimpleStyleWarning style-warn]
         cramhy_runtime.languages.commonlisp.compiler.compilation-unit [current :as compilation-unit]
         cramhy_runtime.cpl.tree.tags [check-tag is-tag-name]
         cramhy_runtime.languages.commonlisp.faces.cpl.walker [tag-names])

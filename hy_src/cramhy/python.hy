@@ -2,7 +2,7 @@
 
 (eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *
-        cramhy_runtime.ground.conditions [program-error])
+        cramhy_runtime.lisp_core.conditions [program-error])
 
 (setv package "PYTHON")
 

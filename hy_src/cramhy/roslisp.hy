@@ -5,7 +5,7 @@ Topics of log lines and field paths are not evaluated, so they become constants 
 
 (eval-when-compile (require cramhy.operators [defoperator]))
 (import cramhy.operators *
-        cramhy_runtime.ground.condition_types [shown])
+        cramhy_runtime.lisp_core.condition_types [shown])
 
 (setv package "ROSLISP")
 

@@ -226,7 +226,7 @@ class LispFile(pytest.File):
         from cramhy_runtime import kernel
         from cramhy_runtime.session import fresh_start
         from cramhy_runtime.languages.commonlisp.systems import unit_tests
-        from cramhy_runtime.ground.conditions import Condition
+        from cramhy_runtime.lisp_core.conditions import Condition
 
         fresh_start()
         try:

@@ -72,7 +72,7 @@ def test_a_state_that_there_is_not_loses_the_goal(lisp, told, capsys):
 @pytest.mark.parametrize("seed", range(6))
 def test_in_whatever_order_the_messages_are_looked_at(seed):
     from cramhy_runtime import kernel
-    from cramhy_runtime.ground.packages import COMMON_LISP_USER
+    from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER
     from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
     from cramhy_runtime.repl.session import Session
     from lisp_text import LispText

@@ -207,7 +207,7 @@ def test_naming_a_package_or_loading_a_system_makes_them():
 
     program = (
         "from cramhy_runtime.session import boot; boot()\n"
-        "from cramhy_runtime.ground import packages\n"
+        "from cramhy_runtime.lisp_core import packages\n"
         "from cramhy_runtime.languages.commonlisp.systems import systems\n"
         "import sys\n"
         "assert 'cramhy_runtime.actionlib.client' not in sys.modules\n"

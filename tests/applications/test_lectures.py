@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.repl.session import Session
 from cramhy_runtime.session import Image

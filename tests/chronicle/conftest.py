@@ -6,7 +6,7 @@ import pytest
 
 from cramhy_runtime import chronicle, kernel
 from cramhy_runtime.chronicle import service_node as board, chronicler
-from cramhy_runtime.ground.packages import COMMON_LISP_USER
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.repl.session import Session
 from cramhy_runtime.ros import graph, services

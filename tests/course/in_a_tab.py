@@ -16,7 +16,7 @@ from pathlib import Path
 from cramhy_runtime import course, kernel
 from cramhy_runtime.browser import tab
 from cramhy_runtime.browser.desk import Desk
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.session import requests
 from cramhy_runtime.session.session import Session

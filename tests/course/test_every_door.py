@@ -13,7 +13,7 @@ import pytest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.course import checking
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.session.session import Session
 from systems import needs_processes
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cramhy_runtime import cpl
-from cramhy_runtime.ground.conditions import Error
+from cramhy_runtime.lisp_core.conditions import Error
 
 
 def drive():

@@ -5,8 +5,8 @@ from small_plans import plan
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl import hooks
-from cramhy_runtime.ground.conditions import Error, SimpleError, error, handler_bind, ignore_errors, restart_case
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import Error, SimpleError, error, handler_bind, ignore_errors, restart_case
+from cramhy_runtime.lisp_core.packages import sym
 
 
 def handling(*clauses, body):
@@ -187,7 +187,7 @@ def test_restarts_of_a_task_can_be_used_by_its_handlers():
         return restart_case([(name, lambda value: value)], lambda: cpl.fail("x"))
 
     def handler(failure, retry):
-        from cramhy_runtime.ground.conditions import invoke_restart
+        from cramhy_runtime.lisp_core.conditions import invoke_restart
 
         invoke_restart(name, 42)
 

@@ -3,7 +3,7 @@
 import pytest
 
 from cramhy_runtime import cpl
-from cramhy_runtime.ground.condition_types import Condition
+from cramhy_runtime.lisp_core.condition_types import Condition
 from cramhy_runtime.languages.commonlisp.tools.advice import explanation
 from cramhy_runtime.repl.session import Session, condition_of
 

@@ -6,7 +6,7 @@ from cramhy_runtime import cpl
 from cramhy_runtime.cpl.fluents import fluents
 from cramhy_runtime.cpl.tasks import waiting
 from cramhy_runtime.languages.commonlisp.faces.cpl import user_methods
-from cramhy_runtime.ground.dispatch.generic_functions import remove_method
+from cramhy_runtime.lisp_core.dispatch.generic_functions import remove_method
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.repl.session import Session
 
@@ -173,7 +173,7 @@ def test_python_reads_and_assigns_through_the_methods_of_lisp(lisp):
     lisp("""(defclass clipped (value-fluent) ())
             (defmethod value ((f clipped)) (min 10 (call-next-method)))
             (defmethod (setf value) (new (f clipped)) (call-next-method (cl:* 2 new) f)) 1""")
-    from cramhy_runtime.ground.packages import intern
+    from cramhy_runtime.lisp_core.packages import intern
 
     fluent = cpl.make_fluent(class_=intern("CLIPPED", "FLUENT-METHODS"), value=1)
     fluent.value = 3

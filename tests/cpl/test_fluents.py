@@ -9,9 +9,9 @@ from cramhy_runtime.cpl.tasks import waiting
 from cramhy_runtime.cpl.fluents import operators as op
 from cramhy_runtime.cpl.fluents.fluents import get_update_callback
 from cramhy_runtime.cpl.fluents.nets import CachedNet
-from cramhy_runtime.ground.conditions import Error
-from cramhy_runtime.ground.data import lisp_list
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.conditions import Error
+from cramhy_runtime.lisp_core.data import lisp_list
+from cramhy_runtime.lisp_core.packages import keyword
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.streams.streams import StringOutputStream
 from cramhy_runtime.languages.commonlisp.tools.describing import describe

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from cramhy_runtime import cpl
 from cramhy_runtime.cpl.fluents import operators as op
-from cramhy_runtime.ground.data import lisp_list
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.data import lisp_list
+from cramhy_runtime.lisp_core.packages import keyword
 
 SMALL = st.integers(-2, 3)
 PLACE = st.integers(0, 11)

@@ -4,7 +4,7 @@ from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl.tree import finished_plans
 from cramhy_runtime.cpl.tasks.task_observers import follow, unfollow
 from cramhy_runtime.cpl.tasks.tasks import RECORD
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.dynamic import binding
 
 
 class Follower:

@@ -12,8 +12,8 @@ from cramhy_runtime.cpl.tree import task_tree as tree
 from cramhy_runtime.cpl.tasks import parallel_children as watching
 from cramhy_runtime.cpl.statuses import EVAPORATED, FAILED, RUNNING, SUCCEEDED, SUSPENDED
 from cramhy_runtime.cpl.tasks.tasks import Task
-from cramhy_runtime.ground.data import lisp_list
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import lisp_list
+from cramhy_runtime.lisp_core.packages import sym
 
 
 def test_a_request_to_suspend_in_without_scheduling_is_obeyed_once():

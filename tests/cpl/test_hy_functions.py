@@ -9,9 +9,9 @@ import pytest
 
 import cramhy
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import Cons, UndefinedFunction
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import Cons, UndefinedFunction
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.repl.session import Session
 
 
@@ -133,7 +133,7 @@ def test_several_values_are_a_tuple_that_is_as_true_as_its_first_value(values, f
     """Where it is asked whether it is true; and who takes the first value alone gets that, whether it is true or not."""
     session = Session(time="virtual", turtlesim=False)
     session.evaluate_text(f"(defpackage sev (:use :cpl)) (in-package :sev) (defun several () {values}) (defvar *first* (several))")
-    text = "(lisp-package :sev) (import cramhy_runtime.ground.functions [function_of])(setv f (function-of (lisp several)))"
+    text = "(lisp-package :sev) (import cramhy_runtime.lisp_core.functions [function_of])(setv f (function-of (lisp several)))"
     assert run(text + "(top-level (bool (par (f) 1)))") is bool(first)
     assert run(text + "(top-level (if (seq (f)) (cond (f) 1 True 2) (or (not (f)) 3)))") == (1 if first else True)
     assert len(run(text + "(f)")) == (0 if values == "(values)" else 2)

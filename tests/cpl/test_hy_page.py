@@ -12,7 +12,7 @@ import hy
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.data import Cons, Symbol
+from cramhy_runtime.lisp_core.data import Cons, Symbol
 from cramhy_runtime.repl.session import Session
 
 ROOT = Path(__file__).parents[2]

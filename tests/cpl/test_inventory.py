@@ -4,11 +4,11 @@ import pytest
 
 from cramhy_runtime.languages.commonlisp.faces.cpl.markers import WHERE
 from cramhy_runtime.languages.commonlisp.faces.cpl.package import IMPLEMENTATION_ONLY, REACHED_FOR
-from cramhy_runtime.ground.data import UNBOUND, UndefinedFunction
+from cramhy_runtime.lisp_core.data import UNBOUND, UndefinedFunction
 from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda_list_of
 from cramhy_runtime.languages.commonlisp.syntax.macros import ensure_loaded
 from cramhy_runtime.languages.commonlisp.objects.classes import find_class
-from cramhy_runtime.ground.packages import COMMON_LISP, find_package, keyword
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, find_package, keyword
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.types.types import is_known_type, typep
 from cramhy_runtime.languages.operators import PLAN_LANGUAGE

@@ -4,8 +4,8 @@ import pytest
 
 from cramhy_runtime import cpl
 from cramhy_runtime.cpl import logging
-from cramhy_runtime.ground.packages import keyword
-from cramhy_runtime.ground.data import list_from
+from cramhy_runtime.lisp_core.packages import keyword
+from cramhy_runtime.lisp_core.data import list_from
 from cramhy_runtime.languages.commonlisp.streams.streams import StringOutputStream
 from cramhy_runtime.repl.session import Session
 

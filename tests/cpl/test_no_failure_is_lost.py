@@ -4,7 +4,7 @@ import pytest
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl import CompositeFailure, PlanFailure, SimplePlanFailure
-from cramhy_runtime.ground.conditions import handler_bind, muffle_warning, types
+from cramhy_runtime.lisp_core.conditions import handler_bind, muffle_warning, types
 from cramhy_runtime.languages.commonlisp.tools.advice import explanation, hint_for
 
 

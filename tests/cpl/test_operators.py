@@ -7,9 +7,9 @@ from cramhy_runtime import cpl, kernel
 from cramhy_runtime.cpl.forms import operators
 from cramhy_runtime.cpl.tree import tags
 from cramhy_runtime.cpl.statuses import DEAD, EVAPORATED, FAILED, SUCCEEDED
-from cramhy_runtime.ground.conditions import Error, error
-from cramhy_runtime.ground.data import NO_VALUES, MultipleValues, lisp_list, python_list
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.conditions import Error, error
+from cramhy_runtime.lisp_core.data import NO_VALUES, MultipleValues, lisp_list, python_list
+from cramhy_runtime.lisp_core.packages import keyword
 
 
 def after(seconds, value=None):

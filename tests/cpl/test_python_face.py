@@ -10,8 +10,8 @@ from functools import partial
 import pytest
 
 from cramhy_runtime import cpl, kernel
-from cramhy_runtime.ground.conditions import Error
-from cramhy_runtime.ground.data import MultipleValues
+from cramhy_runtime.lisp_core.conditions import Error
+from cramhy_runtime.lisp_core.data import MultipleValues
 
 
 class Stuck(cpl.PlanFailure):

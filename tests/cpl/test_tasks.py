@@ -12,9 +12,9 @@ from cramhy_runtime.cpl import task_variables
 from cramhy_runtime.cpl.tasks import tasks
 from cramhy_runtime.cpl.statuses import CREATED, EVAPORATED, FAILED, RUNNING, SUCCEEDED, SUSPENDED
 from cramhy_runtime.cpl.tasks.tasks import Task
-from cramhy_runtime.ground.conditions import Error
-from cramhy_runtime.ground.data import NO_VALUES, MultipleValues, Symbol
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.conditions import Error
+from cramhy_runtime.lisp_core.data import NO_VALUES, MultipleValues, Symbol
+from cramhy_runtime.lisp_core.dynamic import binding
 
 
 def test_a_status_goes_from_running_to_exactly_one_dead_state():
@@ -374,7 +374,7 @@ def test_wrong_use_of_tasks_says_what_is_wrong(call, text):
 def test_making_a_task_from_lisp_starts_it():
     from cramhy_runtime.languages.commonlisp.objects.classes import find_class_or_error
     from cramhy_runtime.languages.commonlisp.objects.instances import make_instance
-    from cramhy_runtime.ground.packages import keyword, sym
+    from cramhy_runtime.lisp_core.packages import keyword, sym
 
     def made(*more):
         return make_instance(find_class_or_error(sym("CPL::TASK")), keyword("NAME"), "x", keyword("THREAD-FUN"), lambda: 42, *more)

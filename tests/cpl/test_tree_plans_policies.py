@@ -8,9 +8,9 @@ from cramhy_runtime.cpl.forms import plans, policies
 from cramhy_runtime.cpl.tree import tags, task_tree as tree
 from cramhy_runtime.cpl.failures.handling import attempt
 from cramhy_runtime.cpl.statuses import CREATED, SUCCEEDED
-from cramhy_runtime.ground.conditions import Error
-from cramhy_runtime.ground.data import Cons, lisp_list
-from cramhy_runtime.ground.packages import intern, sym
+from cramhy_runtime.lisp_core.conditions import Error
+from cramhy_runtime.lisp_core.data import Cons, lisp_list
+from cramhy_runtime.lisp_core.packages import intern, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import princ_to_string
 
 

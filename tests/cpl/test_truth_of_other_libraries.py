@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cramhy_runtime import cpl
-from cramhy_runtime.ground.data import plain_truth, truth
+from cramhy_runtime.lisp_core.data import plain_truth, truth
 from cramhy_runtime.session.session import Session
 
 np = pytest.importorskip("numpy")

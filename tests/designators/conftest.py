@@ -11,7 +11,7 @@ from systems import BACKENDS
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground.data import all_values
+from cramhy_runtime.lisp_core.data import all_values
 from cramhy_runtime.repl.session import Session
 
 boot()

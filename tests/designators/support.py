@@ -1,8 +1,8 @@
 """Short names for the tests of designators: Lisp data from Python."""
 
 from cramhy_runtime import designators as desig
-from cramhy_runtime.ground.data import Cons, lisp_list
-from cramhy_runtime.ground.packages import intern, keyword, sym
+from cramhy_runtime.lisp_core.data import Cons, lisp_list
+from cramhy_runtime.lisp_core.packages import intern, keyword, sym
 from cramhy_runtime.prolog.engine.fact_groups import define_fact_group, remove_fact_group
 
 

@@ -8,8 +8,8 @@ import pytest
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
 from cramhy_runtime.designators import classes
-from cramhy_runtime.ground.data import Cons, lisp_list
-from cramhy_runtime.ground.packages import intern, keyword, sym
+from cramhy_runtime.lisp_core.data import Cons, lisp_list
+from cramhy_runtime.lisp_core.packages import intern, keyword, sym
 from cramhy_runtime.prolog.engine.fact_groups import define_fact_group, remove_fact_group
 from cramhy_runtime.prolog.query import ask
 from cramhy_runtime.prolog.terms.terms import Var

@@ -11,7 +11,7 @@ from cramhy_runtime import cpl
 from cramhy_runtime.designators import Location, Motion, Object, location_generator, motion_grounding, next_solution, properties, reference
 from cramhy_runtime.designators.equating import desig_equal
 from cramhy_runtime.designators.protocol import equate
-from cramhy_runtime.ground.data import UNBOUND, Cons, Symbol, lisp_list, list_from
+from cramhy_runtime.lisp_core.data import UNBOUND, Cons, Symbol, lisp_list, list_from
 from cramhy_runtime.prolog import P, V, first, kw, names
 from cramhy_runtime.process_modules import perform, process_module, process_modules
 

@@ -5,10 +5,10 @@ import pytest
 from cramhy_runtime import designators as desig
 from cramhy_runtime.designators import classes, equating
 from cramhy_runtime.languages.commonlisp.faces.designators import syntax
-from cramhy_runtime.ground.conditions import Error
-from cramhy_runtime.ground.data import lisp_list
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.lisp_core.conditions import Error
+from cramhy_runtime.lisp_core.data import lisp_list
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import keyword, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string, princ_to_string
 
 from .support import lisp, make, python, user
@@ -75,7 +75,7 @@ def test_all_takes_the_plural_and_sets_the_quantifier():
 
 
 def test_a_dotted_list_is_an_error():
-    from cramhy_runtime.ground.data import Cons
+    from cramhy_runtime.lisp_core.data import Cons
 
     with pytest.raises(Error) as problem:
         syntax.description_form(lisp_list(Cons(user("A-KEY"), 5)))

@@ -11,9 +11,9 @@ import pytest
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
 from cramhy_runtime.designators import classes, equating, protocol
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.data import Cons, lisp_list, list_from
-from cramhy_runtime.ground.packages import intern, keyword, sym
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.data import Cons, lisp_list, list_from
+from cramhy_runtime.lisp_core.packages import intern, keyword, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string, princ_to_string
 from cramhy_runtime.prolog.engine.fact_groups import define_fact_group, remove_fact_group
 from cramhy_runtime.prolog.query import ask

@@ -9,7 +9,7 @@ import pytest
 
 from cramhy_runtime.designators import Action, Human, Location, Motion, Object, replace
 from cramhy_runtime.designators.classes import ActionDesignator, living, make_designator
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.packages import keyword
 from cramhy_runtime.prolog import kw
 
 

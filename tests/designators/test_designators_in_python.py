@@ -33,9 +33,9 @@ from cramhy_runtime.designators import (
     replace,
     solutions,
 )
-from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.data import lisp_list
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.condition_types import SimpleError
+from cramhy_runtime.lisp_core.data import lisp_list
+from cramhy_runtime.lisp_core.packages import keyword
 from cramhy_runtime.prolog import P, V, explain, fact_group, findall, kw
 
 NAME = __name__.replace("_", "-")

@@ -7,11 +7,11 @@ import pytest
 from cramhy_runtime.designators.classes import make_designator
 from cramhy_runtime.designators.protocol import reference
 from cramhy_runtime.designators.resolution import resolve_designator
-from cramhy_runtime.ground.condition_types import SimpleProgramError
-from cramhy_runtime.ground.data import UNSUPPLIED
-from cramhy_runtime.ground.dispatch.generic_errors import NoApplicableMethodError
-from cramhy_runtime.ground.dispatch.generic_functions import add_method, generic, remove_method
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.condition_types import SimpleProgramError
+from cramhy_runtime.lisp_core.data import UNSUPPLIED
+from cramhy_runtime.lisp_core.dispatch.generic_errors import NoApplicableMethodError
+from cramhy_runtime.lisp_core.dispatch.generic_functions import add_method, generic, remove_method
+from cramhy_runtime.lisp_core.packages import keyword
 
 MOTION = keyword("MOTION")
 

@@ -3,11 +3,11 @@
 import pytest
 
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground.data import UNBOUND, UndefinedFunction
+from cramhy_runtime.lisp_core.data import UNBOUND, UndefinedFunction
 from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda_list_of
 from cramhy_runtime.languages.commonlisp.syntax.macros import ensure_loaded
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
-from cramhy_runtime.ground.packages import COMMON_LISP, find_package
+from cramhy_runtime.lisp_core.dispatch.generic_functions import GenericFunction
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, find_package
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.types.types import is_known_type
 from cramhy_runtime.prolog.engine.database import functors

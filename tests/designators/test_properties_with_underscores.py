@@ -7,8 +7,8 @@ import hy
 import pytest
 
 from cramhy_runtime.designators import Motion, make_designator, property_values
-from cramhy_runtime.ground.data import lisp_list
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.data import lisp_list
+from cramhy_runtime.lisp_core.packages import keyword
 from cramhy_runtime.prolog import kw
 
 MADE = [

@@ -7,10 +7,10 @@ from cramhy_runtime import designators as desig
 from cramhy_runtime.designators import equating, locations
 from cramhy_runtime.languages.commonlisp.faces.designators import language_support
 from cramhy_runtime.designators.classes import DesignatorError
-from cramhy_runtime.ground.conditions import Error, handler_bind, invoke_restart
-from cramhy_runtime.ground.data import lisp_list, list_from
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import find_package, keyword, make_package, sym
+from cramhy_runtime.lisp_core.conditions import Error, handler_bind, invoke_restart
+from cramhy_runtime.lisp_core.data import lisp_list, list_from
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import find_package, keyword, make_package, sym
 from cramhy_runtime.languages.commonlisp.streams.basic_streams import StringOutputStream
 from cramhy_runtime.languages.commonlisp.streams.streams import TRACE_OUTPUT
 from cramhy_runtime.prolog.explanations import explanations
@@ -397,7 +397,7 @@ def test_the_counter_starts_anew_after_an_accepted_candidate():
 
 def test_a_restart_decides_on_a_candidate_whose_validator_fails():
     def broken(designator, solution):
-        from cramhy_runtime.ground.conditions import error
+        from cramhy_runtime.lisp_core.conditions import error
 
         error("broken")
 

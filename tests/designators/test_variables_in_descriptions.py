@@ -7,7 +7,7 @@ keyword, is warned of. Source: designators.md 3.2.
 import pytest
 from lisp_text import LispText
 
-from cramhy_runtime.ground.packages import find_package
+from cramhy_runtime.lisp_core.packages import find_package
 
 DEFINED = """
 (defpackage :variables-in-descriptions (:use :cl :desig :cram-prolog))

@@ -6,8 +6,8 @@ import pytest
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.designators import Action, Motion, action_grounding, desig_prop_value, forget
-from cramhy_runtime.ground.data import python_list
-from cramhy_runtime.ground.printing import prin1_to_string, speak
+from cramhy_runtime.lisp_core.data import python_list
+from cramhy_runtime.lisp_core.printing import prin1_to_string, speak
 from cramhy_runtime.process_modules import executive, perform
 from cramhy_runtime.prolog import P, V, fact_group, facts_asserted, findall, function, kw, query, remove_fact_group
 from cramhy_runtime.ros import message_building, messages, received, wire

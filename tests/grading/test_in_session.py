@@ -7,7 +7,7 @@ import pytest
 from cramhy_runtime import kernel
 from cramhy_runtime.grading.in_session import NO_TURTLE, faults
 from cramhy_runtime.grading.problems import ExerciseError
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.repl.session import Interruption, Session
 from cramhy_runtime.session import Image
 from cramhy_runtime.turtlesim.node import running_simulator

@@ -137,7 +137,7 @@ def test_a_submission_reads_no_file_of_others(place):
     assert len(given) > 30
     words = {"MARK": mark[::-1], "ANSWER": ANSWER[::-1], "SECRET": SECRET[::-1]}
     own = Path(cramhy_runtime.__file__).parent
-    roots = [str(place.folder), str(own / "grading"), str(own / "ground")]
+    roots = [str(place.folder), str(own / "grading"), str(own / "lisp_core")]
     text = attacks.text("reads_files", PLACES=", ".join(repr(str(path)) for path in given), ROOTS=repr(roots), **words)
     report = place.grader.grade_texts(place.exercise, {"attack.py": text})
     assert "looked at True" in report.output, report.text()

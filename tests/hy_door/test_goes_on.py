@@ -8,8 +8,8 @@ import sys
 
 import pytest
 
-from cramhy_runtime.ground.conditions import error, restart_case
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import error, restart_case
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.repl.line_input import NoLines
 from cramhy_runtime.repl.listener import Listener
 

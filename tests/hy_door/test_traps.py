@@ -8,7 +8,7 @@ import pytest
 from plain_hy import hy_module, hy_value
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.lisp_core.data import Cons
 from cramhy_runtime.repl.session import Session
 from cramhy_runtime.session import Image
 
@@ -107,7 +107,7 @@ TRAPS = {
         ([1, 2, 1, ["b", "a"]], []),
     ),
     16: (  # dynamic variables are not inherited, task variables are copied
-        """(import cramhy_runtime.ground.dynamic [binding])
+        """(import cramhy_runtime.lisp_core.dynamic [binding])
            (define-task-variable *place* "home")
            (with [_ (binding *place* "away")]
              (top-level (par (do (note *place*.value) (setv *place*.value "lost")) (do (sleep 1) (note *place*.value)))))

@@ -129,7 +129,7 @@ def test_the_repl_of_hy_in_a_python_program(words):
 
 
 def test_an_error_after_the_repl_in_a_python_program_opens_no_debugger():
-    after = "from cramhy_runtime.ground.conditions import error\ntry:\n    error('Lost.')\nexcept BaseException as problem:\n    print('told', problem)"
+    after = "from cramhy_runtime.lisp_core.conditions import error\ntry:\n    error('Lost.')\nexcept BaseException as problem:\n    print('told', problem)"
     program = f"import hy\nhy.REPL(locals={{**globals()}}).run()\n{after}"
     with Door(program=[sys.executable, "-c", program]) as repl:
         repl.begin_lisp()

@@ -7,7 +7,7 @@ import ast
 import hy
 import pytest
 
-from cramhy_runtime.ground.packages import find_package
+from cramhy_runtime.lisp_core.packages import find_package
 from cramhy_runtime.session import Image
 
 

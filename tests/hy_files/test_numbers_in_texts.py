@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from cramhy_runtime.ground import conditions, data
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.printing import LISP_IS_SPOKEN, prin1_to_string
+from cramhy_runtime.lisp_core import conditions, data
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.printing import LISP_IS_SPOKEN, prin1_to_string
 from cramhy_runtime.repl.session import Session
 from cramhy_runtime.session import Image
 

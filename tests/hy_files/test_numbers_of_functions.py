@@ -14,9 +14,9 @@ import pytest
 import cramhy
 from cramhy_runtime import cpl
 from cramhy_runtime.designators import Motion
-from cramhy_runtime.ground.classes import make_instance
-from cramhy_runtime.ground.data import Cons, lisp_list
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.classes import make_instance
+from cramhy_runtime.lisp_core.data import Cons, lisp_list
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.ros import python as ros
 from cramhy_runtime.ros.python import message_class, ros_node
 

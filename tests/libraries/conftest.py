@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, ensure_package
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
 collect_ignore = ["workspace"]  # packages that test_systems_as_cram_has_them.py runs in sessions and processes of their own

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from cramhy_runtime.ground.classes import class_name
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.classes import class_name
+from cramhy_runtime.lisp_core.conditions import Condition
 
 RECORDED = Path(__file__).parent / "alexandria.txt"
 

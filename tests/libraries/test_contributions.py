@@ -4,8 +4,8 @@ from pathlib import Path
 
 from systems import posix
 
-from cramhy_runtime.ground.classes import class_name
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.classes import class_name
+from cramhy_runtime.lisp_core.conditions import Condition
 
 LINES = [line for line in (Path(__file__).parent / "contributions.txt").read_text().splitlines() if not line.startswith("; ")]
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 
 NAMES = """sample sample-discrete invalid-probability-distribution sample-from-distribution-matrix double-matrix width height make-double-matrix
     make-double-vector double-vector-size fill-double-matrix double-matrix-from-array double-matrix-from-grid grid-from-double-matrix mref

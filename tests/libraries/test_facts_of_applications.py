@@ -11,7 +11,7 @@ import re
 import pytest
 from lisp_text import LispText
 
-from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.lisp_core.data import Cons
 from cramhy_runtime.languages.commonlisp.systems.systems import find_asd
 from cramhy_runtime.prolog.engine import database
 

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 
 TESTS = """
 (defpackage :fiveam-tests (:use :cl :fiveam))

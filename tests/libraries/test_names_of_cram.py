@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from cramhy_runtime.ground.data import UNBOUND, Symbol, python_list
-from cramhy_runtime.ground.packages import find_package
+from cramhy_runtime.lisp_core.data import UNBOUND, Symbol, python_list
+from cramhy_runtime.lisp_core.packages import find_package
 from cramhy_runtime.languages.commonlisp.evaluation.symbols import fboundp
 from cramhy_runtime.languages.commonlisp.objects.classes import find_class
 from cramhy_runtime.prolog.engine import database, fact_groups

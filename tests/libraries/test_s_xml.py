@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from cramhy_runtime.ground.classes import class_name
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.classes import class_name
+from cramhy_runtime.lisp_core.conditions import Condition
 
 LINES = [line for line in (Path(__file__).parent / "s_xml.txt").read_text(encoding="utf-8").splitlines() if not line.startswith("; ")]
 

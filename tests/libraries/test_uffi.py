@@ -2,7 +2,7 @@
 
 import pytest
 
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 
 
 @pytest.fixture(autouse=True)

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 from systems import posix
 
-from cramhy_runtime.ground.classes import class_name
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.classes import class_name
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.languages.commonlisp.python.python_calls import watch
 
 LINES = [line for line in (Path(__file__).parent / "uiop.txt").read_text().splitlines() if not line.startswith("; ")]

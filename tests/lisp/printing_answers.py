@@ -10,10 +10,10 @@ from pathlib import Path
 
 from cramhy_runtime.languages.commonlisp.packages import face_definition as faces
 from cramhy_runtime.languages.commonlisp.collections import array_making
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import Character, Cons, Keyword, Symbol, lisp_list, one, python_list
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import Character, Cons, Keyword, Symbol, lisp_list, one, python_list
 from cramhy_runtime.languages.commonlisp.format import format
-from cramhy_runtime.ground.packages import find_package, sym
+from cramhy_runtime.lisp_core.packages import find_package, sym
 from cramhy_runtime.languages.commonlisp.printer import pprint_dispatch, pretty, printer
 from cramhy_runtime.languages.commonlisp.printer.print_controls import bound
 from cramhy_runtime.languages.commonlisp.reader.reader import read_from_string

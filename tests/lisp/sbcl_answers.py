@@ -11,16 +11,16 @@ from functools import reduce
 from pathlib import Path
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.languages.commonlisp.packages import face_definition as faces
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, all_values, list_from, one, truth
-from cramhy_runtime.ground.packages import find_package
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, all_values, list_from, one, truth
+from cramhy_runtime.lisp_core.packages import find_package
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.reader.reader import read_from_string
 
-MODULES = """ground.functions ground.equality collections.lists collections.list_search collections.sequences
+MODULES = """lisp_core.functions lisp_core.equality collections.lists collections.list_search collections.sequences
     collections.sequence_mapping collections.sequence_search collections.sequence_change collections.sequence_sort
-    collections.strings collections.characters collections.arrays collections.array_making ground.hash_tables""".split()
+    collections.strings collections.characters collections.arrays collections.array_making lisp_core.hash_tables""".split()
 FOLDER = Path(__file__).parent / "sbcl"
 
 
@@ -55,7 +55,7 @@ FUNCTIONS = {
 SETTERS = {}
 for _module in MODULES:
     _module = importlib.import_module(
-        ("cramhy_runtime." if _module.startswith("ground.") else "cramhy_runtime.languages.commonlisp.") + _module
+        ("cramhy_runtime." if _module.startswith("lisp_core.") else "cramhy_runtime.languages.commonlisp.") + _module
     )
     for _name in _module.LISP_NAMES.split():
         _function = getattr(_module, faces.python_name(_name), None) or getattr(_module, faces.python_name(_name) + "_")

@@ -6,11 +6,11 @@ from hypothesis import strategies as st
 from sbcl_answers import answer, recorded
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.languages.commonlisp.collections import array_making, arrays
-from cramhy_runtime.ground.arrays import LispArray, SimpleArray, TypedVector, Vector, array_type, bit_vector
-from cramhy_runtime.ground.data import Character, FreshString, lisp_list, list_from, python_list
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.arrays import LispArray, SimpleArray, TypedVector, Vector, array_type, bit_vector
+from cramhy_runtime.lisp_core.data import Character, FreshString, lisp_list, list_from, python_list
+from cramhy_runtime.lisp_core.packages import sym
 
 
 @pytest.fixture(autouse=True)

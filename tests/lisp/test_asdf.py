@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.languages.commonlisp.systems import systems
 
 

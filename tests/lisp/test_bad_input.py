@@ -8,8 +8,8 @@ import time
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import all_values
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import all_values
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.repl.session import Session, condition_of
 

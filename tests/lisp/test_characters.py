@@ -7,7 +7,7 @@ from sbcl_answers import answer, recorded
 
 from cramhy_runtime import kernel
 from cramhy_runtime.languages.commonlisp.collections import characters
-from cramhy_runtime.ground.data import Character
+from cramhy_runtime.lisp_core.data import Character
 
 any_character = st.characters().map(Character)
 

@@ -3,15 +3,15 @@
 import pytest
 
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.data import Cons, lisp_list
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.data import Cons, lisp_list
 from cramhy_runtime.languages.commonlisp.objects import class_definition, classes, instances, slots
-from cramhy_runtime.ground.dispatch import generic_functions as generic
+from cramhy_runtime.lisp_core.dispatch import generic_functions as generic
 from cramhy_runtime.languages.commonlisp.objects.builtin_classes import lisp_mro
 from cramhy_runtime.languages.commonlisp.objects.classes import class_name, find_class
 from cramhy_runtime.languages.commonlisp.objects.instances import make_instance
-from cramhy_runtime.ground.dispatch.generic_errors import NoApplicableMethodError, NoPrimaryMethodError
-from cramhy_runtime.ground.packages import find_package, keyword, make_package, sym
+from cramhy_runtime.lisp_core.dispatch.generic_errors import NoApplicableMethodError, NoPrimaryMethodError
+from cramhy_runtime.lisp_core.packages import find_package, keyword, make_package, sym
 
 boot()
 HOME = find_package("CLOS-TESTS") or make_package("CLOS-TESTS", use=("COMMON-LISP",))

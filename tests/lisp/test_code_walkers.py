@@ -7,7 +7,7 @@ ANSI 3.1.2.1.2.1 and nothing of ours; it refuses an operator that is neither of 
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.packages import COMMON_LISP
+from cramhy_runtime.lisp_core.packages import COMMON_LISP
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.repl.session import Session
 

@@ -6,7 +6,7 @@ Source: ANSI 3.2.4.
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.languages.commonlisp.files.files import lisp_path
 from cramhy_runtime.languages.commonlisp.pathnames.pathnames import DEFAULTS
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string

@@ -12,7 +12,7 @@ import pytest
 from cramhy_runtime import kernel
 from cramhy_runtime.languages.commonlisp.compiler import facts, nodes, support
 from cramhy_runtime.languages.commonlisp.compiler.generator import functions
-from cramhy_runtime.ground.conditions import CompileError, Condition
+from cramhy_runtime.lisp_core.conditions import CompileError, Condition
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.packages.package_errors import SymbolPackageLockedError
 from cramhy_runtime.repl.session import condition_of

@@ -11,8 +11,8 @@ from systems import SOAK
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import Cons
 from cramhy_runtime.repl.session import Session
 
 # A program is a nested tuple; strings are symbols. ``n`` makes a number of anything, so that ``+`` always has numbers.

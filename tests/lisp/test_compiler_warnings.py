@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.packages import COMMON_LISP_USER
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.repl import json_lines
 from cramhy_runtime.repl.session import Session

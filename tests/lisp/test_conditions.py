@@ -6,10 +6,10 @@ import weakref
 
 import pytest
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.conditions import Condition, PythonError, SimpleError
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.conditions import Condition, PythonError, SimpleError
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
 

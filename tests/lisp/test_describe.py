@@ -307,7 +307,7 @@ Timestamp: NIL
 
 
 def test_python_objects(lisp, session):
-    from cramhy_runtime.ground.packages import sym
+    from cramhy_runtime.lisp_core.packages import sym
 
     class Gripper:
         """A hand."""

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from cramhy_runtime.session.session import Session
 
 # What SBCL 2.2.9 answers with nothing on standard input: sbcl --script, with each form in a handler-case for end-of-file.

@@ -7,14 +7,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sbcl_answers import answer, recorded
 
-from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.lisp_core.floats import SingleFloat
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import equality
-from cramhy_runtime.ground.hash_tables import HashTable, sxhash
-from cramhy_runtime.ground.arrays import LispArray, Vector, bit_vector
-from cramhy_runtime.ground.data import Character, Cons, FreshString, LispString, list_from
-from cramhy_runtime.ground.equality import eq, eql, equal, equalp
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core import equality
+from cramhy_runtime.lisp_core.hash_tables import HashTable, sxhash
+from cramhy_runtime.lisp_core.arrays import LispArray, Vector, bit_vector
+from cramhy_runtime.lisp_core.data import Character, Cons, FreshString, LispString, list_from
+from cramhy_runtime.lisp_core.equality import eq, eql, equal, equalp
+from cramhy_runtime.lisp_core.packages import sym
 
 
 def changed_string(text):

@@ -2,8 +2,8 @@
 
 import pytest
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.languages.commonlisp.tools.advice import explanation
 from cramhy_runtime.repl.session import condition_of, signalled_here
 

@@ -12,8 +12,8 @@ import time
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.languages.commonlisp.evaluation import universal_time
 from cramhy_runtime.languages.commonlisp.files.files import lisp_path
 from cramhy_runtime.languages.commonlisp.pathnames.pathnames import DEFAULTS

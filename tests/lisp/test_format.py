@@ -4,11 +4,11 @@ import printing_answers
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import TypeError_
-from cramhy_runtime.ground.data import LispString, lisp_list, python_list
+from cramhy_runtime.lisp_core.conditions import TypeError_
+from cramhy_runtime.lisp_core.data import LispString, lisp_list, python_list
 from cramhy_runtime.languages.commonlisp.format.format import format_, format_to_string, formatter
 from cramhy_runtime.languages.commonlisp.format.format_parser import FormatError
-from cramhy_runtime.ground.packages import COMMON_LISP_USER, keyword, sym
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER, keyword, sym
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE, PRINT_ESCAPE, bound
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.streams.streams import StringOutputStream

@@ -80,7 +80,7 @@ def test_variables_of_the_printer_are_looked_at(lisp):
 
 def test_digits_behind_the_point_are_those_of_the_long_way():
     from cramhy_runtime.languages.commonlisp.printer import float_printing
-    from cramhy_runtime.ground.floats import SingleFloat
+    from cramhy_runtime.lisp_core.floats import SingleFloat
 
     chosen, quick = random.Random(7), 0
     for _ in range(1500):

@@ -7,12 +7,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sbcl_answers import answer, recorded
 
-from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.lisp_core.floats import SingleFloat
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import equality
-from cramhy_runtime.ground import hash_tables as h
-from cramhy_runtime.ground.data import Character, Cons, Symbol, lisp_list, list_from
-from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.lisp_core import equality
+from cramhy_runtime.lisp_core import hash_tables as h
+from cramhy_runtime.lisp_core.data import Character, Cons, Symbol, lisp_list, list_from
+from cramhy_runtime.lisp_core.packages import keyword, sym
 
 
 @pytest.fixture(autouse=True)

@@ -10,9 +10,9 @@ import sys
 import hy
 import pytest
 
-from cramhy_runtime.ground.python_exceptions import from_python
-from cramhy_runtime.ground.conditions import SimpleProgramError, TypeError_
-from cramhy_runtime.ground.data import lisp_list
+from cramhy_runtime.lisp_core.python_exceptions import from_python
+from cramhy_runtime.lisp_core.conditions import SimpleProgramError, TypeError_
+from cramhy_runtime.lisp_core.data import lisp_list
 from cramhy_runtime.languages.commonlisp.systems import importer
 
 _numbers = itertools.count()

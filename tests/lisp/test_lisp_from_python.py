@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from cramhy_runtime.ground.conditions import Condition, TypeError_
-from cramhy_runtime.ground.data import Cons, lisp_list, list_from
-from cramhy_runtime.ground.packages import delete_package, find_package, keyword
+from cramhy_runtime.lisp_core.conditions import Condition, TypeError_
+from cramhy_runtime.lisp_core.data import Cons, lisp_list, list_from
+from cramhy_runtime.lisp_core.packages import delete_package, find_package, keyword
 from cramhy_runtime.languages.commonlisp.systems import importer
 
 PAGE = Path(__file__).parents[2] / "docs" / "python.md"

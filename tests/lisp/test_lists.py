@@ -6,10 +6,10 @@ from hypothesis import strategies as st
 from sbcl_answers import answer, recorded
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.languages.commonlisp.collections import list_search, lists
-from cramhy_runtime.ground.data import Cons, MultipleValues, lisp_list, list_from, python_list
-from cramhy_runtime.ground.packages import intern, keyword
+from cramhy_runtime.lisp_core.data import Cons, MultipleValues, lisp_list, list_from, python_list
+from cramhy_runtime.lisp_core.packages import intern, keyword
 
 integers = st.lists(st.integers(-5, 5), max_size=12)
 

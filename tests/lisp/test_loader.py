@@ -8,9 +8,9 @@ import sys
 
 import pytest
 
-from cramhy_runtime.ground.conditions import Condition, FileError
+from cramhy_runtime.lisp_core.conditions import Condition, FileError
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
-from cramhy_runtime.ground.packages import find_package, make_package, sym
+from cramhy_runtime.lisp_core.packages import find_package, make_package, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.systems import loader
 from cramhy_runtime.storage.kept_files import kept_path
@@ -218,7 +218,7 @@ def test_the_package_is_the_same_after_loading(folder, session):
     ],
 )
 def test_an_error_says_where_in_the_file_it_arose(folder, text, place, session):
-    from cramhy_runtime.ground.source_places import exception_position
+    from cramhy_runtime.lisp_core.source_places import exception_position
 
     path = write(folder, text)
     with pytest.raises(Condition) as caught:

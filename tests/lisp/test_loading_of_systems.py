@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from cramhy_runtime.ground.data import lisp_list
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import lisp_list
+from cramhy_runtime.lisp_core.dispatch.generic_functions import GenericFunction
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.languages.commonlisp.compiler import support
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 

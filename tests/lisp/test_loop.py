@@ -4,12 +4,12 @@ import pytest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.data import python_list
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.data import python_list
+from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.loop import loop
-from cramhy_runtime.ground.packages import find_package, sym
+from cramhy_runtime.lisp_core.packages import find_package, sym
 from cramhy_runtime.languages.commonlisp.reader.reader import Reader
 
 

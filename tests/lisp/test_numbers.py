@@ -4,11 +4,11 @@ from fractions import Fraction
 
 import pytest
 
-from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.lisp_core.floats import SingleFloat
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground.conditions import DivisionByZero, FloatingPointOverflow, SimpleTypeError, TypeError_
+from cramhy_runtime.lisp_core.conditions import DivisionByZero, FloatingPointOverflow, SimpleTypeError, TypeError_
 from cramhy_runtime.languages.commonlisp.numbers import arithmetic, irrational, random_state, rounding
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.packages import sym
 
 boot()
 

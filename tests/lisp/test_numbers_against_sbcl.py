@@ -11,12 +11,12 @@ import re
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import all_values, one
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import all_values, one
+from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.languages.commonlisp.evaluation.evaluator import evaluate
 from cramhy_runtime.languages.commonlisp.objects.classes import class_name
-from cramhy_runtime.ground.packages import find_package, sym
+from cramhy_runtime.lisp_core.packages import find_package, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.reader.reader import read_from_string
 

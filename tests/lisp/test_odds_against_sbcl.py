@@ -10,8 +10,8 @@ import pytest
 from sbcl_answers import line, recorded
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.repl import json_lines
 from cramhy_runtime.repl.session import Session, condition_of

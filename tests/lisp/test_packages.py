@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from cramhy_runtime.ground import packages
-from cramhy_runtime.ground.conditions import restart_case
-from cramhy_runtime.ground.data import Symbol
-from cramhy_runtime.ground.packages import Package
+from cramhy_runtime.lisp_core import packages
+from cramhy_runtime.lisp_core.conditions import restart_case
+from cramhy_runtime.lisp_core.data import Symbol
+from cramhy_runtime.lisp_core.packages import Package
 from cramhy_runtime.languages.commonlisp.packages.package_errors import NameConflict, PackageLockedError, check_package, unlocked
 
 

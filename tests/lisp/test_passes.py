@@ -16,8 +16,8 @@ from sbcl_answers import line, recorded
 from systems import SOAK
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.languages.commonlisp.compiler import passes
 from cramhy_runtime.languages.commonlisp.evaluation.evaluator import compiler
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string

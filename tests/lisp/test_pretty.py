@@ -4,8 +4,8 @@ import printing_answers
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.data import Cons, lisp_list
-from cramhy_runtime.ground.packages import COMMON_LISP_USER, sym
+from cramhy_runtime.lisp_core.data import Cons, lisp_list
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER, sym
 from cramhy_runtime.languages.commonlisp.printer import pprint_dispatch, printing_support
 from cramhy_runtime.languages.commonlisp.printer.pretty import logical_block, pprint_indent, pprint_newline
 from cramhy_runtime.languages.commonlisp.printer.print_controls import (

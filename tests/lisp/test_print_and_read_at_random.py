@@ -18,17 +18,17 @@ from hypothesis import strategies as st
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
 from cramhy_runtime.languages.commonlisp.collections.array_making import make_array
-from cramhy_runtime.ground.arrays import LispArray, bit_vector
-from cramhy_runtime.ground.condition_types import EndOfFile, ReaderError
-from cramhy_runtime.ground.conditions import Condition, Warning_, handler_bind, muffle_warning
-from cramhy_runtime.ground.data import Character, Cons, FreshString, LispString, Symbol, list_from, one
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.arrays import LispArray, bit_vector
+from cramhy_runtime.lisp_core.condition_types import EndOfFile, ReaderError
+from cramhy_runtime.lisp_core.conditions import Condition, Warning_, handler_bind, muffle_warning
+from cramhy_runtime.lisp_core.data import Character, Cons, FreshString, LispString, Symbol, list_from, one
+from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.languages.commonlisp.evaluation.evaluator import evaluate
 from cramhy_runtime.languages.commonlisp.pathnames.pathnames import parse_namestring
-from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.lisp_core.floats import SingleFloat
 from cramhy_runtime.languages.commonlisp.numbers.complex_numbers import SingleComplex, exact
 from cramhy_runtime.languages.commonlisp.objects.structures import slots_of
-from cramhy_runtime.ground.packages import Package, find_package, intern, keyword, register, sym
+from cramhy_runtime.lisp_core.packages import Package, find_package, intern, keyword, register, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.syntax.backquote import QUASIQUOTE, Comma
 from cramhy_runtime.languages.commonlisp.reader.reader import Reader

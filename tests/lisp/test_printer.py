@@ -7,11 +7,11 @@ from fractions import Fraction
 import printing_answers
 import pytest
 
-from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.lisp_core.floats import SingleFloat
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.data import Cons, LispString, Symbol, lisp_list, list_from
-from cramhy_runtime.ground.packages import COMMON_LISP_USER, Package, find_package, keyword, register, sym
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.data import Cons, LispString, Symbol, lisp_list, list_from
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER, Package, find_package, keyword, register, sym
 from cramhy_runtime.languages.commonlisp.printer import printer
 from cramhy_runtime.languages.commonlisp.printer.print_controls import (
     PACKAGE,

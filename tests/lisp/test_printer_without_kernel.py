@@ -1,8 +1,8 @@
 """Python code prints Lisp objects at any time, also when no kernel runs."""
 
-from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.lisp_core.floats import SingleFloat
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.data import lisp_list
+from cramhy_runtime.lisp_core.data import lisp_list
 from cramhy_runtime.languages.commonlisp.format.format import format_to_string
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string, princ_to_string
 

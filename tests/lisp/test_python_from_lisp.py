@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from cramhy_runtime.ground.conditions import Condition, PythonError
+from cramhy_runtime.lisp_core.conditions import Condition, PythonError
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
 PAGE = Path(__file__).parents[2] / "docs" / "python.md"
@@ -258,6 +258,6 @@ def test_an_exception_without_a_class_in_lisp_is_still_a_python_error(lisp):
 
 
 def _condition(lisp):
-    from cramhy_runtime.ground.python_exceptions import from_python
+    from cramhy_runtime.lisp_core.python_exceptions import from_python
 
     return from_python(LookupError("x"))

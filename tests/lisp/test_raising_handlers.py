@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from cramhy_runtime.ground.conditions import Error, SeriousCondition, handler_bind, signal_condition
+from cramhy_runtime.lisp_core.conditions import Error, SeriousCondition, handler_bind, signal_condition
 
 
 class Stuck(SeriousCondition):

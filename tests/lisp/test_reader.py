@@ -7,13 +7,13 @@ from systems import SOAK
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.lisp_core.floats import SingleFloat
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground.conditions import Condition, Warning_, handler_bind, muffle_warning
-from cramhy_runtime.ground.data import Character, Cons, Symbol, lisp_list, list_from
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import find_package, intern, keyword, sym
+from cramhy_runtime.lisp_core.conditions import Condition, Warning_, handler_bind, muffle_warning
+from cramhy_runtime.lisp_core.data import Character, Cons, Symbol, lisp_list, list_from
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import find_package, intern, keyword, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.syntax import backquote
 from cramhy_runtime.languages.commonlisp.reader.reader import Reader, incomplete, read, read_from_string

@@ -4,9 +4,9 @@ import pytest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import find_package, make_package, sym
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import find_package, make_package, sym
 from cramhy_runtime.languages.commonlisp.reader.reader import Reader, read_from_string
 from cramhy_runtime.languages.commonlisp.reader.reader_errors import UnmatchedClose
 

@@ -7,11 +7,11 @@ import pytest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import all_values
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import all_values
+from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
-from cramhy_runtime.ground.packages import find_package, sym
+from cramhy_runtime.lisp_core.packages import find_package, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.reader.reader import Reader
 

@@ -6,7 +6,7 @@ import sys
 FIRST = """
 from cramhy_runtime import kernel
 kernel.start(clock="virtual")
-from cramhy_runtime.ground.data import one
+from cramhy_runtime.lisp_core.data import one
 from cramhy_runtime.languages.commonlisp.reader.reader_functions import read_from_string
 print(list(one(read_from_string('("a;b" 1) ; comment'))))
 from cramhy_runtime.repl.session import Session

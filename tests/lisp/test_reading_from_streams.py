@@ -6,7 +6,7 @@ A user's stream (SB-GRAY) gives one character at a time, so the reader may have 
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PRINT_CIRCLE, PRINT_PRETTY, bound
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.repl.session import Session, condition_of

@@ -6,7 +6,7 @@ import pytest
 
 from cramhy_runtime.ros import definition_files
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.languages.commonlisp.tools.advice import explanation
 from cramhy_runtime.repl.session import Session, condition_of
 

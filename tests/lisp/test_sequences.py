@@ -6,17 +6,17 @@ from hypothesis import strategies as st
 from sbcl_answers import answer, recorded
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.languages.commonlisp.collections import sequence_change as change
 from cramhy_runtime.languages.commonlisp.collections import sequence_mapping as mapping
 from cramhy_runtime.languages.commonlisp.collections import sequence_search as searching
 from cramhy_runtime.languages.commonlisp.collections import sequence_sort as sorting
 from cramhy_runtime.languages.commonlisp.collections import sequences
 from cramhy_runtime.languages.commonlisp.collections.sequence_types import to_sequence_type
-from cramhy_runtime.ground.data import Character, LispString, MultipleValues, lisp_list, list_from, python_list
-from cramhy_runtime.ground.equality import equal
-from cramhy_runtime.ground.keyword_calls import lispify
-from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.lisp_core.data import Character, LispString, MultipleValues, lisp_list, list_from, python_list
+from cramhy_runtime.lisp_core.equality import equal
+from cramhy_runtime.lisp_core.keyword_calls import lispify
+from cramhy_runtime.lisp_core.packages import keyword, sym
 
 integers = st.lists(st.integers(-5, 5), max_size=12)
 a = Character("a")

@@ -8,9 +8,9 @@ import pytest
 import standard_page
 
 from cramhy_runtime.languages.commonlisp import coverage, standard_names
-from cramhy_runtime.ground.conditions import CompileError
-from cramhy_runtime.ground.data import UNBOUND, UndefinedFunction
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import CompileError
+from cramhy_runtime.lisp_core.data import UNBOUND, UndefinedFunction
+from cramhy_runtime.lisp_core.packages import sym
 
 
 @pytest.fixture(scope="module")

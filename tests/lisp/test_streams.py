@@ -6,11 +6,11 @@ import sys
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.data import Character, LispString
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.data import Character, LispString
 from cramhy_runtime.languages.commonlisp.files import files
-from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.plain_answers import PlainStream
+from cramhy_runtime.lisp_core.packages import sym
+from cramhy_runtime.lisp_core.plain_answers import PlainStream
 from cramhy_runtime.languages.commonlisp.printer.print_controls import bound
 from cramhy_runtime.languages.commonlisp.files import file_streams
 from cramhy_runtime.languages.commonlisp.streams import streams

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from sbcl_answers import answer, recorded
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.languages.commonlisp.collections import strings
-from cramhy_runtime.ground.data import Character, FreshString, lisp_list
-from cramhy_runtime.ground.packages import intern, keyword
+from cramhy_runtime.lisp_core.data import Character, FreshString, lisp_list
+from cramhy_runtime.lisp_core.packages import intern, keyword
 
 
 @pytest.fixture(autouse=True)

@@ -3,12 +3,12 @@
 import pytest
 
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground.conditions import SimpleProgramError, TypeError_
-from cramhy_runtime.ground.data import Symbol, UndefinedFunction, lisp_list
-from cramhy_runtime.ground.equality import equalp
+from cramhy_runtime.lisp_core.conditions import SimpleProgramError, TypeError_
+from cramhy_runtime.lisp_core.data import Symbol, UndefinedFunction, lisp_list
+from cramhy_runtime.lisp_core.equality import equalp
 from cramhy_runtime.languages.commonlisp.objects import structures
 from cramhy_runtime.languages.commonlisp.objects.classes import class_name, find_class
-from cramhy_runtime.ground.packages import find_package, keyword, make_package, sym
+from cramhy_runtime.lisp_core.packages import find_package, keyword, make_package, sym
 
 boot()
 HOME = find_package("STRUCTURE-TESTS") or make_package("STRUCTURE-TESTS", use=("COMMON-LISP",))

@@ -13,14 +13,14 @@ from tempfile import TemporaryDirectory
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.condition_types import ProgramError
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.condition_types import ProgramError
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.languages.commonlisp.files.files import lisp_path
 from cramhy_runtime.languages.commonlisp.pathnames.pathnames import DEFAULTS
 from cramhy_runtime.languages.commonlisp.objects.classes import class_name
 from cramhy_runtime.languages.commonlisp.objects.instances import InitargError
-from cramhy_runtime.ground.packages import COMMON_LISP, Package, delete_package, register, sym
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, Package, delete_package, register, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.streams.streams import StringInputStream, StringOutputStream
 from cramhy_runtime.repl.session import Session, condition_of

@@ -6,8 +6,8 @@ import itertools
 
 import pytest
 
-from cramhy_runtime.ground.conditions import CompileError, Condition, Error, FileError
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import CompileError, Condition, Error, FileError
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.languages.commonlisp.systems import systems
 
 _numbers = itertools.count()

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from cramhy_runtime.ground.conditions import CompileError, Condition
+from cramhy_runtime.lisp_core.conditions import CompileError, Condition
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.streams.streams import ERROR_OUTPUT, STANDARD_OUTPUT, TRACE_OUTPUT, StringOutputStream
 

@@ -3,10 +3,10 @@
 import pytest
 
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground.conditions import PackageError, SimpleError, SimpleTypeError
-from cramhy_runtime.ground.data import Symbol, lisp_list, list_from
+from cramhy_runtime.lisp_core.conditions import PackageError, SimpleError, SimpleTypeError
+from cramhy_runtime.lisp_core.data import Symbol, lisp_list, list_from
 from cramhy_runtime.languages.commonlisp.objects.classes import class_of, find_class, register_class
-from cramhy_runtime.ground.packages import find_package, make_package, sym
+from cramhy_runtime.lisp_core.packages import find_package, make_package, sym
 from cramhy_runtime.languages.commonlisp.types import coercion, types
 
 boot()

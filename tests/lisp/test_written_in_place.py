@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import pytest
 
-from cramhy_runtime.ground import hash_tables
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core import hash_tables
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
 DEFINITIONS = """

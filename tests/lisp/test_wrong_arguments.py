@@ -9,10 +9,10 @@ import itertools
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import Character, Cons, Symbol, UndefinedFunction, lisp_list
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import COMMON_LISP, COMMON_LISP_USER, keyword, sym
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import Character, Cons, Symbol, UndefinedFunction, lisp_list
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, COMMON_LISP_USER, keyword, sym
 from cramhy_runtime.languages.commonlisp.objects.classes import class_name
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.streams.streams import StringInputStream, StringOutputStream, TwoWayStream

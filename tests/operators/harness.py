@@ -13,8 +13,8 @@ import textwrap
 from plain_hy import hy_module, hy_value, lisp_value
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.data import Cons, Keyword, LispString, Symbol
-from cramhy_runtime.ground.packages import COMMON_LISP_USER
+from cramhy_runtime.lisp_core.data import Cons, Keyword, LispString, Symbol
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER
 from cramhy_runtime.languages.hy.lisp_data import plan_package
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.repl.session import Session

@@ -7,8 +7,8 @@ import re
 import differences_page
 import pytest
 
-from cramhy_runtime.ground.data import UNBOUND
-from cramhy_runtime.ground.packages import COMMON_LISP, all_packages, find_package
+from cramhy_runtime.lisp_core.data import UNBOUND
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, all_packages, find_package
 from cramhy_runtime.languages.commonlisp.evaluation.symbols import fboundp
 from cramhy_runtime.languages.commonlisp.objects.classes import find_class
 from cramhy_runtime.languages.operators import OPERATORS, differences

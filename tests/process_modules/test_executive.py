@@ -6,10 +6,10 @@ from designators.support import facts, lisp, make, python, user
 from cramhy_runtime import cpl
 from cramhy_runtime import process_modules as pm
 from cramhy_runtime.designators.classes import DesignatorError
-from cramhy_runtime.ground.conditions import Error
-from cramhy_runtime.ground.data import MultipleValues, UndefinedFunction
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import COMMON_LISP_USER
+from cramhy_runtime.lisp_core.conditions import Error
+from cramhy_runtime.lisp_core.data import MultipleValues, UndefinedFunction
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for
 from cramhy_runtime.process_modules import executive

@@ -8,11 +8,11 @@ from cramhy_runtime import designators as desig
 from cramhy_runtime import process_modules as pm
 from cramhy_runtime.cpl.failures.failure_types import opened
 from cramhy_runtime.cpl.failures.handling import attempt
-from cramhy_runtime.ground.conditions import Error, SimpleError, error, handler_bind, invoke_restart
-from cramhy_runtime.ground.data import NO_VALUES, MultipleValues, lisp_list
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.conditions import Error, SimpleError, error, handler_bind, invoke_restart
+from cramhy_runtime.lisp_core.data import NO_VALUES, MultipleValues, lisp_list
+from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.languages.commonlisp.evaluation.evaluator import evaluate
-from cramhy_runtime.ground.packages import intern, keyword, sym
+from cramhy_runtime.lisp_core.packages import intern, keyword, sym
 from cramhy_runtime.languages.commonlisp.reader.reader import Reader
 from cramhy_runtime.process_modules import asynchronous, executing, modules, registry
 from cramhy_runtime.prolog.engine.fact_groups import define_fact_group, remove_fact_group

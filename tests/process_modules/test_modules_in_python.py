@@ -6,8 +6,8 @@ import pytest
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.designators import Action, Motion, Object, action_grounding, equate, motion_grounding
-from cramhy_runtime.ground.condition_types import Error
-from cramhy_runtime.ground.data import values
+from cramhy_runtime.lisp_core.condition_types import Error
+from cramhy_runtime.lisp_core.data import values
 from cramhy_runtime.process_modules import (
     AsynchronousModule,
     ProcessModuleRunning,

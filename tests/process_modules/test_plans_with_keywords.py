@@ -6,7 +6,7 @@ import re
 import pytest
 
 from cramhy_runtime.cpl import PlanFailure
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.repl.session import Session
 

@@ -118,7 +118,7 @@ def test_hooks_that_fail_end_the_module_and_nobody_waits_for_ever(text):
 @pytest.mark.parametrize("restart, after", [("CONTINUE-PM", "(:FAILED 2)"), ("TERMINATE-PM", "NIL")])
 def test_the_restarts_are_offered_in_the_debugger(text, restart, after):
     """With ``*debug-on-lisp-errors*`` an error stops in the module, in front of the user, who chooses how it goes on."""
-    from cramhy_runtime.ground import conditions
+    from cramhy_runtime.lisp_core import conditions
 
     seen = []
 

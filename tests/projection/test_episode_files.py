@@ -289,7 +289,7 @@ def test_random_damage_is_an_error_or_an_episode_and_never_more(saved, tmp_path)
     text = (tmp_path / "fetch.ek").read_text()
     chance = random.Random(5)
     from cramhy_runtime.languages.commonlisp.faces.episodes.files import read_episode
-    from cramhy_runtime.ground.conditions import SimpleError
+    from cramhy_runtime.lisp_core.conditions import SimpleError
 
     for _ in range(1500 if SOAK else 300):
         place, length = chance.randrange(len(text)), chance.randrange(4)

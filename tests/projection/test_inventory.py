@@ -5,11 +5,11 @@ import re
 import pytest
 
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground.data import UNBOUND, UndefinedFunction
+from cramhy_runtime.lisp_core.data import UNBOUND, UndefinedFunction
 from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda_list_of
 from cramhy_runtime.languages.commonlisp.syntax.macros import ensure_loaded
 from cramhy_runtime.languages.commonlisp.objects.classes import find_class
-from cramhy_runtime.ground.packages import delete_package, find_package, register
+from cramhy_runtime.lisp_core.packages import delete_package, find_package, register
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.types.types import is_known_type
 from cramhy_runtime.prolog.engine.database import functors

@@ -7,7 +7,7 @@ from cramhy_runtime.session import boot
 from cramhy_runtime import process_modules as pm
 from cramhy_runtime import projection as proj
 from cramhy_runtime.designators.classes import make_designator
-from cramhy_runtime.ground.packages import intern, keyword
+from cramhy_runtime.lisp_core.packages import intern, keyword
 from cramhy_runtime.projection import environments
 from cramhy_runtime.testing import assert_order, mark, faults
 

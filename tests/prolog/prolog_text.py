@@ -1,10 +1,10 @@
 """Prolog as text: reading goals, proving them, and showing the answers the way Lisp prints them."""
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.packages import STANDARD_NAMES
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import COMMON_LISP, find_package, make_package, sym
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.packages import STANDARD_NAMES
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, find_package, make_package, sym
 
 for name in STANDARD_NAMES.split():
     if name not in ("nil", "t"):
@@ -68,7 +68,7 @@ class RegisteredWarnings:
     """``with RegisteredWarnings() as given:`` collects the texts of warnings and muffles them."""
 
     def __enter__(self):
-        from cramhy_runtime.ground.conditions import Warning_, muffle_warning
+        from cramhy_runtime.lisp_core.conditions import Warning_, muffle_warning
 
         texts = []
 

@@ -8,7 +8,7 @@ import random
 
 from prolog_text import HERE, read
 
-from cramhy_runtime.ground.data import Cons, list_from
+from cramhy_runtime.lisp_core.data import Cons, list_from
 
 VARIABLES = [read(f"?{letter}") for letter in "uvwxyz"]
 ATOMS = [read(text) for text in "a a a b b nil 1 1 2 2 3".split()] + [read(text) for text in ("0", "-1", '"s"', ":k", "1.5")]

@@ -7,7 +7,7 @@ are those with endless terms and long proofs.
 
 import subprocess
 
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol
 from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
 
 LIBRARY = r"""

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from prolog_text import HERE, read
 
 from cramhy_runtime import cpl, kernel
-from cramhy_runtime.ground.data import Cons, Symbol, list_from
+from cramhy_runtime.lisp_core.data import Cons, Symbol, list_from
 from cramhy_runtime.prolog.engine import fact_groups as facts
 from cramhy_runtime.prolog import query
 from cramhy_runtime.utilities import patterns

@@ -12,7 +12,7 @@ from prolog_text import RegisteredWarnings, read, show
 from random_programs import Program
 
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol
 from cramhy_runtime.prolog.compiler import variants
 from cramhy_runtime.prolog.engine import fact_groups as facts
 from cramhy_runtime.prolog import query

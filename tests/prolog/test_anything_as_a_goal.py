@@ -6,8 +6,8 @@ from prolog_text import RegisteredWarnings, read
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import Cons, list_from
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import Cons, list_from
 from cramhy_runtime.prolog.builtins import control
 from cramhy_runtime.prolog.engine import database, fact_groups as facts
 from cramhy_runtime.prolog import query

@@ -6,7 +6,7 @@ import pytest
 from prolog_text import ask, first, group, read, show
 
 from cramhy_runtime import cpl, kernel
-from cramhy_runtime.ground.data import list_from
+from cramhy_runtime.lisp_core.data import list_from
 from cramhy_runtime.prolog import query
 from cramhy_runtime.prolog.engine.machine import again
 from cramhy_runtime.prolog.query import Proof

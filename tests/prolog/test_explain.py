@@ -10,10 +10,10 @@ from test_against_reference import canonical, goals_over, programs
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground.conditions import Error
-from cramhy_runtime.ground.data import Cons, list_from
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import Error
+from cramhy_runtime.lisp_core.data import Cons, list_from
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.prolog.explanations import explaining
 from cramhy_runtime.prolog.engine import fact_groups as facts, machine
 from cramhy_runtime.prolog import query

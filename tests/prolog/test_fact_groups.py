@@ -3,7 +3,7 @@
 import pytest
 from prolog_text import ask, error_text, first, function, group, read, show
 
-from cramhy_runtime.ground.data import list_from
+from cramhy_runtime.lisp_core.data import list_from
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for
 from cramhy_runtime.prolog.engine import database
 from cramhy_runtime.prolog.engine import fact_groups as facts

@@ -11,8 +11,8 @@ import random
 import pytest
 from prolog_text import ask, group, read, show
 
-from cramhy_runtime.ground.conditions import StorageCondition
-from cramhy_runtime.ground.data import Cons, LispString, list_from
+from cramhy_runtime.lisp_core.conditions import StorageCondition
+from cramhy_runtime.lisp_core.data import Cons, LispString, list_from
 from cramhy_runtime.prolog import query
 from cramhy_runtime.prolog.compiler.compiler import compile_clauses
 from cramhy_runtime.prolog.engine import fact_groups as facts

@@ -4,8 +4,8 @@ import pytest
 from prolog_text import error_text, read, show
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, lisp_list, list_from
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.data import Cons, MultipleValues, Symbol, lisp_list, list_from
+from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.utilities import lazy_lists as ll
 
 

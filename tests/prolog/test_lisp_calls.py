@@ -4,10 +4,10 @@ import pytest
 from prolog_text import ask, error_text, function, group, read, show
 
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.data import MultipleValues, Symbol, lisp_list
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.data import MultipleValues, Symbol, lisp_list
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.prolog.builtins.function_calls import BREAK_ON_LISP_ERRORS
 
 
@@ -86,7 +86,7 @@ def test_a_variable_is_no_predicate_even_if_it_is_bound(warnings_given):
 
 
 def test_a_function_object_is_rejected(warnings_given):
-    from cramhy_runtime.ground.data import list_from
+    from cramhy_runtime.lisp_core.data import list_from
     from cramhy_runtime.prolog import query
 
     goal = list_from([read("lisp-fun"), lambda: 1, read("?x")])

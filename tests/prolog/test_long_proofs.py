@@ -4,10 +4,10 @@ import pytest
 from prolog_text import HERE, RegisteredWarnings, ask, error_text, function, group, read
 
 from cramhy_runtime import cpl, kernel
-from cramhy_runtime.ground.condition_types import StorageCondition
-from cramhy_runtime.ground.data import list_from
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.condition_types import StorageCondition
+from cramhy_runtime.lisp_core.data import list_from
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.prolog.engine import fact_groups as facts
 from cramhy_runtime.prolog import query
 from cramhy_runtime.prolog.engine.machine import DEPTH_LIMIT

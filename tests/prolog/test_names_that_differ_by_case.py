@@ -5,7 +5,7 @@ import pickle
 
 import pytest
 
-from cramhy_runtime.ground.packages import ensure_package
+from cramhy_runtime.lisp_core.packages import ensure_package
 from cramhy_runtime.prolog import P, UnknownPredicate, V, fact_group, facts_asserted, facts_watched, findall, first, holds, kw, names
 from cramhy_runtime.prolog import test as prolog_test
 

@@ -4,7 +4,7 @@ import pytest
 
 from cramhy_runtime.designators import Motion, Object, properties, property_values
 from cramhy_runtime.designators.classes import desig_prop_value
-from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.lisp_core.data import Symbol
 from cramhy_runtime.prolog import P, V, fact_group, findall, first, function, holds, kw, predicate, query
 from cramhy_runtime.prolog.python.terms import Name
 

@@ -3,7 +3,7 @@
 import pytest
 from prolog_text import error_text, read, show
 
-from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.lisp_core.data import Symbol
 from cramhy_runtime.utilities import patterns as p
 
 

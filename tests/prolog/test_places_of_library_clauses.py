@@ -7,7 +7,7 @@ import re
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for
 from cramhy_runtime.prolog.engine import database
 from cramhy_runtime.repl.session import Session

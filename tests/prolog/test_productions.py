@@ -6,10 +6,10 @@ import random
 import pytest
 from prolog_text import error_text, read, show
 
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import list_from
-from cramhy_runtime.ground.equality import eql, equalp
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import list_from
+from cramhy_runtime.lisp_core.equality import eql, equalp
+from cramhy_runtime.lisp_core.packages import keyword
 from cramhy_runtime.prolog.builtins import productions, rete
 from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
 

@@ -13,8 +13,8 @@ import pytest
 from prolog_text import ask, group
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.data import Cons, Symbol
+from cramhy_runtime.lisp_core.condition_types import SimpleError
+from cramhy_runtime.lisp_core.data import Cons, Symbol
 from cramhy_runtime.prolog import P, UnknownPredicate, V, explain, fact_group, findall, first, holds, kw, names, remove_fact_group, solve
 from cramhy_runtime.prolog.python.terms import Tail, show, to_lisp, to_python
 

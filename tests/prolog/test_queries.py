@@ -204,7 +204,7 @@ def test_query_var_looks_in_the_first_solution():
 
 
 def test_python_asks_with_dicts_and_tuples():
-    from cramhy_runtime.ground.data import list_from
+    from cramhy_runtime.lisp_core.data import list_from
     from cramhy_runtime.prolog import query
     from cramhy_runtime.prolog.terms.terms import Var
 

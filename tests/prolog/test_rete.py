@@ -5,7 +5,7 @@ import re
 import pytest
 from prolog_text import ask, error_text, read, show
 
-from cramhy_runtime.ground.data import lisp_list
+from cramhy_runtime.lisp_core.data import lisp_list
 from cramhy_runtime.prolog.builtins import productions, rete
 from cramhy_runtime.utilities.lazy_lists import force_ll
 

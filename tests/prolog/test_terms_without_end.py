@@ -4,8 +4,8 @@ import pytest
 from prolog_text import ask, error_text, function, group, read
 
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground.conditions import StorageCondition
-from cramhy_runtime.ground.data import Cons, list_from
+from cramhy_runtime.lisp_core.conditions import StorageCondition
+from cramhy_runtime.lisp_core.data import Cons, list_from
 from cramhy_runtime.prolog import query
 from cramhy_runtime.prolog.terms.terms import import_term, resolve
 from cramhy_runtime.utilities.lazy_lists import force_ll

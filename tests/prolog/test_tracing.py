@@ -12,10 +12,10 @@ from test_explain import explained_solutions
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground.conditions import Error, handler_case
-from cramhy_runtime.ground.data import Cons, list_from
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import Error, handler_case
+from cramhy_runtime.lisp_core.data import Cons, list_from
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.languages.commonlisp.streams.basic_streams import StringOutputStream as StringOutput
 from cramhy_runtime.languages.commonlisp.streams.stream_functions import get_output_stream_string as written
 from cramhy_runtime.languages.commonlisp.streams.streams import TRACE_OUTPUT

@@ -2,7 +2,7 @@
 
 import pytest
 
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
 

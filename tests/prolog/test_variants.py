@@ -8,7 +8,7 @@ from __future__ import annotations
 import pytest
 from prolog_text import RegisteredWarnings, ask, group, read, show
 
-from cramhy_runtime.ground.data import list_from
+from cramhy_runtime.lisp_core.data import list_from
 from cramhy_runtime.prolog import query, tracing
 from cramhy_runtime.prolog.compiler import variants
 from cramhy_runtime.prolog.engine import fact_groups as facts

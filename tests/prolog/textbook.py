@@ -7,7 +7,7 @@ stop, up to its barrier.
 
 from itertools import count
 
-from cramhy_runtime.ground.data import Cons, Symbol, list_from
+from cramhy_runtime.lisp_core.data import Cons, Symbol, list_from
 from cramhy_runtime.utilities.patterns import variable
 
 _fresh = count()

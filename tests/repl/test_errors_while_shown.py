@@ -6,8 +6,8 @@ import bad_printers
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.tools.error_reports import report_lines
 from cramhy_runtime.repl import json_lines

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import example, given, strategies
 
-from cramhy_runtime.ground.data import Character
+from cramhy_runtime.lisp_core.data import Character
 from cramhy_runtime.languages.commonlisp.reader.reader import incomplete, set_macro_character
 from cramhy_runtime.languages.commonlisp.reader.readtables import READTABLE, STANDARD
 from cramhy_runtime.repl import listener

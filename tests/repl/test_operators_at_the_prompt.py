@@ -2,7 +2,7 @@
 
 import pytest
 
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for
 from cramhy_runtime.session.completion import completions
 

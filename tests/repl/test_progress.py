@@ -10,7 +10,7 @@ from itertools import count
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.repl import progress
 from cramhy_runtime.repl.progress import Progress, fitting

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from cramhy_runtime.ground.packages import find_package
+from cramhy_runtime.lisp_core.packages import find_package
 from cramhy_runtime.prolog.engine import database
 from cramhy_runtime.session.arglists import arglist
 

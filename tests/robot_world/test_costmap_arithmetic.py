@@ -14,7 +14,7 @@ np = pytest.importorskip("numpy", reason="needs numpy")
 
 from cramhy_runtime import kernel  # noqa: E402  what follows needs numpy
 from cramhy_runtime.extras import install_command  # noqa: E402
-from cramhy_runtime.ground.conditions import Condition  # noqa: E402
+from cramhy_runtime.lisp_core.conditions import Condition  # noqa: E402
 from cramhy_runtime.session.boot import define_costmaps  # noqa: E402
 from cramhy_runtime.robot_world.costmaps import costmap, costs, generators, grids, spread  # noqa: E402
 

@@ -116,7 +116,7 @@ def test_a_system_that_depends_on_them(session, tmp_path):
 def test_an_image_that_names_none_of_them_has_none():
     program = (
         "from cramhy_runtime.session.boot import boot; boot()\n"
-        "from cramhy_runtime.ground.packages import registered\n"
+        "from cramhy_runtime.lisp_core.packages import registered\n"
         f"print([name for name in {[name.upper() for name in PACKAGES]!r} if registered(name)])\n"
         "import sys; print([name for name in sys.modules if 'robot_world' in name])"
     )

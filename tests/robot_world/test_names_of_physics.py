@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from lisp_text import LispText
 
-from cramhy_runtime.ground.packages import find_package
+from cramhy_runtime.lisp_core.packages import find_package
 
 pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
 

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, find_package_or_error
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, ensure_package, find_package_or_error
 
 
 @pytest.fixture

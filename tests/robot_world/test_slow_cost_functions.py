@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.robot_world.costmaps import costmap, costs
 
 SIDE = 80  # cells

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.repl.session import Session
 
 pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")

@@ -8,7 +8,7 @@ from lisp_text import LispLine
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.packages import sym
 
 OUTPUT = sym("*STANDARD-OUTPUT*")
 ERRORS = sym("*ERROR-OUTPUT*")
@@ -65,7 +65,7 @@ def simulator(running):
 @pytest.fixture
 def fails():
     """Calls a function and returns the condition it signals."""
-    from cramhy_runtime.ground.condition_types import Condition
+    from cramhy_runtime.lisp_core.condition_types import Condition
 
     def check(function, *arguments, **keywords):
         with pytest.raises(Condition) as caught:
@@ -112,7 +112,7 @@ class Lisp(LispLine):
 
 @pytest.fixture(params=["threads", "greenlet"])
 def lisp(request, session):
-    from cramhy_runtime.ground.packages import COMMON_LISP_USER
+    from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER
     from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 
     yield Lisp(request.param, session)

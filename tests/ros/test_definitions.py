@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import recorded_md5sums
 
-from cramhy_runtime.ground.packages import find_package, registered
+from cramhy_runtime.lisp_core.packages import find_package, registered
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.systems import systems
 from cramhy_runtime.ros import definition_files, definition_text, messages, type_texts

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.packages import keyword
 from cramhy_runtime.ros import arrays, messages, received, serialization, wire
 from cramhy_runtime.ros.message_cbor import to_cbor_data
 from cramhy_runtime.ros.message_json import from_json, to_json, to_json_text, to_record_text

@@ -3,7 +3,7 @@
 import pytest
 
 from cramhy_runtime.cli import shims
-from cramhy_runtime.ground.condition_types import Error
+from cramhy_runtime.lisp_core.condition_types import Error
 from cramhy_runtime.ros import messages
 
 VELOCITY = (

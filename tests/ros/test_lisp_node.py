@@ -5,10 +5,10 @@ import re
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import Error, SimpleError
-from cramhy_runtime.ground.data import lisp_list
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import Error, SimpleError
+from cramhy_runtime.lisp_core.data import lisp_list
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.ros import graph, messages
 from cramhy_runtime.ros.names import Naming, qualify, read_private_value
 from cramhy_runtime.ros.roslisp import logging, node, parameters, services, topics, utilities

@@ -2,11 +2,11 @@
 
 import pytest
 
-from cramhy_runtime.ground.condition_types import Error
-from cramhy_runtime.ground.data import python_list
-from cramhy_runtime.ground.floats import SingleFloat
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.condition_types import Error
+from cramhy_runtime.lisp_core.data import python_list
+from cramhy_runtime.lisp_core.floats import SingleFloat
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.ros import messages, wire
 from cramhy_runtime.ros.message_building import (
     code_symbol,

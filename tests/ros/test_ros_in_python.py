@@ -14,7 +14,7 @@ from cramhy_runtime.actionlib.python import (
     publish_feedback,
     succeed_current,
 )
-from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.lisp_core.condition_types import SimpleError
 from cramhy_runtime.prolog import kw
 from cramhy_runtime.ros.python import (
     advertise,

@@ -4,11 +4,11 @@ import pytest
 
 import cramhy_runtime.languages.commonlisp.faces.ros.package  # noqa: F401
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import Error, SimpleError
-from cramhy_runtime.ground.data import NO_VALUES, MultipleValues, lisp_list, python_list
-from cramhy_runtime.ground.floats import SingleFloat
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import Error, SimpleError
+from cramhy_runtime.lisp_core.data import NO_VALUES, MultipleValues, lisp_list, python_list
+from cramhy_runtime.lisp_core.floats import SingleFloat
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.ros import graph, message_building, messages
 from cramhy_runtime.ros.roslisp import clock, node, parameters, services, time, topics
 from cramhy_runtime.ros.roslisp.errors import RosRpcError, ServiceError

@@ -200,7 +200,7 @@ def test_each_message_arrives_once(robot, joined):
 
 
 def test_a_lost_connection_fails_what_waits_and_comes_back(robot, joined):
-    from cramhy_runtime.ground.condition_types import Condition
+    from cramhy_runtime.lisp_core.condition_types import Condition
 
     evaluate, link = joined
     evaluate('(roslisp:start-ros-node "lisp")')
@@ -311,7 +311,7 @@ def test_what_another_server_answers_is_told(answer, text):
 
 
 def test_an_answer_that_comes_too_late_is_waited_for_no_more(robot, joined, monkeypatch):
-    from cramhy_runtime.ground.condition_types import Condition
+    from cramhy_runtime.lisp_core.condition_types import Condition
     from cramhy_runtime.rosbridge import attachment
 
     _, link = joined

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from cramhy_runtime import kernel, rosbridge
-from cramhy_runtime.ground.condition_types import Condition
+from cramhy_runtime.lisp_core.condition_types import Condition
 from stalling_proxy import StallingProxy
 
 pytest.importorskip("roslibpy")

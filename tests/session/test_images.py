@@ -15,8 +15,8 @@ from cramhy_runtime.cpl.fluents.fluents import living_fluents
 from cramhy_runtime.designators import Motion
 from cramhy_runtime.prolog import kw
 from cramhy_runtime.designators.classes import living
-from cramhy_runtime.ground.packages import _definitions, _ours, _users_packages, all_packages, common, find_package
-from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.lisp_core.packages import _definitions, _ours, _users_packages, all_packages, common, find_package
+from cramhy_runtime.lisp_core.data import Symbol
 from cramhy_runtime.kernel import images
 from cramhy_runtime.repl.session import Session
 from cramhy_runtime.session import Image
@@ -126,9 +126,9 @@ def test_plans_of_an_image_go_on_where_they_were_when_it_is_entered_again():
 
 
 def test_dynamic_bindings_and_handlers_belong_to_the_image():
-    from cramhy_runtime.ground.conditions import SimpleError, error, handler_bind
-    from cramhy_runtime.ground.dynamic import binding
-    from cramhy_runtime.ground.packages import sym
+    from cramhy_runtime.lisp_core.conditions import SimpleError, error, handler_bind
+    from cramhy_runtime.lisp_core.dynamic import binding
+    from cramhy_runtime.lisp_core.packages import sym
 
     heard = []
     with Image(as_now=True):

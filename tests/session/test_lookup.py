@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.packages import find_package, intern
+from cramhy_runtime.lisp_core.packages import find_package, intern
 from cramhy_runtime.session import lookup
 from cramhy_runtime.session.lookup import known_files
 

@@ -3,7 +3,7 @@
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import packages
+from cramhy_runtime.lisp_core import packages
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.systems import systems
 from cramhy_runtime.languages.commonlisp.systems.importer import package_for

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.session import requests
 from cramhy_runtime.session.requests import DONE, FAILED, INTERRUPTED, Mailbox, Request, request_of
 from cramhy_runtime.session.session import Session

@@ -73,7 +73,7 @@ def test_what_is_typed_finds_what_it_finds_in_a_session_that_was_whole_from_the_
 
 IMAGE = """
 import sys
-from cramhy_runtime.ground import packages
+from cramhy_runtime.lisp_core import packages
 from cramhy_runtime.repl.session import Session
 from cramhy_runtime.session import Image, boot
 

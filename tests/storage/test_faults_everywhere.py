@@ -17,8 +17,8 @@ import pytest
 from cramhy_runtime import chronicle, kernel, storage
 from cramhy_runtime.chronicle.recordings import RecordingError
 from cramhy_runtime.cli import shims, workspace
-from cramhy_runtime.ground.conditions import Condition, FileError
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.conditions import Condition, FileError
+from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.languages.commonlisp.files.files import lisp_path
 from cramhy_runtime.languages.commonlisp.pathnames.pathnames import DEFAULTS, namestring
 from cramhy_runtime.languages.commonlisp.systems import loader

@@ -13,7 +13,7 @@ import pytest
 from systems import posix
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.languages import compiler_stamp
 from cramhy_runtime.languages.commonlisp.systems import program_files
 from cramhy_runtime.languages.commonlisp.systems import loader

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.languages.commonlisp.streams import streams as lisp_streams
 from cramhy_runtime.session.session import Session
 from cramhy_runtime.swank import package, server, streams

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.session.calls_on_stack import calls_on_stack
 
 

@@ -78,7 +78,7 @@ def test_what_is_no_expression_is_told(text, why):
 
 
 def test_reading_interns_nothing():
-    from cramhy_runtime.ground.packages import COMMON_LISP_USER
+    from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER
 
     before = len(COMMON_LISP_USER.internal)
     wire.read("(:emacs-rex (swank:interactive-eval never-heard-of-this) nil t 1)")

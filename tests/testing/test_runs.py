@@ -3,7 +3,7 @@
 import pytest
 
 from cramhy_runtime import cpl, kernel, testing
-from cramhy_runtime.ground.packages import find_package_or_error
+from cramhy_runtime.lisp_core.packages import find_package_or_error
 from cramhy_runtime.languages.commonlisp.reader.reader import Reader
 from cramhy_runtime.testing.runs import describe
 

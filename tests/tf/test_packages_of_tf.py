@@ -5,9 +5,9 @@ import sys
 
 import pytest
 
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda_list_of
-from cramhy_runtime.ground.packages import find_package
+from cramhy_runtime.lisp_core.packages import find_package
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PRINT_GENSYM
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
@@ -93,7 +93,7 @@ def test_nicknames():
     code = """if True:
         from cramhy_runtime.session import boot
         boot()
-        from cramhy_runtime.ground.packages import find_package
+        from cramhy_runtime.lisp_core.packages import find_package
         assert find_package("TF") is find_package("CL-TF") and find_package("TF-TYPES") is find_package("CL-TRANSFORMS-STAMPED")"""
     subprocess.run([sys.executable, "-c", code], check=True)
 
@@ -163,7 +163,7 @@ def test_methods_for_what_a_program_has(lisp):
 def test_the_packages_are_made_when_somebody_names_them():
     text = (
         "import sys; from cramhy_runtime.session import boot; boot(); assert 'cramhy_runtime.tf' not in sys.modules;"
-        "from cramhy_runtime.ground.packages import find_package; assert find_package('TF').name == 'CL-TF';"
+        "from cramhy_runtime.lisp_core.packages import find_package; assert find_package('TF').name == 'CL-TF';"
         "assert find_package('CL-TF2') and 'cramhy_runtime.tf' in sys.modules"
     )
     assert subprocess.run([sys.executable, "-c", text], capture_output=True, text=True).stderr == ""
@@ -174,6 +174,6 @@ def test_a_program_may_call_its_own_package_tf():
         "from cramhy_runtime.session import boot; boot();"
         "from cramhy_runtime.repl.session import Session; session = Session(time='virtual', turtlesim=False);"
         "session.evaluate_text('(defpackage :tf (:use :cl)) (in-package :tf) (defun send-transform () 1) (cl-tf:make-identity-pose)');"
-        "from cramhy_runtime.ground.packages import find_package; assert find_package('TF') is not find_package('CL-TF')"
+        "from cramhy_runtime.lisp_core.packages import find_package; assert find_package('TF') is not find_package('CL-TF')"
     )
     assert subprocess.run([sys.executable, "-c", text], capture_output=True, text=True).stderr == ""

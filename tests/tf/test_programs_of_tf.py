@@ -6,7 +6,7 @@ import re
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.lisp_core.condition_types import SimpleError
 from cramhy_runtime.ros import graph
 from cramhy_runtime.ros.messages import message_class_exact
 from cramhy_runtime.ros_tools.executables import start

@@ -5,7 +5,7 @@ from math import pi
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.lisp_core.condition_types import SimpleError
 from cramhy_runtime.ros import graph
 from cramhy_runtime.ros.messages import message_class_exact
 from cramhy_runtime.ros.roscpp import Program

@@ -3,7 +3,7 @@
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.packages import COMMON_LISP_USER
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.repl.session import Session
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from cramhy_runtime.ground.arrays import LispArray
+from cramhy_runtime.lisp_core.arrays import LispArray
 from cramhy_runtime.transforms import matrices, poses, quaternions, vectors
 from cramhy_runtime.transforms.poses import Transform
 from cramhy_runtime.transforms.quaternions import Quaternion

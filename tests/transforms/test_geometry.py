@@ -4,16 +4,16 @@ import math
 
 import pytest
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.arrays import LispArray
-from cramhy_runtime.ground.data import lisp_list
-from cramhy_runtime.ground.floats import SingleFloat
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import find_package, keyword, sym
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.arrays import LispArray
+from cramhy_runtime.lisp_core.data import lisp_list
+from cramhy_runtime.lisp_core.floats import SingleFloat
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import find_package, keyword, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.transforms import matrices, poses, quaternions, vectors
-from cramhy_runtime.ground.packages import ensure_package
-from cramhy_runtime.ground.printing import speak
+from cramhy_runtime.lisp_core.packages import ensure_package
+from cramhy_runtime.lisp_core.printing import speak
 from cramhy_runtime.transforms.poses import Pose, Transform
 from cramhy_runtime.transforms.quaternions import Quaternion
 from cramhy_runtime.transforms.vectors import Vector3

@@ -2,12 +2,12 @@
 
 import pytest
 
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda_list_of
 from cramhy_runtime.languages.commonlisp.objects.classes import find_class
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PRINT_GENSYM
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
-from cramhy_runtime.ground.packages import ensure_package
+from cramhy_runtime.lisp_core.packages import ensure_package
 
 FUNCTIONS = {
     "(x y z)": "make-3d-vector",

@@ -5,8 +5,8 @@ import pickle
 
 import pytest
 
-from cramhy_runtime.ground.condition_types import TypeError_
-from cramhy_runtime.ground.equality import eql, equal
+from cramhy_runtime.lisp_core.condition_types import TypeError_
+from cramhy_runtime.lisp_core.equality import eql, equal
 from cramhy_runtime.tf.stamped import PointStamped, PoseStamped
 from cramhy_runtime.transforms.poses import Pose, Transform
 from cramhy_runtime.transforms.quaternions import Quaternion

@@ -164,7 +164,7 @@ PRELUDE = """
 @pytest.fixture(params=["threads", "greenlet"])
 def typed(request):
     """A `Typing` in a package that uses CPL and ROSLISP, with a node and the turtle; ``/turtle1`` is watched."""
-    from cramhy_runtime.ground.packages import COMMON_LISP_USER, delete_package, find_package
+    from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER, delete_package, find_package
     from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
     from cramhy_runtime.languages.commonlisp.streams.streams import STANDARD_OUTPUT, StringOutputStream
     from cramhy_runtime.repl.session import Session

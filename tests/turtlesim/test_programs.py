@@ -7,7 +7,7 @@ import pytest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.cli import launch
-from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.lisp_core.condition_types import SimpleError
 from cramhy_runtime.ros import graph
 from cramhy_runtime.ros.messages import message_class_exact
 from cramhy_runtime.ros.services import Refusal

@@ -8,8 +8,8 @@ from xml.etree import ElementTree
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.condition_types import FileError, SimpleError, TypeError_, shown
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.condition_types import FileError, SimpleError, TypeError_, shown
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.turtlesim import history, pictures, replay
 from cramhy_runtime.languages.commonlisp.faces.turtlesim import package
 from cramhy_runtime.turtlesim.history import History

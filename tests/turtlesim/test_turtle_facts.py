@@ -12,7 +12,7 @@ from itertools import zip_longest
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.condition_types import TypeError_ as LispTypeError
+from cramhy_runtime.lisp_core.condition_types import TypeError_ as LispTypeError
 from cramhy_runtime.ros import graph
 from cramhy_runtime.ros.services import Refusal
 

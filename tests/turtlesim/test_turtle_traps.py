@@ -165,7 +165,7 @@ def test_who_commands_last_in_a_tick_wins(turtle):
 
 
 def test_set_pen_in_lisp_takes_numbers_and_wraps_them(typed):
-    from cramhy_runtime.ground.condition_types import Error
+    from cramhy_runtime.lisp_core.condition_types import Error
 
     with pytest.raises(Error):
         typed('(call-service "turtle1/set_pen" "turtlesim/SetPen" :off t)')

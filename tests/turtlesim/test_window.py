@@ -3,8 +3,8 @@
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.condition_types import SimpleError
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.languages.commonlisp.faces.turtlesim import package
 
 

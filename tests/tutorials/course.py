@@ -19,7 +19,7 @@ import hy
 from systems import SOAK
 
 from cramhy_runtime import kernel, testing
-from cramhy_runtime.ground.data import one
+from cramhy_runtime.lisp_core.data import one
 from cramhy_runtime.languages.commonlisp.numbers.random_state import seed_random
 from cramhy_runtime.languages.commonlisp.systems import systems
 from cramhy_runtime.ros import graph

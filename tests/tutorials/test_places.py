@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cramhy_runtime.designators.classes import DesignatorError
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 
 from .course import SEEDS, STEP, course, seeded
 

@@ -12,7 +12,7 @@ import sys
 
 import pytest
 
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 
 from . import course
 from .course import FOLDER, environment

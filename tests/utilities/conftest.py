@@ -4,7 +4,7 @@ import pytest
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
-from cramhy_runtime.ground.packages import COMMON_LISP_USER
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.repl.session import Session

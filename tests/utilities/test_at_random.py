@@ -4,9 +4,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cramhy_runtime.ground.data import Cons, Symbol, list_from, python_list
-from cramhy_runtime.ground.equality import equal
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import Cons, Symbol, list_from, python_list
+from cramhy_runtime.lisp_core.equality import equal
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.utilities import lazy_lists as ll
 from cramhy_runtime.utilities import patterns
 

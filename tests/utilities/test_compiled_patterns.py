@@ -6,10 +6,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import Cons, LispString, Symbol, list_from
-from cramhy_runtime.ground.equality import eql, equal
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import Cons, LispString, Symbol, list_from
+from cramhy_runtime.lisp_core.equality import eql, equal
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.utilities import patterns
 from cramhy_runtime.utilities.compiled_patterns import unfit
 from cramhy_runtime.utilities.lazy_lists import from_iterator

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 
 FROM = "(defun from (n) (cut:lazy-list ((i n)) (cut:cont i (+ i 1))))"
 

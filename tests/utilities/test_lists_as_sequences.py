@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.data import Cons, lisp_list
-from cramhy_runtime.ground.equality import eql, equal
+from cramhy_runtime.lisp_core.data import Cons, lisp_list
+from cramhy_runtime.lisp_core.equality import eql, equal
 from cramhy_runtime.utilities.lazy_lists import force_ll, from_iterator, lazy_mapcar
 
 
@@ -43,7 +43,7 @@ def test_each_element_of_a_lazy_list_is_computed_once_and_when_it_is_asked_for()
 
 
 def test_an_endless_list_and_a_circular_one_have_no_length(monkeypatch):
-    monkeypatch.setattr("cramhy_runtime.ground.conses.ENDLESS", 1000)
+    monkeypatch.setattr("cramhy_runtime.lisp_core.conses.ENDLESS", 1000)
     with pytest.raises(OverflowError) as told:
         len(from_iterator(itertools.count()))
     assert str(told.value) == (

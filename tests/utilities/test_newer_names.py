@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 
 numbers = itertools.count(1)
 GENERIC = """(defpackage :newer (:use :cl)) (in-package :newer)

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 
 THREAD = '(defvar *thread*) (setf *thread* (cut:spawn-thread "worker" (lambda (x) (sleep x) (values x :done)) 3))'
 

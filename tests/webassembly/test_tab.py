@@ -10,7 +10,7 @@ import pytest
 from cramhy_runtime import kernel
 from cramhy_runtime.browser import tab
 from cramhy_runtime.browser.desk import Desk
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.session.session import Session
 

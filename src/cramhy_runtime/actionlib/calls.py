@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections import deque
 
 from .. import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import Condition, Error
-from cramhy_runtime.ground.data import Keyword, MultipleValues, truth
-from cramhy_runtime.ground.packages import ensure_package, find_package, keyword
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import Condition, Error
+from cramhy_runtime.lisp_core.data import Keyword, MultipleValues, truth
+from cramhy_runtime.lisp_core.packages import ensure_package, find_package, keyword
 from . import goals
 from .client import CONNECTED, ActionClient, send_with_callbacks
 

@@ -14,9 +14,9 @@ Source: roslisp.md 13.1.
 from __future__ import annotations
 
 from .. import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import SimpleError
+from cramhy_runtime.lisp_core.packages import keyword
 from ..ros.messages import message_class
 from ..ros.roslisp import node, topics
 from ..ros.roslisp.clock import ros_time

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import itertools
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.data import LispString, Symbol, truth
-from cramhy_runtime.ground.functions import function_named
-from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.packages import find_package
-from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import SimpleError
+from cramhy_runtime.lisp_core.data import LispString, Symbol, truth
+from cramhy_runtime.lisp_core.functions import function_named
+from cramhy_runtime.lisp_core.numbers import is_real
+from cramhy_runtime.lisp_core.packages import find_package
+from cramhy_runtime.lisp_core.printing import princ_to_string
 from ..ros.messages import message_class, topic_class
 from cramhy_runtime.utilities import wait_queue as lines
 

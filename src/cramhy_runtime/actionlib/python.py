@@ -28,7 +28,7 @@ from .goals import ABORTED, PREEMPTED, SUCCEEDED
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from cramhy_runtime.ground.data import Keyword
+    from cramhy_runtime.lisp_core.data import Keyword
 
 F = TypeVar("F", bound="Callable[..., object]")
 

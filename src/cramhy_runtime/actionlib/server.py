@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from cramhy_runtime.kernel.images import per_image
 from .. import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.catching import catch, throw
-from cramhy_runtime.ground.condition_types import Error, SimpleError
-from cramhy_runtime.ground.data import truth
-from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.catching import catch, throw
+from cramhy_runtime.lisp_core.condition_types import Error, SimpleError
+from cramhy_runtime.lisp_core.data import truth
+from cramhy_runtime.lisp_core.printing import princ_to_string
 from ..ros.roslisp import logging, node, topics
 from . import goals
 from .goal_server import GoalServer

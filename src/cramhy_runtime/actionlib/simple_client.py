@@ -9,11 +9,11 @@ waits on. A plan that is evaporated while it waits in `send_goal_and_wait` cance
 from __future__ import annotations
 
 from .. import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.data import MultipleValues
-from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import SimpleError
+from cramhy_runtime.lisp_core.data import MultipleValues
+from cramhy_runtime.lisp_core.numbers import is_real
+from cramhy_runtime.lisp_core.packages import keyword
 from ..ros.roslisp import logging
 from . import goals
 from .calls import GoalHandle

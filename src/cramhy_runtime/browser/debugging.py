@@ -5,9 +5,9 @@ All of it is taken at once, on the stack that failed. Nobody may look at the fra
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.packages import symbol_name
-from cramhy_runtime.ground.printing import attempt_to_print, report_of
-from cramhy_runtime.ground.source_places import describe
+from cramhy_runtime.lisp_core.packages import symbol_name
+from cramhy_runtime.lisp_core.printing import attempt_to_print, report_of
+from cramhy_runtime.lisp_core.source_places import describe
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_type

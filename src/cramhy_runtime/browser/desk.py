@@ -14,7 +14,7 @@ import re
 import textwrap
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.packages import COMMON_LISP_USER, find_package
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER, find_package
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.languages.commonlisp.tools.advice import explanation
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of

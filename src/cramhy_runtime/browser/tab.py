@@ -14,8 +14,8 @@ import sys
 from contextlib import contextmanager
 
 from .. import chronicle, kernel
-from ..ground import conditions
-from ..ground.data import Cons, Symbol
+from ..lisp_core import conditions
+from ..lisp_core.data import Cons, Symbol
 from ..kernel.backends.jspi import host, wait_for
 from ..kernel.standard_input import BrokenOff
 from ..languages.commonlisp.evaluation import evaluator

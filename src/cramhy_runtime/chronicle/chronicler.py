@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from cramhy_runtime.kernel.images import Cell
 from .. import kernel
-from cramhy_runtime.ground.condition_types import SimpleWarning
-from cramhy_runtime.ground.conditions import Condition, warn
+from cramhy_runtime.lisp_core.condition_types import SimpleWarning
+from cramhy_runtime.lisp_core.conditions import Condition, warn
 from cramhy_runtime.kernel.looking_on import looking_on
 from ..ros import graph
 from ..ros.messages import message_class_exact

@@ -18,10 +18,10 @@ from ..cpl.statuses import ALL
 from ..process_modules.modules import own_fluents
 from cramhy_runtime.cpl.tree.tree_report import cut
 from ..cpl.fluents.fluents import living_fluents
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import one
-from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import one
+from cramhy_runtime.lisp_core.numbers import is_real
+from cramhy_runtime.lisp_core.printing import princ_to_string
 from ..ros.messages import RosMessage, message_class_exact
 from ..ros.wire import ros_text
 from .texts import value_text

@@ -11,8 +11,8 @@ import math
 from itertools import islice
 
 from ..designators.classes import Designator
-from cramhy_runtime.ground.data import Cons, Symbol
-from cramhy_runtime.ground.numbers import is_real
+from cramhy_runtime.lisp_core.data import Cons, Symbol
+from cramhy_runtime.lisp_core.numbers import is_real
 from ..transforms.poses import Pose, Transform
 from ..transforms.vectors import Vector3
 

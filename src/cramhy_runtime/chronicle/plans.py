@@ -18,7 +18,7 @@ from cramhy_runtime.cpl.tasks.task_observers import follow, unfollow
 from ..cpl.statuses import CREATED, EVAPORATED, FAILED, RUNNING, SUCCEEDED
 from cramhy_runtime.cpl.tasks.tasks import AbstractTask
 from cramhy_runtime.cpl.tree.tree_report import Forest, failure, living_plans, place_of, title, waits_for
-from cramhy_runtime.ground.data import all_values
+from cramhy_runtime.lisp_core.data import all_values
 from ..ros.messages import message_class_exact
 from ..ros.wire import ros_text
 from .texts import value_text

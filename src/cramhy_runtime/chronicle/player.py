@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from cramhy_runtime.kernel.images import Cell
 from .. import kernel
-from cramhy_runtime.ground.condition_types import SimpleWarning
-from cramhy_runtime.ground.conditions import warn
+from cramhy_runtime.lisp_core.condition_types import SimpleWarning
+from cramhy_runtime.lisp_core.conditions import warn
 from ..ros import graph
 from ..ros.message_json import MessageJsonError, from_json
 from ..ros.messages import message_class_exact

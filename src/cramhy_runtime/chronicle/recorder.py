@@ -19,8 +19,8 @@ from decimal import Decimal
 from functools import partial
 
 from cramhy_runtime import __version__, kernel, storage
-from cramhy_runtime.ground.condition_types import SimpleWarning
-from cramhy_runtime.ground.conditions import warn
+from cramhy_runtime.lisp_core.condition_types import SimpleWarning
+from cramhy_runtime.lisp_core.conditions import warn
 from ..ros import graph
 from ..ros.message_json import MessageJsonError, text_of, to_record_text
 from . import chronicler, robot_scene, scene

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cramhy_runtime.cpl.tree.tree_report import cut, short
-from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.lisp_core.data import Cons
 from cramhy_runtime.utilities.generated_functions import generated_function
 from ..ros.messages import RosMessage
 

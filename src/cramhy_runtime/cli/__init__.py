@@ -105,7 +105,7 @@ def _define_course():
 
 def offer_swank(made, port):
     """Let SLIME find the packages that it calls. With a port, listen for Emacs there, too."""
-    from cramhy_runtime.ground.packages import on_demand
+    from cramhy_runtime.lisp_core.packages import on_demand
     from cramhy_runtime.languages.commonlisp.systems import program_files
 
     def define(*loader):
@@ -292,7 +292,7 @@ def _browser(options):
 
 def _eval(options):
     from cramhy_runtime.languages.commonlisp.streams import streams
-    from cramhy_runtime.ground.conditions import Condition
+    from cramhy_runtime.lisp_core.conditions import Condition
     from cramhy_runtime.repl import answer_streams, json_lines
     from cramhy_runtime.repl.console import report
     from cramhy_runtime.repl.session import Interruption, condition_of
@@ -339,7 +339,7 @@ def _load(options, closings):
 
 def status_of(work):
     """The exit status that ``work()`` gives; 130 after Ctrl-C, 1 after an error, which is reported."""
-    from cramhy_runtime.ground.conditions import Condition
+    from cramhy_runtime.lisp_core.conditions import Condition
     from cramhy_runtime.repl.session import Interruption
 
     try:

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree
 
-from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.lisp_core.packages import near_names
 from cramhy_runtime.ros import definition_files
 from cramhy_runtime.ros.names import plain_value
 from cramhy_runtime.ros_tools import executables, yaml_reading

@@ -153,7 +153,7 @@ def serve(closings, port=None, with_page=False, origins=()):
 
 def save_picture(path):
     """Write what the turtle's window shows now, or how it came about, into the file ``path``; a problem is told, and ends the process."""
-    from cramhy_runtime.ground.conditions import Condition
+    from cramhy_runtime.lisp_core.conditions import Condition
     from cramhy_runtime.repl.console import report
     from cramhy_runtime.repl.session import condition_of
     from cramhy_runtime.turtlesim import pictures

@@ -6,8 +6,8 @@ import re
 import sys
 
 from cramhy_runtime.grading import in_session
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import near_names, sym
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import near_names, sym
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 from .parts import Task

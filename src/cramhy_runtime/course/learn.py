@@ -15,11 +15,11 @@ from pathlib import Path
 import hy
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import source_places
-from cramhy_runtime.ground.condition_types import UnboundVariable, UndefinedFunction
-from cramhy_runtime.ground.conditions import guarded
-from cramhy_runtime.ground.packages import is_symbol, symbol_name
-from cramhy_runtime.ground.python_exceptions import from_python
+from cramhy_runtime.lisp_core import source_places
+from cramhy_runtime.lisp_core.condition_types import UnboundVariable, UndefinedFunction
+from cramhy_runtime.lisp_core.conditions import guarded
+from cramhy_runtime.lisp_core.packages import is_symbol, symbol_name
+from cramhy_runtime.lisp_core.python_exceptions import from_python
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.tools.advice import explanation

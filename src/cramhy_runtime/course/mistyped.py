@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 
-from cramhy_runtime.ground.packages import find_package, near_names
+from cramhy_runtime.lisp_core.packages import find_package, near_names
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 if TYPE_CHECKING:

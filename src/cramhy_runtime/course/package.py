@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import sys
 
-from cramhy_runtime.ground.packages import on_demand, registered
+from cramhy_runtime.lisp_core.packages import on_demand, registered
 from cramhy_runtime.languages.commonlisp.packages.face_definition import define_face
 from cramhy_runtime.languages.commonlisp.streams import streams
 

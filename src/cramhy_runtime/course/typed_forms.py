@@ -10,7 +10,7 @@ from __future__ import annotations
 import linecache
 import re
 
-from cramhy_runtime.ground.source_places import frame_position
+from cramhy_runtime.lisp_core.source_places import frame_position
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from cramhy_runtime.languages import answered_texts
 

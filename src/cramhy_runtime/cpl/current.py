@@ -9,9 +9,9 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.active import ACTIVE
 
-from cramhy_runtime.ground import condition_types as types
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.source_places import calling_form
+from cramhy_runtime.lisp_core import condition_types as types
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.source_places import calling_form
 
 
 if TYPE_CHECKING:

@@ -1,8 +1,8 @@
-"""The hooks of the plan language (cpl.md section 11). ``ground/hooks.py`` explains hooks."""
+"""The hooks of the plan language (cpl.md section 11). ``lisp_core/hooks.py`` explains hooks."""
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.hooks import Hook
+from cramhy_runtime.lisp_core.hooks import Hook
 from . import symbols  # noqa: F401  the packages must exist
 
 on_make_fluent_hook = Hook("CPL-IMPL::ON-MAKE-FLUENT-HOOK", "(fluent allow-tracing max-tracing-freq)")

@@ -15,12 +15,12 @@ import time
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground.conditions import CompileError, error
-from cramhy_runtime.ground.data import Keyword, list_from, python_list
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.printing import format_to_string
-from cramhy_runtime.ground.packages import keyword
-from cramhy_runtime.ground.output import output_stream
+from cramhy_runtime.lisp_core.conditions import CompileError, error
+from cramhy_runtime.lisp_core.data import Keyword, list_from, python_list
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.printing import format_to_string
+from cramhy_runtime.lisp_core.packages import keyword
+from cramhy_runtime.lisp_core.output import output_stream
 from .current import current_task
 from .symbols import sym
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.printing import define_printer, prin1_to_string, princ_to_string, print_unreadable
+from cramhy_runtime.lisp_core.printing import define_printer, prin1_to_string, princ_to_string, print_unreadable
 from .fluents.fluents import Fluent, ValueFluent
 from .tasks.tasks import AbstractTask, ToplevelTask
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Literal, Protocol, TypeVar, overload
 
-from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.lisp_core.data import Symbol
 from .fluents.fluents import Fluent, ValueFluent
 from .fluents.nets import Net
 from .fluents.pulse_fluents import PulseFluent

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import list_from
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.data import list_from
+from cramhy_runtime.lisp_core.packages import keyword
 
 CREATED, RUNNING, WAITING, SUSPENDED = keyword("CREATED"), keyword("RUNNING"), keyword("WAITING"), keyword("SUSPENDED")
 SUCCEEDED, FAILED, EVAPORATED = keyword("SUCCEEDED"), keyword("FAILED"), keyword("EVAPORATED")

@@ -3,7 +3,7 @@
 ``languages/commonlisp/faces/cpl/package.py`` declares their contents when all the code is there.
 """
 
-from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, sym
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, ensure_package, sym
 
 CPL_IMPL = ensure_package("CRAM-LANGUAGE-IMPLEMENTATION", "CPL-IMPL", use=[COMMON_LISP])
 CPL = ensure_package("CRAM-LANGUAGE", "CPL")

@@ -14,10 +14,10 @@ from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground.data import UNBOUND, Symbol
-from cramhy_runtime.ground.dynamic import Bindings, special
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import find_package, redefined
+from cramhy_runtime.lisp_core.data import UNBOUND, Symbol
+from cramhy_runtime.lisp_core.dynamic import Bindings, special
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.packages import find_package, redefined
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import functools
 
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import Cons
 
 
 def of(cls):

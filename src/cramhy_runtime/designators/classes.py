@@ -17,17 +17,17 @@ from weakref import ref
 
 from cramhy_runtime.kernel.images import Cell, per_image
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
-from cramhy_runtime.ground.condition_types import SimpleError, SimpleWarning
-from cramhy_runtime.ground.conditions import error, type_error, warn
-from cramhy_runtime.ground.data import UNBOUND, UNSUPPLIED, Cons, Keyword, Symbol, list_from
-from cramhy_runtime.ground.dynamic import binding, special
-from cramhy_runtime.ground.classes import find_class_or_error
-from cramhy_runtime.ground.dispatch.generic_functions import generic, when_methods_change
-from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
-from cramhy_runtime.ground.ports import PORTS
-from cramhy_runtime.ground.classes import make_instance
-from cramhy_runtime.ground.packages import is_symbol, keyword, near_names, symbol_name
-from cramhy_runtime.ground.pickling import class_reference, referenced
+from cramhy_runtime.lisp_core.condition_types import SimpleError, SimpleWarning
+from cramhy_runtime.lisp_core.conditions import error, type_error, warn
+from cramhy_runtime.lisp_core.data import UNBOUND, UNSUPPLIED, Cons, Keyword, Symbol, list_from
+from cramhy_runtime.lisp_core.dynamic import binding, special
+from cramhy_runtime.lisp_core.classes import find_class_or_error
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic, when_methods_change
+from cramhy_runtime.lisp_core.dispatch.generic_errors import no_applicable_method
+from cramhy_runtime.lisp_core.ports import PORTS
+from cramhy_runtime.lisp_core.classes import make_instance
+from cramhy_runtime.lisp_core.packages import is_symbol, keyword, near_names, symbol_name
+from cramhy_runtime.lisp_core.pickling import class_reference, referenced
 from ..utilities.lazy_lists import LazyTail
 from ..utilities.patterns import NOTHING
 from ..utilities.small_functions import current_timestamp

@@ -26,8 +26,8 @@ from __future__ import annotations
 
 from operator import itemgetter
 
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, list_from
+from cramhy_runtime.lisp_core.packages import keyword
 from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.prolog.compiler.compiler import compile_clauses
 from cramhy_runtime.prolog.engine.database import Clause, Predicate, changed, functor_entry, traced

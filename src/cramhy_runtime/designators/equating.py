@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 
-from cramhy_runtime.ground.conditions import error, handler_case, type_error
-from cramhy_runtime.ground.data import list_from
-from cramhy_runtime.ground.hooks import Hook
-from cramhy_runtime.ground.dispatch.generic_functions import generic, protocol_function
-from cramhy_runtime.ground.packages import is_symbol
+from cramhy_runtime.lisp_core.conditions import error, handler_case, type_error
+from cramhy_runtime.lisp_core.data import list_from
+from cramhy_runtime.lisp_core.hooks import Hook
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic, protocol_function
+from cramhy_runtime.lisp_core.packages import is_symbol
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from ..utilities.lazy_lists import from_iterator
 from .classes import Designator, DesignatorError, copy_designator

@@ -7,9 +7,9 @@ is shown. It proves no goals that might change something a second time: goals th
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import Warning_
-from cramhy_runtime.ground.conditions import handler_bind, muffle_warning
-from cramhy_runtime.ground.data import Cons, Symbol, lisp_list, python_list
+from cramhy_runtime.lisp_core.condition_types import Warning_
+from cramhy_runtime.lisp_core.conditions import handler_bind, muffle_warning
+from cramhy_runtime.lisp_core.data import Cons, Symbol, lisp_list, python_list
 from cramhy_runtime.prolog.explanations import explanations
 from cramhy_runtime.prolog.engine.database import extended
 from cramhy_runtime.prolog.python.ground import reasoning

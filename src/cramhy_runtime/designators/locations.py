@@ -13,14 +13,14 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from cramhy_runtime import kernel
 
 from ..cpl.task_variables import inherit
-from cramhy_runtime.ground.condition_types import SimpleTypeError
-from cramhy_runtime.ground.conditions import as_name, error, restart_case, type_error
-from cramhy_runtime.ground.data import Cons, UndefinedFunction, list_from, one, plain_truth, truth
-from cramhy_runtime.ground.dynamic import binding, special
-from cramhy_runtime.ground.source_places import circumstance
-from cramhy_runtime.ground.packages import is_symbol, keyword
-from cramhy_runtime.ground.printing import attempt_to_print, prin1_to_string, princ_to_string
-from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.lisp_core.condition_types import SimpleTypeError
+from cramhy_runtime.lisp_core.conditions import as_name, error, restart_case, type_error
+from cramhy_runtime.lisp_core.data import Cons, UndefinedFunction, list_from, one, plain_truth, truth
+from cramhy_runtime.lisp_core.dynamic import binding, special
+from cramhy_runtime.lisp_core.source_places import circumstance
+from cramhy_runtime.lisp_core.packages import is_symbol, keyword
+from cramhy_runtime.lisp_core.printing import attempt_to_print, prin1_to_string, princ_to_string
+from cramhy_runtime.lisp_core.ports import PORTS
 from cramhy_runtime.prolog.engine.database import extended
 from ..prolog.query import ask
 from cramhy_runtime.prolog.terms.terms import Var

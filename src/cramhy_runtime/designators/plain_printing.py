@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons
-from cramhy_runtime.ground.packages import is_symbol, symbol_name
-from cramhy_runtime.ground.printing import define_printer, prin1_to_string
+from cramhy_runtime.lisp_core.data import Cons
+from cramhy_runtime.lisp_core.packages import is_symbol, symbol_name
+from cramhy_runtime.lisp_core.printing import define_printer, prin1_to_string
 from .classes import Designator, type_keyword
 
 

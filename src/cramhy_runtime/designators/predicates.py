@@ -10,8 +10,8 @@ Their default clauses only check, with ``*break-on-lisp-errors*``, the class of 
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.prolog.engine.fact_groups import built_in_group
 from cramhy_runtime.prolog.builtins.function_calls import call_lisp

@@ -5,12 +5,12 @@ The methods are with their subjects: equating in ``equating.py``, resolving in `
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from . import symbols  # noqa: F401  the packages must exist
 
 if TYPE_CHECKING:
-    from cramhy_runtime.ground.signatures import GenericOf
+    from cramhy_runtime.lisp_core.signatures import GenericOf
     from .classes import Designator
 
 equate: GenericOf[[Designator, Designator], Designator] = generic(

@@ -34,9 +34,9 @@ from cramhy_runtime.kernel.images import per_image
 from types import CoroutineType
 
 from cramhy_runtime.kernel.unstarted import plain_function, ran
-from cramhy_runtime.ground.data import Keyword, Symbol, list_from
-from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.printing import define_printer, print_unreadable
+from cramhy_runtime.lisp_core.data import Keyword, Symbol, list_from
+from cramhy_runtime.lisp_core.packages import sym
+from cramhy_runtime.lisp_core.printing import define_printer, print_unreadable
 from cramhy_runtime.prolog.builtins import native_predicates as natives
 from cramhy_runtime.prolog.python.ground import reasoning
 from cramhy_runtime.prolog.python.rules import fact_group, remove_fact_group

@@ -25,10 +25,10 @@ from types import FunctionType
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, annotations_of_body, dataclass_transform
 
 from cramhy_runtime.kernel.images import per_image
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, lisp_list, list_from
-from cramhy_runtime.ground.packages import near_names
-from cramhy_runtime.ground.printing import text_for_python
-from cramhy_runtime.ground.python_names import lisp_spelling
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, lisp_list, list_from
+from cramhy_runtime.lisp_core.packages import near_names
+from cramhy_runtime.lisp_core.printing import text_for_python
+from cramhy_runtime.lisp_core.python_names import lisp_spelling
 from cramhy_runtime.prolog.python.ground import reasoning
 from cramhy_runtime.prolog.python.spelling import lisp_name, python_name
 from cramhy_runtime.prolog.python.terms import kw, nil_as, shortened, show, to_lisp, to_python

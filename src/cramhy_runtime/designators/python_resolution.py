@@ -13,8 +13,8 @@ from cramhy_runtime.kernel.typing_names import Any, ParamSpec, TypeVar
 
 from .. import kernel
 from cramhy_runtime.cpl.failures.python_exceptions import for_python, raise_in_python
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.data import UNSUPPLIED, Cons
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, Cons
 from cramhy_runtime.prolog.python.ground import reasoning
 from cramhy_runtime.prolog.python.terms import in_python_names, to_lisp, to_python
 from . import equating, protocol

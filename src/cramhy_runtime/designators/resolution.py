@@ -11,12 +11,12 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground import equality
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import UNBOUND, UNSUPPLIED, Cons, Symbol, lisp_list
-from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.dispatch.generic_functions import generic
-from cramhy_runtime.ground.dispatch.generic_errors import NoApplicableMethodError
+from cramhy_runtime.lisp_core import equality
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import UNBOUND, UNSUPPLIED, Cons, Symbol, lisp_list
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core.dispatch.generic_errors import NoApplicableMethodError
 from ..utilities.lazy_lists import beginning, lazy_car, lazy_cdr, tail
 from ..utilities.patterns import is_var
 from cramhy_runtime.prolog.engine.database import find_predicate
@@ -45,7 +45,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from cramhy_runtime.ground.signatures import GenericOf
+    from cramhy_runtime.lisp_core.signatures import GenericOf
 
 DEFAULT_ROLE = special(sym("DESIG::*DEFAULT-ROLE*"))
 ACTION_GROUNDING = find_predicate(sym("DESIG::ACTION-GROUNDING"), 2)

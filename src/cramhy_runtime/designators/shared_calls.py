@@ -11,9 +11,9 @@ If tasks wait for each other in a ring, that would be for ever, and is an error.
 from __future__ import annotations
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.lisp_core.condition_types import SimpleError
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.printing import princ_to_string
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn
 from cramhy_runtime.utilities.wait_queue import Line
 

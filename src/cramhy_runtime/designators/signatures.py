@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol, TypeVar
 
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol
-from cramhy_runtime.ground.signatures import GenericOf
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol
+from cramhy_runtime.lisp_core.signatures import GenericOf
 from .classes import Designator
 
 F = TypeVar("F", bound=Callable[..., object])

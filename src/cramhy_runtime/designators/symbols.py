@@ -3,7 +3,7 @@
 ``languages/commonlisp/faces/designators/package.py`` declares their contents.
 """
 
-from cramhy_runtime.ground.packages import ensure_package, sym
+from cramhy_runtime.lisp_core.packages import ensure_package, sym
 from cramhy_runtime.prolog import symbols as _prolog  # noqa: F401  its package, whose predicates this room extends
 
 DESIG = ensure_package("CRAM-DESIGNATORS", "DESIG")

@@ -17,16 +17,16 @@ from cramhy_runtime import kernel
 
 from cramhy_runtime.cpl.tree import finished_plans
 from ..cpl.current import current_task
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.packages import keyword
 from cramhy_runtime.cpl.forms.plans import plan_property
 from ..cpl.statuses import DEAD
 from ..cpl.task_variables import define_task_state, inherit
 from cramhy_runtime.cpl.tasks.tasks import AbstractTask
-from cramhy_runtime.ground.conditions import SimpleError, as_name, error, type_error
-from cramhy_runtime.ground.data import UNBOUND
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import near_names
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.conditions import SimpleError, as_name, error, type_error
+from cramhy_runtime.lisp_core.data import UNBOUND
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import near_names
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from ..utilities.lazy_lists import with_lazy_list_dynamic_environment
 from ..utilities.small_functions import current_timestamp
 from .symbols import CET, sym

@@ -6,10 +6,10 @@ Each function takes the episode as last argument; without it, it is about ``*epi
 from __future__ import annotations
 
 from cramhy_runtime.cpl.tree.task_tree import goal_task_tree_node_p
-from cramhy_runtime.ground.conditions import warn
-from cramhy_runtime.ground.data import UNSUPPLIED, Cons, lisp_list, list_from
-from cramhy_runtime.ground.packages import near_names
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.conditions import warn
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, Cons, lisp_list, list_from
+from cramhy_runtime.lisp_core.packages import near_names
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from ..utilities.small_functions import current_timestamp
 from .knowledge import checked, current_episode
 from .symbols import sym

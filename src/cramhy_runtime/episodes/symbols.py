@@ -4,7 +4,7 @@ What it contains is declared in ``languages/commonlisp/faces/episodes/package.py
 """
 
 from ..cpl.symbols import CPL_IMPL
-from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, sym
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, ensure_package, sym
 from ..utilities.symbols import CUT
 
 CET = ensure_package("CRAM-EXECUTION-TRACE", "CET", use=[COMMON_LISP, CUT, CPL_IMPL])

@@ -28,9 +28,9 @@ from ..cpl.current import current_task
 from cramhy_runtime.cpl.tasks.task_observers import follow
 from cramhy_runtime.cpl.fluents.fluents import living_fluents, tracing_options
 from ..cpl.hooks import on_make_fluent_hook
-from cramhy_runtime.ground.conditions import Condition, warn
-from cramhy_runtime.ground.data import Cons, Symbol, list_from, one, truth
-from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core.conditions import Condition, warn
+from cramhy_runtime.lisp_core.data import Cons, Symbol, list_from, one, truth
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
 from ..utilities.small_functions import current_timestamp
 from . import symbols  # noqa: F401  the package must exist
 from .knowledge import episode_of

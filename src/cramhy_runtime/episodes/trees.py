@@ -10,7 +10,7 @@ its own, with the task of the top-level. (The original takes one of several and 
 from __future__ import annotations
 
 from cramhy_runtime.cpl.tree.task_tree import Code, TaskTreeNode
-from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.lisp_core.conditions import error
 
 
 def task_tree(episode):

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.ros import graph
 from cramhy_runtime.session.session import Interruption

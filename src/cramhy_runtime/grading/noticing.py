@@ -17,8 +17,8 @@ import re
 from contextlib import contextmanager, suppress
 
 from cramhy_runtime.cpl.hooks import on_fail
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.process_modules.modules import on_process_module_started
 
@@ -112,9 +112,9 @@ class Noticing:
 
     def _failure(self, datum: Any) -> None:
         from cramhy_runtime.cpl.failures.failure_types import SimplePlanFailure
-        from cramhy_runtime.ground.classes import class_name
-        from cramhy_runtime.ground.conditions import make_condition
-        from cramhy_runtime.ground.packages import is_symbol
+        from cramhy_runtime.lisp_core.classes import class_name
+        from cramhy_runtime.lisp_core.conditions import make_condition
+        from cramhy_runtime.lisp_core.packages import is_symbol
 
         if is_symbol(datum) or isinstance(datum, type):
             datum = make_condition(datum, (), SimplePlanFailure)

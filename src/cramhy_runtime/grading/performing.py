@@ -90,7 +90,7 @@ def _prepare(job, made):
 
 def _reading():
     """Makes contexts in which forms of the exercise are read as now, before the submission can have changed how Lisp reads."""
-    from cramhy_runtime.ground.dynamic import binding
+    from cramhy_runtime.lisp_core.dynamic import binding
     from cramhy_runtime.languages.commonlisp.reader.readtables import READTABLE
     from cramhy_runtime.languages.commonlisp.reader.tokens import READ_BASE
 
@@ -185,7 +185,7 @@ def _steps(job, folder, tell, made, recording, uses):
 
 def _attempt(tell, work, go_on=False):
     """The values of ``work()``. An error is told, and ends the run unless ``go_on``, which then gives ``None``."""
-    from cramhy_runtime.ground.conditions import Condition
+    from cramhy_runtime.lisp_core.conditions import Condition
 
     try:
         return work()
@@ -200,7 +200,7 @@ def _attempt(tell, work, go_on=False):
 
 def _described(problem):
     """The names of the types of an error, the most special first, and its text as a student gets it."""
-    from cramhy_runtime.ground.classes import class_name
+    from cramhy_runtime.lisp_core.classes import class_name
     from cramhy_runtime.kernel import TimeLimit
     from cramhy_runtime.languages.commonlisp.tools.advice import explanation
     from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of
@@ -230,6 +230,6 @@ def _plan_faults(tables):
 
 def printed(value):
     """A value as Lisp prints it, cut off."""
-    from cramhy_runtime.ground.printing import prin1_to_string
+    from cramhy_runtime.lisp_core.printing import prin1_to_string
 
     return prin1_to_string(value)[:MOST_TEXT]

@@ -39,7 +39,7 @@ class Guard:
 
     @staticmethod
     def _functions():
-        from cramhy_runtime.ground.packages import find_package
+        from cramhy_runtime.lisp_core.packages import find_package
         from cramhy_runtime.languages.commonlisp.systems import loader, unit_tests
 
         found = {}

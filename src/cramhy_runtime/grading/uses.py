@@ -11,8 +11,8 @@ import re
 import sys
 from contextlib import contextmanager
 
-from cramhy_runtime.ground import packages
-from cramhy_runtime.ground.data import Symbol, UndefinedFunction
+from cramhy_runtime.lisp_core import packages
+from cramhy_runtime.lisp_core.data import Symbol, UndefinedFunction
 from cramhy_runtime.languages.commonlisp.python import python_calls
 from cramhy_runtime.ros import graph
 

@@ -12,12 +12,12 @@ import sys
 import types
 
 from cramhy_runtime import kernel, storage
-from cramhy_runtime.ground.data import Cons, Symbol
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import COMMON_LISP_USER
-from cramhy_runtime.ground.printing import speak
+from cramhy_runtime.lisp_core.data import Cons, Symbol
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER
+from cramhy_runtime.lisp_core.printing import speak
 from cramhy_runtime.session.session import value_text
-from cramhy_runtime.ground.source_places import keep_text
+from cramhy_runtime.lisp_core.source_places import keep_text
 from cramhy_runtime.languages import answered_texts
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE

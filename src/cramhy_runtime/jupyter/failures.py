@@ -6,10 +6,10 @@ takes a restart, a form is evaluated where the error arose, and an empty line en
 
 from __future__ import annotations
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.packages import symbol_name
-from cramhy_runtime.ground.printing import prin1_to_string, report_of
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.packages import symbol_name
+from cramhy_runtime.lisp_core.printing import prin1_to_string, report_of
 from cramhy_runtime.languages.commonlisp.tools import backtrace
 from cramhy_runtime.languages.commonlisp.tools.advice import explanation, report_text
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of, condition_type

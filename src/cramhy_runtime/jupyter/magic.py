@@ -11,10 +11,10 @@ import sys
 from contextlib import contextmanager
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.kernel.images import Cell
-from cramhy_runtime.ground.printing import speak
+from cramhy_runtime.lisp_core.printing import speak
 from cramhy_runtime.session import time_setting
 from cramhy_runtime.session.session import Interruption, Session
 

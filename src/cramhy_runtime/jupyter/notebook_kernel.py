@@ -18,7 +18,7 @@ from traitlets import Any as AnyTrait
 from zmq.eventloop.zmqstream import ZMQStream
 
 from cramhy_runtime import __version__, kernel
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.session import requests
 from cramhy_runtime.session.requests import Mailbox, Request

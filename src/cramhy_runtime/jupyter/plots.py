@@ -14,10 +14,10 @@ from cramhy_runtime import kernel
 from cramhy_runtime.cpl.fluents.fluents import Fluent, peek_value
 from cramhy_runtime.cpl.fluents.nets import Net
 from cramhy_runtime.cpl.tree.tree_report import short
-from cramhy_runtime.ground.data import one
-from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.packages import symbol_name
-from cramhy_runtime.ground.printing import guarded
+from cramhy_runtime.lisp_core.data import one
+from cramhy_runtime.lisp_core.numbers import is_real
+from cramhy_runtime.lisp_core.packages import symbol_name
+from cramhy_runtime.lisp_core.printing import guarded
 from cramhy_runtime.ros.messages import RosMessage
 
 MOST_VALUES = 4000

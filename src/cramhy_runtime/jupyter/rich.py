@@ -12,9 +12,9 @@ from cramhy_runtime import kernel
 from cramhy_runtime.cpl.fluents.fluents import Fluent
 from cramhy_runtime.cpl.tasks.tasks import AbstractTask
 from cramhy_runtime.designators import classes, resolution
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import Cons, list_end
-from cramhy_runtime.ground.printing import guarded, prin1_to_string
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import Cons, list_end
+from cramhy_runtime.lisp_core.printing import guarded, prin1_to_string
 from cramhy_runtime.languages.commonlisp.objects.classes import class_of
 from cramhy_runtime.languages.commonlisp.tools.advice import explanation
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_type

@@ -67,7 +67,7 @@ class Task(Generic[T]):
         self.owner: Any = None
         self._local: SimpleNamespace | None = None
         self.dynamic: Dynamic | None = None
-        self.handlers: object = None  # of conditions, those in force: the ground's own
+        self.handlers: object = None  # of conditions, those in force: those of lisp_core
         self.result: T | None = None
         self.cancelled_delivered = False
         self.state = RUNNABLE

@@ -43,14 +43,14 @@ def stamp():
 def _compiling_folders():
     """The folders with what compiles, in an order that depends on their names only."""
     languages = Path(__file__).parent
-    lisp, libraries, ground = languages / "commonlisp", languages.parent / "libraries", languages.parent / "ground"
+    lisp, libraries, lisp_core = languages / "commonlisp", languages.parent / "libraries", languages.parent / "lisp_core"
     inside = [
         Path(entry)
-        for room in (lisp, lisp / "compiler", lisp / "faces", libraries, ground)
+        for room in (lisp, lisp / "compiler", lisp / "faces", libraries, lisp_core)
         for entry in os.scandir(room)
         if entry.is_dir() and entry.name != "__pycache__"
     ]
-    folders = [lisp, ground, languages / "operators", languages / "hy", *sorted(inside, key=lambda folder: folder.parts)]
+    folders = [lisp, lisp_core, languages / "operators", languages / "hy", *sorted(inside, key=lambda folder: folder.parts)]
     language = importlib.util.find_spec("cramhy")
     return folders + [Path(folder) for folder in (language and language.submodule_search_locations or ())]
 

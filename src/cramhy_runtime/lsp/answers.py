@@ -10,8 +10,8 @@ import os
 from pathlib import Path
 from typing import NamedTuple
 
-from cramhy_runtime.ground.data import Symbol
-from cramhy_runtime.ground.packages import is_symbol
+from cramhy_runtime.lisp_core.data import Symbol
+from cramhy_runtime.lisp_core.packages import is_symbol
 from cramhy_runtime.languages.commonlisp.tools.describing import description
 from cramhy_runtime.languages.hy import shapes
 from cramhy_runtime.languages.hy.plan_macros import macros

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import COMMON_LISP_USER
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER
 from cramhy_runtime.languages.commonlisp.evaluation.evaluator import PACKAGE
 from cramhy_runtime.languages.commonlisp.systems import systems
 from cramhy_runtime.languages.commonlisp.systems.text_checking import check_text

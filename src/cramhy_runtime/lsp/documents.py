@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import Condition
+from cramhy_runtime.lisp_core.condition_types import Condition
 from cramhy_runtime.languages.commonlisp.systems.loader import is_plain_hy
 from cramhy_runtime.session.arglists import symbol_named
 from cramhy_runtime.session.lookup import bare_name

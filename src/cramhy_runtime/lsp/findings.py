@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from cramhy_runtime.ground.condition_types import StyleWarning, Warning_
-from cramhy_runtime.ground.data import UNBOUND, Symbol
-from cramhy_runtime.ground.packages import all_packages, near_names
+from cramhy_runtime.lisp_core.condition_types import StyleWarning, Warning_
+from cramhy_runtime.lisp_core.data import UNBOUND, Symbol
+from cramhy_runtime.lisp_core.packages import all_packages, near_names
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for, report_text
 from cramhy_runtime.session.arglists import arglist
 

@@ -19,8 +19,8 @@ from hy.compiler import hy_compile
 from hy.errors import HyLanguageError
 from hy.reader import HyReader
 
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.packages import near_names
 from cramhy_runtime.languages.hy.malformed import MalformedForm, retold, unreadable
 from cramhy_runtime.languages.hy.plan_macros import macros
 

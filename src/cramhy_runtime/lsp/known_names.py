@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol
 from cramhy_runtime.languages.commonlisp.objects.classes import find_class
 from cramhy_runtime.prolog.engine import database
 from cramhy_runtime.prolog.explanations.undefined import defined_functors

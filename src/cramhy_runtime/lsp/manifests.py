@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from xml.parsers import expat
 
-from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.lisp_core.packages import near_names
 
 from .findings import ERROR, WARNING, Finding, meant
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 
-from cramhy_runtime.ground.packages import COMMON_LISP_USER, find_package
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER, find_package
 from cramhy_runtime.languages.commonlisp.systems import systems
 from cramhy_runtime.session.arglists import symbol_named
 from cramhy_runtime.session.lookup import bare_name

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import UNBOUND, Symbol, UndefinedFunction
+from cramhy_runtime.lisp_core.data import UNBOUND, Symbol, UndefinedFunction
 from cramhy_runtime.languages.commonlisp.evaluation.forms import SPECIAL_OPERATORS
 from cramhy_runtime.languages.operators import operator_of
 from cramhy_runtime.session.arglists import symbol_named

@@ -10,9 +10,9 @@ import re
 from difflib import SequenceMatcher
 
 from cramhy_runtime.designators import classes as designators
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.data import Symbol, UndefinedFunction
-from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.data import Symbol, UndefinedFunction
+from cramhy_runtime.lisp_core.packages import near_names
 from cramhy_runtime.languages.commonlisp.format import format_parser
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for, report_text
 from cramhy_runtime.prolog.engine import database
@@ -122,7 +122,7 @@ class Checks:
         self.tell(word, WARNING, f"Nothing defines the {what} {word.text}.", self._type_hint(symbol))
 
     def _type_hint(self, symbol):
-        from cramhy_runtime.ground.condition_types import SimpleWarning
+        from cramhy_runtime.lisp_core.condition_types import SimpleWarning
 
         asked = SimpleWarning("undefined type")
         asked.name, asked.undefined = symbol, "type"

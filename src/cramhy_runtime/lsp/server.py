@@ -16,7 +16,7 @@ from pygls.lsp.server import LanguageServer
 from pygls.uris import from_fs_path, to_fs_path
 
 import cramhy_runtime
-from cramhy_runtime.ground.condition_types import Condition
+from cramhy_runtime.lisp_core.condition_types import Condition
 
 from . import answers, hy_files, lenses, outlines, stdio, system_files
 from .documents import Document

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import Condition, SimpleWarning
-from cramhy_runtime.ground.python_exceptions import from_python
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol
-from cramhy_runtime.ground.packages import is_symbol, near_names, symbol_name
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import Condition, SimpleWarning
+from cramhy_runtime.lisp_core.python_exceptions import from_python
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol
+from cramhy_runtime.lisp_core.packages import is_symbol, near_names, symbol_name
 from cramhy_runtime.languages.commonlisp.evaluation.evaluator import PACKAGE, evaluate
 from cramhy_runtime.languages.commonlisp.reader.reader import Reader
 from cramhy_runtime.languages.commonlisp.systems import systems

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from cramhy_runtime.episodes.knowledge import current_episode
 from cramhy_runtime.episodes.trees import nodes_of
-from cramhy_runtime.ground.conditions import SimpleWarning, warn
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import SimpleWarning, warn
+from cramhy_runtime.lisp_core.packages import sym
 
 
 def asked_episode(predicate):

@@ -7,8 +7,8 @@ calls it, without a queue. CRAM's branch devel numbers some behind their name: t
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.hooks import Hook
-from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core.hooks import Hook
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
 from ..utilities.small_functions import current_timestamp
 from . import symbols  # noqa: F401  the package must exist
 

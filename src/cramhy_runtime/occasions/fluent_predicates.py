@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from cramhy_runtime.cpl.fluents.fluents import Fluent
 from ..episodes.queries import fluent_durations
-from cramhy_runtime.ground.data import Symbol, lisp_list
+from cramhy_runtime.lisp_core.data import Symbol, lisp_list
 from cramhy_runtime.prolog.engine.fact_groups import define_fact_group
 from cramhy_runtime.prolog.builtins.native_predicates import deref, predicate, test
 from cramhy_runtime.prolog.terms.terms import Var

@@ -10,8 +10,8 @@ Repaired: with a time, the function asks the clauses of two arguments, too; the 
 from __future__ import annotations
 
 from cramhy_runtime.kernel.images import per_image
-from cramhy_runtime.ground.data import lisp_list
-from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core.data import lisp_list
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
 from cramhy_runtime.prolog.engine.fact_groups import define_fact_group
 from ..prolog.query import prolog
 from cramhy_runtime.prolog.builtins.rete import clear_alpha_network, match_fact, rete_assert, rete_holds, rete_retract

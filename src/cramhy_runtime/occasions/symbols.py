@@ -5,7 +5,7 @@
 
 from cramhy_runtime.designators import symbols as _designators  # noqa: F401  its packages come first
 from cramhy_runtime.episodes import symbols as _episodes  # noqa: F401
-from cramhy_runtime.ground.packages import ensure_package, sym
+from cramhy_runtime.lisp_core.packages import ensure_package, sym
 
 COE = ensure_package("CRAM-OCCASIONS-EVENTS", "COE", "OCCASIONS-EVENTS")
 COE.lends_nicknames = True

@@ -16,9 +16,9 @@ from cramhy_runtime.cpl.tree.task_tree import TaskTreeNode, goal_task_tree_node_
 from ..episodes.knowledge import stamp
 from ..episodes.queries import episode_knowledge_max_time, fluent_durations
 from ..episodes.trees import nodes_of
-from cramhy_runtime.ground.conditions import Condition, SimpleWarning, warn
-from cramhy_runtime.ground.data import MultipleValues, lisp_list, one
-from cramhy_runtime.ground.classes import class_name
+from cramhy_runtime.lisp_core.conditions import Condition, SimpleWarning, warn
+from cramhy_runtime.lisp_core.data import MultipleValues, lisp_list, one
+from cramhy_runtime.lisp_core.classes import class_name
 from cramhy_runtime.prolog.engine.fact_groups import define_fact_group
 from cramhy_runtime.prolog.builtins.native_predicates import deref, predicate, test
 from cramhy_runtime.prolog.terms.terms import Var

@@ -6,9 +6,9 @@ matches, and a warning says so. Source: projection-and-events.md B3.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import SimpleWarning, warn
-from cramhy_runtime.ground.data import Cons, lisp_list
-from cramhy_runtime.ground.numbers import is_real
+from cramhy_runtime.lisp_core.conditions import SimpleWarning, warn
+from cramhy_runtime.lisp_core.data import Cons, lisp_list
+from cramhy_runtime.lisp_core.numbers import is_real
 from cramhy_runtime.prolog.builtins.native_predicates import deref, test
 from cramhy_runtime.prolog.terms.terms import Var, resolve
 from .symbols import sym

@@ -21,10 +21,10 @@ from cramhy_runtime.cpl.fluents.fluents import Fluent
 from cramhy_runtime.cpl.forms.operators import pursue
 from cramhy_runtime.cpl.tasks.pausing import pause
 from cramhy_runtime.cpl.tasks.waiting import wait_for, whenever
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons
-from cramhy_runtime.ground.source_places import circumstance
-from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import Cons
+from cramhy_runtime.lisp_core.source_places import circumstance
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from ..utilities.locks import Lock
 from .executing import NEVER, await_online, finished_fluent, monitor_process_module, pm_cancel, pm_execute, running_fluent
@@ -43,7 +43,7 @@ from .registry import in_brief, not_running
 
 if TYPE_CHECKING:
     from cramhy_runtime.cpl.fluents.fluents import ValueFluent
-    from cramhy_runtime.ground.data import Symbol
+    from cramhy_runtime.lisp_core.data import Symbol
     from ..designators.classes import Designator
     from .signatures import Fail, Finish
 

@@ -16,19 +16,19 @@ from cramhy_runtime.cpl.fluents.operators import fl_funcall, fl_not, fl_pulsed
 from cramhy_runtime.cpl.tasks.suspension import retry_after_suspension
 from cramhy_runtime.cpl.tasks.task_readers import result, status
 from cramhy_runtime.cpl.tasks.waiting import wait_for
-from cramhy_runtime.ground.condition_types import SimpleWarning
-from cramhy_runtime.ground.conditions import error, type_error, warn
-from cramhy_runtime.ground.data import Cons, Symbol, python_list, values
-from cramhy_runtime.ground.dispatch.generic_functions import generic
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.condition_types import SimpleWarning
+from cramhy_runtime.lisp_core.conditions import error, type_error, warn
+from cramhy_runtime.lisp_core.data import Cons, Symbol, python_list, values
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core.packages import keyword
 from .modules import OFFLINE, RUNNING, AbstractProcessModule, ProcessModule, Request
 from .registry import module_called, not_running
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from cramhy_runtime.cpl.fluents.fluents import Fluent
-    from cramhy_runtime.ground.data import Keyword
-    from cramhy_runtime.ground.signatures import GenericOf
+    from cramhy_runtime.lisp_core.data import Keyword
+    from cramhy_runtime.lisp_core.signatures import GenericOf
     from .signatures import Execute, ModuleOrName, Monitor
 
 TASK, DESIGNATORS, NEVER = map(keyword, ("TASK", "DESIGNATORS", "NEVER"))

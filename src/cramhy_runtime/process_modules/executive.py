@@ -12,17 +12,17 @@ from cramhy_runtime.cpl.forms.plans import GOAL, bodies_of, call_goal, define_go
 from cramhy_runtime.cpl.tree.task_tree import with_task_tree_node
 from ..designators.classes import ActionDesignator, DesignatorError, MotionDesignator, desig_prop_value, pairs_of
 from ..designators.resolution import reference
-from cramhy_runtime.ground.condition_types import SimpleWarning
+from cramhy_runtime.lisp_core.condition_types import SimpleWarning
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.images import Cell
-from cramhy_runtime.ground.catching import CATCHABLE, Case, caught
-from cramhy_runtime.ground.conditions import Error, handler_case, warn
-from cramhy_runtime.ground.data import UNBOUND, Cons, MultipleValues, Symbol, UndefinedFunction, lisp_list, one, python_list, truth
-from cramhy_runtime.ground.functions import check_shape, function_of
-from cramhy_runtime.ground.ports import PORTS
-from cramhy_runtime.ground.source_places import circumstance
-from cramhy_runtime.ground.dispatch.generic_functions import generic
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.catching import CATCHABLE, Case, caught
+from cramhy_runtime.lisp_core.conditions import Error, handler_case, warn
+from cramhy_runtime.lisp_core.data import UNBOUND, Cons, MultipleValues, Symbol, UndefinedFunction, lisp_list, one, python_list, truth
+from cramhy_runtime.lisp_core.functions import check_shape, function_of
+from cramhy_runtime.lisp_core.ports import PORTS
+from cramhy_runtime.lisp_core.source_places import circumstance
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core.packages import keyword
 from ..occasions.occasions import holds
 from .hints import why_none_runs
 from .matching import execute_by, running_matches
@@ -32,7 +32,7 @@ from .symbols import sym
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from cramhy_runtime.ground.signatures import GenericOf
+    from cramhy_runtime.lisp_core.signatures import GenericOf
     from ..designators.classes import Designator
 
 GOAL_KEY = keyword("GOAL")

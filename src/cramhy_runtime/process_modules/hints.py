@@ -7,7 +7,7 @@ can be used, and it runs. The hint names the first that is missing. It is comput
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Symbol, lisp_list
+from cramhy_runtime.lisp_core.data import Symbol, lisp_list
 from cramhy_runtime.prolog.explanations import explaining, explanations
 from cramhy_runtime.prolog.python.ground import reasoning
 from cramhy_runtime.prolog.explanations.failure_reasons import declare_harmless

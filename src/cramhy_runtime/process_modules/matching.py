@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from cramhy_runtime.cpl.failures.handling import attempt, fail_with_advice, signal_failure
 from ..designators.clause_index import index_by_properties
-from cramhy_runtime.ground.data import list_from, one, truth
-from cramhy_runtime.ground.hooks import Hook
+from cramhy_runtime.lisp_core.data import list_from, one, truth
+from cramhy_runtime.lisp_core.hooks import Hook
 from cramhy_runtime.prolog.engine.fact_groups import built_in_group
 from ..prolog.query import ask_all
 from cramhy_runtime.prolog.terms.terms import Var
@@ -16,7 +16,7 @@ from .symbols import sym
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from cramhy_runtime.ground.data import Cons, Symbol
+    from cramhy_runtime.lisp_core.data import Cons, Symbol
     from ..designators.classes import Designator
 
 on_preparing_performing = Hook("CPL::ON-PREPARING-PERFORMING-ACTION-DESIGNATOR", "(designator matching-process-modules)")

@@ -28,17 +28,17 @@ from cramhy_runtime.cpl.statuses import FAILED as TASK_FAILED
 from ..cpl.task_variables import inherit
 from ..designators.classes import Designator, attached
 from ..designators.equating import current_desig
-from cramhy_runtime.ground.python_exceptions import from_python
-from cramhy_runtime.ground.conditions import DEBUGGER_HOOK, Error, enter_debugger, error, handler_bind, restart_case, type_error
-from cramhy_runtime.ground.data import Symbol, all_values, list_from, truth
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.source_places import circumstance
-from cramhy_runtime.ground.hooks import Hook
-from cramhy_runtime.ground.ports import PORTS
-from cramhy_runtime.ground.classes import make_instance
-from cramhy_runtime.ground.classes import class_name, find_class_or_error
-from cramhy_runtime.ground.dispatch.generic_functions import generic
-from cramhy_runtime.ground.packages import CURRENT, keyword
+from cramhy_runtime.lisp_core.python_exceptions import from_python
+from cramhy_runtime.lisp_core.conditions import DEBUGGER_HOOK, Error, enter_debugger, error, handler_bind, restart_case, type_error
+from cramhy_runtime.lisp_core.data import Symbol, all_values, list_from, truth
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.source_places import circumstance
+from cramhy_runtime.lisp_core.hooks import Hook
+from cramhy_runtime.lisp_core.ports import PORTS
+from cramhy_runtime.lisp_core.classes import make_instance
+from cramhy_runtime.lisp_core.classes import class_name, find_class_or_error
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core.packages import CURRENT, keyword
 from .registry import ended_because, in_brief, is_defined, not_running, register_process_module, running, start_under, unknown
 from .symbols import sym
 
@@ -47,8 +47,8 @@ if TYPE_CHECKING:
 
     from cramhy_runtime.cpl.fluents.fluents import ValueFluent
     from cramhy_runtime.cpl.tasks.tasks import AbstractTask
-    from cramhy_runtime.ground.data import Cons, Keyword
-    from cramhy_runtime.ground.signatures import GenericOf
+    from cramhy_runtime.lisp_core.data import Cons, Keyword
+    from cramhy_runtime.lisp_core.signatures import GenericOf
 
 OFFLINE, WAITING, RUNNING, FAILED = map(keyword, ("OFFLINE", "WAITING", "RUNNING", "FAILED"))
 NAME = keyword("NAME")

@@ -31,11 +31,11 @@ from ..designators.classes import Designator
 from ..designators.python_grounding import kind_goals
 from ..designators.python_kinds import Kind, hold_for_derived
 from cramhy_runtime.kernel.unstarted import plain_function
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.python_exceptions import from_python
-from cramhy_runtime.ground.data import MultipleValues, Symbol, list_from
-from cramhy_runtime.ground.classes import register_class
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.python_exceptions import from_python
+from cramhy_runtime.lisp_core.data import MultipleValues, Symbol, list_from
+from cramhy_runtime.lisp_core.classes import register_class
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.prolog.python.ground import reasoning
 from cramhy_runtime.prolog.python.rules import fact_group, remove_fact_group
 from cramhy_runtime.prolog.python.spelling import exact_lisp_name
@@ -48,7 +48,7 @@ from .running import modules_running
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from cramhy_runtime.ground.data import Keyword
+    from cramhy_runtime.lisp_core.data import Keyword
     from .signatures import Defines
 
     Body = Callable[[Any], object]

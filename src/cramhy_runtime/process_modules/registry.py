@@ -14,19 +14,19 @@ from cramhy_runtime import kernel
 from cramhy_runtime.cpl.failures.failure_types import opened
 from cramhy_runtime.cpl.tasks.pausing import pause
 from ..cpl.task_variables import inherit
-from cramhy_runtime.ground.python_exceptions import from_python
-from cramhy_runtime.ground.conditions import SimpleError, as_name, error
-from cramhy_runtime.ground.data import Symbol, list_from
-from cramhy_runtime.ground.source_places import describe, locate
-from cramhy_runtime.ground.packages import near_names
-from cramhy_runtime.ground.printing import attempt_to_print, princ_to_string
+from cramhy_runtime.lisp_core.python_exceptions import from_python
+from cramhy_runtime.lisp_core.conditions import SimpleError, as_name, error
+from cramhy_runtime.lisp_core.data import Symbol, list_from
+from cramhy_runtime.lisp_core.source_places import describe, locate
+from cramhy_runtime.lisp_core.packages import near_names
+from cramhy_runtime.lisp_core.printing import attempt_to_print, princ_to_string
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar
 from .symbols import sym
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from cramhy_runtime.ground.data import Cons
+    from cramhy_runtime.lisp_core.data import Cons
     from .modules import AbstractProcessModule
 
 T = TypeVar("T")

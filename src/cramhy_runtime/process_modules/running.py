@@ -19,9 +19,9 @@ from cramhy_runtime.cpl.tasks.pausing import pause
 from ..cpl.statuses import DEAD, FAILED
 from cramhy_runtime.cpl.tasks.tasks import Task, ToplevelTask
 from cramhy_runtime.cpl.tree.task_tree import TaskTreeNode
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import Cons
 from .modules import pm_run
 from .registry import ProcessModuleNotRunning, UnknownProcessModule, not_running, running
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar

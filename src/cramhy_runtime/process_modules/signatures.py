@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import Any, Protocol, TypeVar
 
 from cramhy_runtime.cpl.tasks.tasks import AbstractTask
-from cramhy_runtime.ground.data import Cons, Symbol
-from cramhy_runtime.ground.signatures import GenericOf
+from cramhy_runtime.lisp_core.data import Cons, Symbol
+from cramhy_runtime.lisp_core.signatures import GenericOf
 from ..designators.classes import Designator
 from .asynchronous import AsynchronousProcessModule
 from .modules import AbstractProcessModule

@@ -4,7 +4,7 @@
 """
 
 from cramhy_runtime.designators import symbols as _designators  # noqa: F401  its packages come first
-from cramhy_runtime.ground.packages import ensure_package, sym
+from cramhy_runtime.lisp_core.packages import ensure_package, sym
 
 CPM = ensure_package("CRAM-PROCESS-MODULES", "CPM")
 EXE = ensure_package("CRAM-EXECUTIVE", "EXE")

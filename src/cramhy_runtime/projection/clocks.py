@@ -17,11 +17,11 @@ from cramhy_runtime import kernel
 
 from cramhy_runtime.cpl.tasks.pausing import pause
 from cramhy_runtime.cpl.tasks.waiting import sleep
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import lisp_list
-from cramhy_runtime.ground.numbers import need_real
-from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import lisp_list
+from cramhy_runtime.lisp_core.numbers import need_real
+from cramhy_runtime.lisp_core.numbers import is_real
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
 from . import symbols  # noqa: F401  the package must exist
 from .symbols import sym
 

@@ -19,12 +19,12 @@ from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime import kernel
 
 from ..cpl.task_variables import define_task_variable, inherit
-from cramhy_runtime.ground.conditions import SimpleError, error
-from cramhy_runtime.ground.data import UNBOUND, Cons, all_values, list_from, one
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.classes import find_class_or_error, register_class
-from cramhy_runtime.ground.packages import near_names
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.conditions import SimpleError, error
+from cramhy_runtime.lisp_core.data import UNBOUND, Cons, all_values, list_from, one
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.classes import find_class_or_error, register_class
+from cramhy_runtime.lisp_core.packages import near_names
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from ..process_modules.registry import RUNNING_MODULES, running
 from ..process_modules.running import with_process_modules_running
 from .own_modules import ProjectedRegistry

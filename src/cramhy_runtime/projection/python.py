@@ -20,7 +20,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from cramhy_runtime.cpl.failures.python_exceptions import for_python
-from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.lisp_core.data import Symbol
 from cramhy_runtime.kernel.typing_names import Generic, TypeVar
 from cramhy_runtime.prolog.python.ground import reasoning
 

@@ -3,7 +3,7 @@
 ``languages/commonlisp/faces/projection/package.py`` declares its contents.
 """
 
-from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, sym
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, ensure_package, sym
 
 PROJ = ensure_package("CRAM-PROJECTION", "PROJ", use=[COMMON_LISP])
 PROJ.lends_nicknames = True

@@ -13,11 +13,11 @@ All solutions are computed on demand, so a query that is dropped costs nothing m
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import FLOATS, Cons, Keyword, Symbol, python_list
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import FLOATS, Cons, Keyword, Symbol, python_list
 
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.hooks import Hook
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.hooks import Hook
 
 from .builtins import builtins, control  # noqa: F401  the predicates that every query may use
 from .compiler import compiler  # noqa: F401  the clauses that they find

@@ -3,7 +3,7 @@
 ``languages/commonlisp/faces/prolog/package.py`` declares its contents.
 """
 
-from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, sym
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, ensure_package, sym
 from ..utilities.symbols import CUT
 
 PROLOG = ensure_package("CRAM-PROLOG", "PROLOG", use=[COMMON_LISP, CUT])

@@ -19,10 +19,10 @@ from contextlib import contextmanager
 
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.catching import HandlerExit
-from cramhy_runtime.ground.conditions import Condition, error, warn
-from cramhy_runtime.ground.data import Cons, Keyword, list_from
-from cramhy_runtime.ground.output import trace_output
+from cramhy_runtime.lisp_core.catching import HandlerExit
+from cramhy_runtime.lisp_core.conditions import Condition, error, warn
+from cramhy_runtime.lisp_core.data import Cons, Keyword, list_from
+from cramhy_runtime.lisp_core.output import trace_output
 
 from .engine import database, four_ports as ports
 from .explanations import failure_reasons as reasons

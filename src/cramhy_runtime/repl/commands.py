@@ -4,8 +4,8 @@ from __future__ import annotations
 
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import SimpleError
 
 PATIENCE = 5.0
 """Seconds of virtual time after which a command ends that would go on for ever, and so fill the screen at once."""

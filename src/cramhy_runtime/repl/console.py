@@ -11,7 +11,7 @@ import sys
 from cramhy_runtime import kernel
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of, report
-from cramhy_runtime.ground.conditions import Condition
+from cramhy_runtime.lisp_core.conditions import Condition
 
 from .line_input import standard_lines
 from .listener import Listener

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 
-from cramhy_runtime.ground.conditions import Error, handler_case
+from cramhy_runtime.lisp_core.conditions import Error, handler_case
 from cramhy_runtime.languages.commonlisp.pathnames.namestrings import native_namestring
 from cramhy_runtime.languages.commonlisp.pathnames.pathnames import DEFAULTS
 

@@ -26,13 +26,13 @@ from hy.reader import HyReader
 from hy.reader.exceptions import LexException
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.conses import list_end
-from cramhy_runtime.ground.data import Cons, all_values
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.printing import prin1_to_string, speak
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.conses import list_end
+from cramhy_runtime.lisp_core.data import Cons, all_values
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import sym
+from cramhy_runtime.lisp_core.printing import prin1_to_string, speak
 from cramhy_runtime.kernel import signals, standard_input
 from cramhy_runtime.languages.commonlisp.reader.reader import incomplete
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE

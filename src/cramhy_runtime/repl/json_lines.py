@@ -14,13 +14,13 @@ from contextlib import nullcontext
 
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel import standard_input
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.languages.commonlisp.compiler import compilation_unit
 from cramhy_runtime.languages.commonlisp.tools import backtrace
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for, report_text
-from cramhy_runtime.ground.classes import class_name
-from cramhy_runtime.ground.packages import COMMON_LISP, symbol_name, symbol_package
-from cramhy_runtime.ground.source_places import describe
+from cramhy_runtime.lisp_core.classes import class_name
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, symbol_name, symbol_package
+from cramhy_runtime.lisp_core.source_places import describe
 
 
 from cramhy_runtime.session.session import Interruption, condition_of, signalled_here, value_text

@@ -17,18 +17,18 @@ from contextlib import contextmanager, nullcontext
 from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime import kernel
 from cramhy_runtime.cpl import current_task
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.languages.commonlisp.printer.printing_support import with_readable_input
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.tools import backtrace
 from cramhy_runtime.languages.commonlisp.tools.advice import explanation, typed_meanwhile
 from cramhy_runtime.languages.commonlisp.tools.describing import describe
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of, condition_type
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import Cons
-from cramhy_runtime.ground.packages import sym, symbol_name
-from cramhy_runtime.ground.printing import report_of, speak
-from cramhy_runtime.ground.source_places import circumstance
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import Cons
+from cramhy_runtime.lisp_core.packages import sym, symbol_name
+from cramhy_runtime.lisp_core.printing import report_of, speak
+from cramhy_runtime.lisp_core.source_places import circumstance
 
 from . import commands, prompt_words
 from .line_input import BROKEN_OFF, Lines

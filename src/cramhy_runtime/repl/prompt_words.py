@@ -6,8 +6,8 @@ given the name a meaning of its own: a variable ``help``, a function ``exit``. N
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import UNBOUND, Cons, Symbol
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import UNBOUND, Cons, Symbol
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.tools.advice import elsewhere, is_operator
 

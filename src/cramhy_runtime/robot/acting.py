@@ -8,8 +8,8 @@ from typing import Any, ParamSpec, TypeVar
 
 from cramhy_runtime.cpl.failures.python_exceptions import for_python
 from cramhy_runtime.designators import Location, Object
-from cramhy_runtime.ground.data import list_from
-from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.lisp_core.data import list_from
+from cramhy_runtime.lisp_core.packages import keyword, sym
 from cramhy_runtime.process_modules import ReferenceFailure, perform
 
 from .designators import Detecting, Going, Looking, MovingTorso, PickingUp, Placing

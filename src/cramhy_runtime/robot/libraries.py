@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 from typing import Any
 
-from cramhy_runtime.ground.packages import find_package, named_package, near_names
+from cramhy_runtime.lisp_core.packages import find_package, named_package, near_names
 from cramhy_runtime.languages.commonlisp.python import python_face
 from cramhy_runtime.languages.commonlisp.systems import loader, system_definitions, systems
 from cramhy_runtime.prolog import V, findall, names

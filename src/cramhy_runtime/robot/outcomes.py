@@ -10,7 +10,7 @@ from math import acos, degrees, dist, hypot, pi, remainder
 from typing import Any
 
 from cramhy_runtime.designators import Object
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.prolog import V, findall, names
 from cramhy_runtime.tf.stamped import PoseStamped
 

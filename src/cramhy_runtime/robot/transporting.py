@@ -7,7 +7,7 @@ from math import atan2, cos, degrees, dist, pi, sin
 from typing import Any
 
 from cramhy_runtime.designators import Object
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.packages import keyword
 from cramhy_runtime.prolog import V, findall, names
 from cramhy_runtime.robot_world.placements import of_pose
 from cramhy_runtime.tf.stamped import PoseStamped

@@ -9,8 +9,8 @@ from math import atan2, degrees
 from typing import Any
 
 from cramhy_runtime.cpl.failures.python_exceptions import for_python
-from cramhy_runtime.ground.data import Symbol, list_from
-from cramhy_runtime.ground.packages import find_package_or_error, keyword, sym
+from cramhy_runtime.lisp_core.data import Symbol, list_from
+from cramhy_runtime.lisp_core.packages import find_package_or_error, keyword, sym
 from cramhy_runtime.robot_world.placements import Placement, of_pose
 from cramhy_runtime.robot_world.pictures import movies, stills, views
 from cramhy_runtime.tf.stamped import PoseStamped, copy_pose_stamped

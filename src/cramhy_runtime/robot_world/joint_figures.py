@@ -9,9 +9,9 @@ import functools
 from math import isfinite
 from pathlib import Path
 
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, list_from
-from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import Cons, list_from
+from cramhy_runtime.lisp_core.packages import near_names
 
 from . import description_files
 from .descriptions import Description, DescriptionError

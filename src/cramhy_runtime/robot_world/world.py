@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import list_from
+from cramhy_runtime.lisp_core.condition_types import SimpleError
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import list_from
 
 from . import shown
 from .mesh_files import MeshError

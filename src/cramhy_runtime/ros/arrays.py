@@ -12,8 +12,8 @@ from __future__ import annotations
 import math
 from array import array
 
-from cramhy_runtime.ground.data import FLOATS, Symbol
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.data import FLOATS, Symbol
+from cramhy_runtime.lisp_core.packages import keyword
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, overload
 
 from .definition_text import INTEGERS

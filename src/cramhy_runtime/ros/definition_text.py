@@ -13,7 +13,7 @@ import re
 from collections import namedtuple
 
 from cramhy_runtime.kernel.late_patterns import late_pattern
-from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.lisp_core.packages import near_names
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, NoReturn
 
 if TYPE_CHECKING:

@@ -7,14 +7,14 @@ specs from the last to the first, so of two values for one field the first one c
 
 from __future__ import annotations
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import Error, SimpleError, TypeError_
-from cramhy_runtime.ground.data import Cons, Symbol, list_from, python_list
-from cramhy_runtime.ground.classes import make_instance
-from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
-from cramhy_runtime.ground.condition_types import MissingSlot
-from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym, symbol_name
-from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import Error, SimpleError, TypeError_
+from cramhy_runtime.lisp_core.data import Cons, Symbol, list_from, python_list
+from cramhy_runtime.lisp_core.classes import make_instance
+from cramhy_runtime.lisp_core.dispatch.generic_errors import no_applicable_method
+from cramhy_runtime.lisp_core.condition_types import MissingSlot
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, is_symbol, sym, symbol_name
+from cramhy_runtime.lisp_core.printing import princ_to_string
 from . import messages, type_texts
 from .messages import RosMessage, lisp_attribute
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn

@@ -20,9 +20,9 @@ import json
 import math
 import reprlib
 
-from cramhy_runtime.ground.data import LispString, truth
-from cramhy_runtime.ground.floats import to_float32
-from cramhy_runtime.ground.numbers import is_real
+from cramhy_runtime.lisp_core.data import LispString, truth
+from cramhy_runtime.lisp_core.floats import to_float32
+from cramhy_runtime.lisp_core.numbers import is_real
 from cramhy_runtime.utilities.generated_functions import generated_function
 from . import messages
 from .arrays import NONFINITE, QUICK, Octets, as_float, lisp_float

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import functools
 
-from cramhy_runtime.ground import conditions, packages
-from cramhy_runtime.ground.condition_types import CaseFailure, SimpleError
-from cramhy_runtime.ground.data import UNSUPPLIED, LispString, Symbol, lisp_list, truth
-from cramhy_runtime.ground.classes import find_class_or_error
-from cramhy_runtime.ground.floats import literal_float
-from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
-from cramhy_runtime.ground.packages import Package, delete_package, intern, near_names, ours, registered, string_designator, sym
+from cramhy_runtime.lisp_core import conditions, packages
+from cramhy_runtime.lisp_core.condition_types import CaseFailure, SimpleError
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, LispString, Symbol, lisp_list, truth
+from cramhy_runtime.lisp_core.classes import find_class_or_error
+from cramhy_runtime.lisp_core.floats import literal_float
+from cramhy_runtime.lisp_core.dispatch.generic_errors import no_applicable_method
+from cramhy_runtime.lisp_core.packages import Package, delete_package, intern, near_names, ours, registered, string_designator, sym
 from cramhy_runtime.utilities.generated_functions import generated_function
 from . import definition_files
 from .definition_text import DefinitionError

@@ -7,9 +7,9 @@ names of topics, services and parameters, as roscpp does. Source: roslisp.md 3, 
 
 from __future__ import annotations
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.data import Symbol
-from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.data import Symbol
+from cramhy_runtime.lisp_core.ports import PORTS
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 if TYPE_CHECKING:

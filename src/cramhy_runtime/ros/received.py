@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.lisp_core.data import Symbol
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar
 from cramhy_runtime.utilities.generated_functions import generated_function
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import sys
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import SimpleError
 from . import graph, names, rosout
 from .loggers import Loggers
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING

@@ -12,7 +12,7 @@ import struct
 
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
-from cramhy_runtime.ground.data import truth
+from cramhy_runtime.lisp_core.data import truth
 from .messages import part_class
 from .arrays import OCTETS, QUICK, Octets, as_float, lisp_float, octets
 

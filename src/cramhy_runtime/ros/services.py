@@ -15,8 +15,8 @@ reported (law 3). Source: roslisp.md 7, wiki.ros.org/Services.
 from __future__ import annotations
 
 from .. import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import Error
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import Error
 from . import wire
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Protocol, TextIO
 
-from cramhy_runtime.ground.data import LispString, Symbol
+from cramhy_runtime.lisp_core.data import LispString, Symbol
 from .graph import Node
 from .messages import RosMessage, ServiceType
 from .services import Call

@@ -11,13 +11,13 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import FloatingPointOverflow, SimpleError, TypeError_
-from cramhy_runtime.ground.data import Character, Cons, LispString, Symbol, truth
-from cramhy_runtime.ground.floats import FLOATS, to_float32
-from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import FloatingPointOverflow, SimpleError, TypeError_
+from cramhy_runtime.lisp_core.data import Character, Cons, LispString, Symbol, truth
+from cramhy_runtime.lisp_core.floats import FLOATS, to_float32
+from cramhy_runtime.lisp_core.numbers import is_real
+from cramhy_runtime.lisp_core.dispatch.generic_errors import no_applicable_method
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from cramhy_runtime.utilities.generated_functions import generated_function
 from . import messages
 from .arrays import (

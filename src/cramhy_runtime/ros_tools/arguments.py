@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.lisp_core.packages import near_names
 
 TOOLS: dict[str, dict[str, Command]] = {}
 """The commands of each tool by name."""

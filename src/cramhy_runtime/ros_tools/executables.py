@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import SimpleError
 from ..turtlesim.executables import PROGRAMS
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 import os
 import sys
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import Error
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import Error
 from ..robot_world.al5d.names import NAME, PACKAGE
 from ..ros import graph
 from ..ros.messages import message_class_exact, service_type_exact

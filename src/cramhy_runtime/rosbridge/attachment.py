@@ -21,8 +21,8 @@ from importlib.util import find_spec
 
 from .. import kernel
 from ..extras import install_command
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import Condition, SimpleError
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import Condition, SimpleError
 from ..ros import graph
 from ..ros.message_json import MessageJsonError, from_json, service_named, to_json, type_named
 from ..ros.roslisp import logging

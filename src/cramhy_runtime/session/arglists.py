@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 
 from cramhy_runtime.cpl.forms.plans import plan_property
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import find_package, is_symbol, symbol_name
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, UndefinedFunction
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import find_package, is_symbol, symbol_name
 from cramhy_runtime.languages.commonlisp.evaluation.forms import SPECIAL_OPERATORS
 from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda_list_of
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, Symbol
+from cramhy_runtime.lisp_core.data import Cons, Symbol
 from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda_list_of
 from cramhy_runtime.languages.operators import OPERATORS, operator_of
 

@@ -36,7 +36,7 @@ def begin():
     """Make the packages of Common Lisp; with no kernel active, start one in virtual time. Calling it again does nothing."""
     from cramhy_runtime import kernel
     from cramhy_runtime.languages.commonlisp import package
-    from cramhy_runtime.ground import packages
+    from cramhy_runtime.lisp_core import packages
     from cramhy_runtime.languages.commonlisp.evaluation import evaluator
     from cramhy_runtime.languages.commonlisp.systems import importer
     from cramhy_runtime.languages.commonlisp.tools import advice
@@ -72,7 +72,7 @@ def boot():
 
 def _complete():
     from cramhy_runtime.kernel import images
-    from cramhy_runtime.ground import packages
+    from cramhy_runtime.lisp_core import packages
     from cramhy_runtime.languages.commonlisp.systems import asdf, ros_load, systems, unit_tests
     from cramhy_runtime.languages.commonlisp.extension_packages import come_late
     from cramhy_runtime.languages.commonlisp.uiop import texts
@@ -119,7 +119,7 @@ def define_robot_world():
 
 def define_costmaps():
     """Name what Python computes for the library ``cram-location-costmap``. It takes numpy, so it is done when that is loaded."""
-    from cramhy_runtime.ground.conditions import error
+    from cramhy_runtime.lisp_core.conditions import error
 
     try:
         from cramhy_runtime.languages.commonlisp.faces.costmaps import package

@@ -10,12 +10,12 @@ import linecache
 import re
 import sys
 
-from cramhy_runtime.ground.data import lisp_list, list_from
+from cramhy_runtime.lisp_core.data import lisp_list, list_from
 from cramhy_runtime.languages.commonlisp.compiler.frame_exits import FrameExit, can_be_left
-from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.printing import attempt_to_print
-from cramhy_runtime.ground.python_names import lisp_spelling, python_name
-from cramhy_runtime.ground.source_places import circumstance, frame_position, is_user_file
+from cramhy_runtime.lisp_core.packages import sym
+from cramhy_runtime.lisp_core.printing import attempt_to_print
+from cramhy_runtime.lisp_core.python_names import lisp_spelling, python_name
+from cramhy_runtime.lisp_core.source_places import circumstance, frame_position, is_user_file
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.reader.reader import Reader

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import re
 
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction
-from cramhy_runtime.ground.packages import KEYWORD, find_package, symbol_name
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, UndefinedFunction
+from cramhy_runtime.lisp_core.packages import KEYWORD, find_package, symbol_name
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda_list_of
 from cramhy_runtime.languages.hy.brackets import open_brackets

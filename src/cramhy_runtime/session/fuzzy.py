@@ -9,9 +9,9 @@ from __future__ import annotations
 import re
 
 from cramhy_runtime.kernel.typing_names import NamedTuple
-from cramhy_runtime.ground.data import UNBOUND, Symbol, UndefinedFunction
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
-from cramhy_runtime.ground.packages import KEYWORD, find_package, registered
+from cramhy_runtime.lisp_core.data import UNBOUND, Symbol, UndefinedFunction
+from cramhy_runtime.lisp_core.dispatch.generic_functions import GenericFunction
+from cramhy_runtime.lisp_core.packages import KEYWORD, find_package, registered
 from cramhy_runtime.languages.commonlisp.evaluation.forms import SPECIAL_OPERATORS
 from cramhy_runtime.languages.commonlisp.objects.classes import registered_class
 

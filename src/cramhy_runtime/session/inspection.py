@@ -14,10 +14,10 @@ from cramhy_runtime import kernel
 from cramhy_runtime.cpl.fluents.fluents import Fluent
 from cramhy_runtime.cpl.tasks.tasks import AbstractTask
 from cramhy_runtime.designators import classes, resolution
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import Cons, Symbol, list_end, list_from
-from cramhy_runtime.ground.packages import is_symbol
-from cramhy_runtime.ground.printing import attempt_to_print, guarded
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import Cons, Symbol, list_end, list_from
+from cramhy_runtime.lisp_core.packages import is_symbol
+from cramhy_runtime.lisp_core.printing import attempt_to_print, guarded
 from cramhy_runtime.languages.commonlisp.objects.classes import class_of
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.tools import inspecting
@@ -73,7 +73,7 @@ def inspected(obj):
     if is_symbol(obj) and isinstance(obj, Symbol):
         actions = [Action("unintern it", lambda: _unintern(obj)), Action("make it unbound", lambda: _unbind(obj))]
     if isinstance(obj, Condition) and getattr(obj, "position", None):
-        from cramhy_runtime.ground.source_places import describe
+        from cramhy_runtime.lisp_core.source_places import describe
 
         found.append(Part("Place", describe(obj.position)))
     if not isinstance(obj, (Cons, type)) and not is_symbol(obj):

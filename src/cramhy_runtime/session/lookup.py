@@ -13,11 +13,11 @@ import os
 import re
 from typing import NamedTuple
 
-from cramhy_runtime.ground.data import Symbol, UndefinedFunction
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
-from cramhy_runtime.ground.function_codes import files_noted
-from cramhy_runtime.ground.packages import find_package, symbol_name
-from cramhy_runtime.ground.source_places import file_of_text
+from cramhy_runtime.lisp_core.data import Symbol, UndefinedFunction
+from cramhy_runtime.lisp_core.dispatch.generic_functions import GenericFunction
+from cramhy_runtime.lisp_core.function_codes import files_noted
+from cramhy_runtime.lisp_core.packages import find_package, symbol_name
+from cramhy_runtime.lisp_core.source_places import file_of_text
 from cramhy_runtime.languages.commonlisp.evaluation.function_facts import plain
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.tools.operators_around import TOKEN

@@ -12,7 +12,7 @@ from collections import deque
 from contextlib import ExitStack
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 
 from .session import Interruption
 

@@ -14,24 +14,24 @@ from pathlib import Path
 
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.images import Cell
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.python import python_calls
 from cramhy_runtime.languages.commonlisp.systems import asdf, systems, unit_tests
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of  # noqa: F401  for those who have a session
 from cramhy_runtime.languages.commonlisp.compiler.compilation_unit import signalling_position
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import all_values, list_from
-from cramhy_runtime.ground.printing import class_text, prin1_to_string, speak
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import all_values, list_from
+from cramhy_runtime.lisp_core.printing import class_text, prin1_to_string, speak
 from cramhy_runtime.languages import answered_texts
 from cramhy_runtime.languages.which_language import goes_on_in_lisp
 from cramhy_runtime.languages.commonlisp.packages.face_definition import define_face
 from cramhy_runtime.languages.commonlisp.pathnames.namestrings import parse_native
-from cramhy_runtime.ground.packages import COMMON_LISP_USER, find_package_or_error, near_names, on_demand, registered, sym
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER, find_package_or_error, near_names, on_demand, registered, sym
 from cramhy_runtime.ros.search_folders import entries, is_file
 from cramhy_runtime.languages.commonlisp.pathnames.pathnames import DEFAULTS
-from cramhy_runtime.ground.source_places import circumstance, locate
+from cramhy_runtime.lisp_core.source_places import circumstance, locate
 from .boot import fresh_start
 from cramhy_runtime.robot_world.al5d.demand import start_when_asked_for
 from cramhy_runtime.turtlesim.node import start_with_first_node

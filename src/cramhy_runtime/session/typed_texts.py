@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from cramhy_runtime.ground.source_places import keep_text
+from cramhy_runtime.lisp_core.source_places import keep_text
 
 MOST = 200
 """Texts that are kept."""

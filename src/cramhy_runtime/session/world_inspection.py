@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import sys
 
-from cramhy_runtime.ground.data import list_from
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.data import list_from
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 
 HOME = "cramhy_runtime.robot_world.world"
 

@@ -12,9 +12,9 @@ import shutil
 from collections import deque
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import COMMON_LISP_USER
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.session import requests
 from cramhy_runtime.session.requests import Mailbox, Request

@@ -10,10 +10,10 @@ from __future__ import annotations
 import sys
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.packages import symbol_name
-from cramhy_runtime.ground.printing import report_of
-from cramhy_runtime.ground.source_places import circumstance
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.packages import symbol_name
+from cramhy_runtime.lisp_core.printing import report_of
+from cramhy_runtime.lisp_core.source_places import circumstance
 from cramhy_runtime.languages.commonlisp.tools.advice import explanation
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_type
 from cramhy_runtime.session import requests

@@ -5,8 +5,8 @@ SLIME keeps these numbers by names in small letters. Each connection is told of 
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Symbol
-from cramhy_runtime.ground.packages import COMMON_LISP, KEYWORD, all_packages
+from cramhy_runtime.lisp_core.data import Symbol
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, KEYWORD, all_packages
 from cramhy_runtime.languages.operators import OPERATORS
 from cramhy_runtime.session.body_arguments import before_body, before_forms
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.printing import attempt_to_print
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.printing import attempt_to_print
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PRINT_LENGTH, PRINT_LEVEL, PRINT_PRETTY
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.session import inspection

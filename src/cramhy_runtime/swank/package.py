@@ -9,8 +9,8 @@ from __future__ import annotations
 import os
 import sys
 
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.packages import keyword, on_demand, registered
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.packages import keyword, on_demand, registered
 from cramhy_runtime.languages.commonlisp.packages.face_definition import define_face
 from cramhy_runtime.languages.commonlisp.files.files import path_of
 from cramhy_runtime.session import session

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.printing import attempt_to_print, prin1_to_string
+from cramhy_runtime.lisp_core.printing import attempt_to_print, prin1_to_string
 from cramhy_runtime.languages.commonlisp.tools.advice import report_text
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of
 

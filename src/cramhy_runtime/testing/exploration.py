@@ -10,7 +10,7 @@ how to repeat it. Exploring schedules under a seed is the idea of systematic con
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import one, truth
+from cramhy_runtime.lisp_core.data import one, truth
 from cramhy_runtime.kernel.unstarted import ran
 from .plans import plan_of, with_lisp
 from .runs import TIME_LIMIT, check_expected, is_expected, names, observe

@@ -6,7 +6,7 @@ They are made when a program first names one of them (`repl.session`).
 from __future__ import annotations
 
 from cramhy_runtime.languages.commonlisp.packages.face_definition import define_face
-from cramhy_runtime.ground.packages import on_demand, registered
+from cramhy_runtime.lisp_core.packages import on_demand, registered
 from . import traces
 
 

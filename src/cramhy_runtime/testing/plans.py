@@ -8,8 +8,8 @@ package TESTING-USER, which has the plan language and ``mark``, unless the text 
 from __future__ import annotations
 
 from .. import kernel
-from cramhy_runtime.ground.data import Cons, lisp_list
-from cramhy_runtime.ground.packages import find_package_or_error, sym
+from cramhy_runtime.lisp_core.data import Cons, lisp_list
+from cramhy_runtime.lisp_core.packages import find_package_or_error, sym
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar
 
@@ -41,7 +41,7 @@ def plan_of(plan: Plan[T]) -> Callable[[], T]:
 def with_lisp(thunk: Callable[[], T]) -> T:
     """Make the Lisp image if necessary, and call ``thunk`` in a kernel of its own, in the package TESTING-USER."""
     from .. import session
-    from cramhy_runtime.ground.dynamic import binding
+    from cramhy_runtime.lisp_core.dynamic import binding
     from cramhy_runtime.languages.commonlisp.evaluation.evaluator import PACKAGE
     from . import package
 

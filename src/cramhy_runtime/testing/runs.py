@@ -11,8 +11,8 @@ from contextlib import contextmanager
 from .. import kernel
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Generic, TypeVar, subscripted
 from cramhy_runtime.cpl.failures.failure_types import CommonLispErrorEnvelope, CompositeFailure, opened
-from cramhy_runtime.ground.data import Cons, all_values
-from cramhy_runtime.ground.equality import equalp
+from cramhy_runtime.lisp_core.data import Cons, all_values
+from cramhy_runtime.lisp_core.equality import equalp
 from .faults import InjectedError, InjectedFailure
 from .leftovers import complain, leftovers
 from .plans import plan_of
@@ -129,7 +129,7 @@ def _equal(one: object, other: object) -> bool:
 
 def shown(value: object) -> str:
     """A value as Lisp prints it."""
-    from cramhy_runtime.ground.printing import prin1_to_string
+    from cramhy_runtime.lisp_core.printing import prin1_to_string
 
     return prin1_to_string(value)
 

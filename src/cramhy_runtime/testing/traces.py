@@ -15,7 +15,7 @@ test is a *partial* order: reach before grasp, with anything in between. In Lisp
 from __future__ import annotations
 
 from .. import kernel
-from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.lisp_core.data import Symbol
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn
 from .labels import label
 

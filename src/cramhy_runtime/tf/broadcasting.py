@@ -10,10 +10,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from .. import kernel
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Cons, list_from, truth
-from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import Cons, list_from, truth
+from cramhy_runtime.lisp_core.numbers import is_real
+from cramhy_runtime.lisp_core.dispatch.generic_errors import no_applicable_method
 from ..ros import graph
 from ..ros.messages import message_class_exact
 from ..ros.roslisp import topics

@@ -18,7 +18,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from math import floor, isfinite
 
-from cramhy_runtime.ground.numbers import is_real
+from cramhy_runtime.lisp_core.numbers import is_real
 from ..transforms.quaternions import general, inverse, multiply, quaternion, rotated, slerp
 from ..transforms.vectors import interpolate_vector, point, vector
 from .frames import unslash_frame

@@ -6,9 +6,9 @@ original; one that cannot be read as such, because a frame is called ``a~b``, is
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import Condition, Error, formatted
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import UNBOUND
+from cramhy_runtime.lisp_core.condition_types import Condition, Error, formatted
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import UNBOUND
 
 
 class TransformStampedError(Error):

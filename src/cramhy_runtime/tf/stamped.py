@@ -7,10 +7,10 @@ Frames come first, then the stamp, then the geometry. Source: cl-transforms.md 5
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import SimpleError, error, warn
-from cramhy_runtime.ground.data import LispString
-from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
+from cramhy_runtime.lisp_core.conditions import SimpleError, error, warn
+from cramhy_runtime.lisp_core.data import LispString
+from cramhy_runtime.lisp_core.numbers import is_real
+from cramhy_runtime.lisp_core.dispatch.generic_errors import no_applicable_method
 from ..transforms.coercion import check_type, part, real, slot_reader, wrong_type
 from ..transforms.poses import Pose, Transform
 from ..transforms.vectors import Vector3, point, x, y, z

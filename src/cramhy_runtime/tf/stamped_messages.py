@@ -6,8 +6,8 @@ keeps it. A quaternion message that nobody filled in converts, but makes no pose
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons
-from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
+from cramhy_runtime.lisp_core.data import Cons
+from cramhy_runtime.lisp_core.dispatch.generic_errors import no_applicable_method
 from ..ros.messages import RosMessage, message_class_exact
 from ..ros.wire import transmit
 from ..transforms.coercion import check_type, instance

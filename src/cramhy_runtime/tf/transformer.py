@@ -9,13 +9,13 @@ server, take part by having the Python method ``lookup``. Source: cl-transforms.
 from __future__ import annotations
 
 from .. import kernel
-from cramhy_runtime.ground.condition_types import Error
-from cramhy_runtime.ground.conditions import SimpleError, error, handler_case, type_error, warn
-from cramhy_runtime.ground.data import LispString, truth
-from cramhy_runtime.ground.floats import ZERO
-from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
-from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.lisp_core.condition_types import Error
+from cramhy_runtime.lisp_core.conditions import SimpleError, error, handler_case, type_error, warn
+from cramhy_runtime.lisp_core.data import LispString, truth
+from cramhy_runtime.lisp_core.floats import ZERO
+from cramhy_runtime.lisp_core.numbers import is_real
+from cramhy_runtime.lisp_core.dispatch.generic_errors import no_applicable_method
+from cramhy_runtime.lisp_core.printing import princ_to_string
 from ..ros.roslisp import logging, node, parameters, topics
 from ..ros.roslisp.clock import ros_time
 from ..transforms.coercion import check_type

@@ -10,14 +10,14 @@ import math
 from numbers import Real
 from operator import attrgetter
 
-from cramhy_runtime.ground.arrays import InvalidArrayIndex, wrong_rank
-from cramhy_runtime.ground.arrays import LispArray
-from cramhy_runtime.ground.condition_types import TypeError_, shown_with
-from cramhy_runtime.ground.conditions import FloatingPointInvalidOperation, SimpleTypeError, error, type_error
-from cramhy_runtime.ground.floats import float_like
-from cramhy_runtime.ground.numbers import is_real, too_large_for
-from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
-from cramhy_runtime.ground.packages import ensure_package, sym
+from cramhy_runtime.lisp_core.arrays import InvalidArrayIndex, wrong_rank
+from cramhy_runtime.lisp_core.arrays import LispArray
+from cramhy_runtime.lisp_core.condition_types import TypeError_, shown_with
+from cramhy_runtime.lisp_core.conditions import FloatingPointInvalidOperation, SimpleTypeError, error, type_error
+from cramhy_runtime.lisp_core.floats import float_like
+from cramhy_runtime.lisp_core.numbers import is_real, too_large_for
+from cramhy_runtime.lisp_core.dispatch.generic_errors import no_applicable_method
+from cramhy_runtime.lisp_core.packages import ensure_package, sym
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 if TYPE_CHECKING:

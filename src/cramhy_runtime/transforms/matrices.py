@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.ground.arrays import LispArray, SimpleArray
-from cramhy_runtime.ground.floats import ZERO
-from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.lisp_core.arrays import LispArray, SimpleArray
+from cramhy_runtime.lisp_core.floats import ZERO
+from cramhy_runtime.lisp_core.conditions import error
 
 from .coercion import instance, real, wrong_type
 from .poses import Pose, Transform, make_transform, pose_to_transform

@@ -6,9 +6,9 @@ orientation, the same numbers. Source: cl-transforms.md sections 4.1 to 4.3.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import error, warn, wrong_argument_count
-from cramhy_runtime.ground.data import truth
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.conditions import error, warn, wrong_argument_count
+from cramhy_runtime.lisp_core.data import truth
+from cramhy_runtime.lisp_core.packages import keyword
 
 from .coercion import ByValue, array_elements, instance, no_method, part, slot_reader
 from .quaternions import TOLERANCE, Quaternion, general, inverse, multiply, normalize, normalized, quaternion, rotated, unit, yaw

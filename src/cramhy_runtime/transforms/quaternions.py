@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.ground.conditions import FloatingPointInvalidOperation, SimpleError, error
-from cramhy_runtime.ground.data import Cons, MultipleValues, list_from
-from cramhy_runtime.ground.floats import ZERO, float_like, literal_float, result_class
-from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.lisp_core.conditions import FloatingPointInvalidOperation, SimpleError, error
+from cramhy_runtime.lisp_core.data import Cons, MultipleValues, list_from
+from cramhy_runtime.lisp_core.floats import ZERO, float_like, literal_float, result_class
+from cramhy_runtime.lisp_core.numbers import is_real
+from cramhy_runtime.lisp_core.packages import keyword, sym
 
 from .coercion import (
     ByValue,

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.ground.conditions import DivisionByZero, error, wrong_argument_count
-from cramhy_runtime.ground.data import Cons
-from cramhy_runtime.ground.floats import ZERO, result_class
-from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import DivisionByZero, error, wrong_argument_count
+from cramhy_runtime.lisp_core.data import Cons
+from cramhy_runtime.lisp_core.floats import ZERO, result_class
+from cramhy_runtime.lisp_core.numbers import is_real
+from cramhy_runtime.lisp_core.packages import sym
 
 from .coercion import ByValue, check_type, component, element, elements, instance, no_method, part, real, wrong_type
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.floats import to_float32
+from cramhy_runtime.lisp_core.floats import to_float32
 
 SIZE = 500
 """Pixels of the paper, in both directions."""

@@ -6,8 +6,8 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import SimpleError
 from .draw_square import DrawSquare
 from .mimic import Mimic
 from .node import Turtlesim

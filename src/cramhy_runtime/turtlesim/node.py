@@ -11,7 +11,7 @@ import math
 from weakref import WeakKeyDictionary
 
 from .. import kernel
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from ..ros import graph, rosout, wire
 from ..ros.messages import message_class, service_type
 from ..ros.names import check_graph_name

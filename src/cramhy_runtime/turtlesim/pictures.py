@@ -17,9 +17,9 @@ import importlib.util
 import math
 
 from .. import storage
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleError, SimpleFileError, shown
-from cramhy_runtime.ground.numbers import is_real
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import SimpleError, SimpleFileError, shown
+from cramhy_runtime.lisp_core.numbers import is_real
 from . import replay, stills
 from .node import each_simulator, needed_simulator
 from .world import TICK

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import struct
 
-from cramhy_runtime.ground.floats import to_float32
+from cramhy_runtime.lisp_core.floats import to_float32
 from .dimensions import EXTENT
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 

@@ -6,11 +6,11 @@ those who wait at it hear of it. A task that is evaporated while it waits does n
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import Error, error, type_error
-from cramhy_runtime.ground.data import truth
-from cramhy_runtime.ground.packages import keyword
-from cramhy_runtime.ground.printing import define_printer, print_unreadable
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.conditions import Error, error, type_error
+from cramhy_runtime.lisp_core.data import truth
+from cramhy_runtime.lisp_core.packages import keyword
+from cramhy_runtime.lisp_core.printing import define_printer, print_unreadable
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 
 from .wait_queue import Line, need
 

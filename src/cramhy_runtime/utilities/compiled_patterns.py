@@ -10,8 +10,8 @@ it. If one has changed, it says so, and the pattern is met anew. The law: a matc
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol
-from cramhy_runtime.ground.equality import eql
+from cramhy_runtime.lisp_core.data import Cons, MultipleValues, Symbol
+from cramhy_runtime.lisp_core.equality import eql
 from cramhy_runtime.kernel.active import slice_over
 from cramhy_runtime.kernel.budget import budget
 

@@ -11,15 +11,27 @@ a second task that asks for a tail while a first one computes it waits for the f
 from __future__ import annotations
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import STRETCH, UNSUPPLIED, Cons, LazyRest, Symbol, all_values, lisp_list, list_from, list_parts, one, truth
-from cramhy_runtime.ground.dynamic import binding, special
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import keyword
-from cramhy_runtime.ground.printing import write
-from cramhy_runtime.ground.printing import address, define_printer, output_object, print_unreadable
-from cramhy_runtime.ground.printing import print_slots
-from cramhy_runtime.ground.restarts import restart_case
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import (
+    STRETCH,
+    UNSUPPLIED,
+    Cons,
+    LazyRest,
+    Symbol,
+    all_values,
+    lisp_list,
+    list_from,
+    list_parts,
+    one,
+    truth,
+)
+from cramhy_runtime.lisp_core.dynamic import binding, special
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.packages import keyword
+from cramhy_runtime.lisp_core.printing import write
+from cramhy_runtime.lisp_core.printing import address, define_printer, output_object, print_unreadable
+from cramhy_runtime.lisp_core.printing import print_slots
+from cramhy_runtime.lisp_core.restarts import restart_case
 
 from .wait_queue import Line
 from .symbols import sym

@@ -11,11 +11,11 @@ from __future__ import annotations
 import weakref
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.hash_tables import HashTable, make_hash_table
-from cramhy_runtime.ground.conditions import SimpleError, error
-from cramhy_runtime.ground.keyword_calls import lispify
-from cramhy_runtime.ground.printing import define_printer, print_unreadable
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.hash_tables import HashTable, make_hash_table
+from cramhy_runtime.lisp_core.conditions import SimpleError, error
+from cramhy_runtime.lisp_core.keyword_calls import lispify
+from cramhy_runtime.lisp_core.printing import define_printer, print_unreadable
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 
 from .wait_queue import Line, need, time_limit
 

@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import itertools
 
-from cramhy_runtime.ground import equality
+from cramhy_runtime.lisp_core import equality
 from cramhy_runtime.kernel.active import checkpoint
-from cramhy_runtime.ground.conditions import error, type_error, warn
-from cramhy_runtime.ground.data import (
+from cramhy_runtime.lisp_core.conditions import error, type_error, warn
+from cramhy_runtime.lisp_core.data import (
     TRUE_CLASSES,
     Cons,
     Keyword,
@@ -27,7 +27,7 @@ from cramhy_runtime.ground.data import (
     python_list,
     truth,
 )
-from cramhy_runtime.ground.functions import function_of
+from cramhy_runtime.lisp_core.functions import function_of
 
 from .compiled_patterns import LOOK_CLOSER, Matchers, unfit
 from .lazy_lists import LazyTail, lazy_cdr

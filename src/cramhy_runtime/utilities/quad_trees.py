@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from math import hypot
 
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import list_from
-from cramhy_runtime.ground.printing import define_printer, print_unreadable
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import list_from
+from cramhy_runtime.lisp_core.printing import define_printer, print_unreadable
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 
 from .wait_queue import need
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections import deque
 
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import MultipleValues, list_from, python_list
-from cramhy_runtime.ground.printing import define_printer, print_unreadable
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import MultipleValues, list_from, python_list
+from cramhy_runtime.lisp_core.printing import define_printer, print_unreadable
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 
 from .wait_queue import Line, need, time_limit
 

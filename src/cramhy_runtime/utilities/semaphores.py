@@ -6,9 +6,9 @@ evaporated, suspended and timed, and a semaphore that nobody signals is a deadlo
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.printing import define_printer, print_unreadable
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.printing import define_printer, print_unreadable
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 
 from .wait_queue import Line, need, time_limit
 

@@ -11,14 +11,14 @@ from copy import copy as shallow_copy
 import re
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.conditions import Error, SimpleStyleWarning, error, type_error, warn
-from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, list_from, one, python_list, truth
-from cramhy_runtime.ground.dynamic import binding, special
-from cramhy_runtime.ground.equality import eql
-from cramhy_runtime.ground.functions import function_of, identity
-from cramhy_runtime.ground.dispatch.generic_functions import protocol_function
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.conditions import Error, SimpleStyleWarning, error, type_error, warn
+from cramhy_runtime.lisp_core.data import Cons, MultipleValues, Symbol, list_from, one, python_list, truth
+from cramhy_runtime.lisp_core.dynamic import binding, special
+from cramhy_runtime.lisp_core.equality import eql
+from cramhy_runtime.lisp_core.functions import function_of, identity
+from cramhy_runtime.lisp_core.dispatch.generic_functions import protocol_function
+from cramhy_runtime.lisp_core.packages import keyword
 
 from .symbols import sym
 

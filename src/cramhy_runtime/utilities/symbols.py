@@ -3,7 +3,7 @@
 What it contains is declared in ``languages/commonlisp/faces/utilities/package.py``.
 """
 
-from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, sym
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, ensure_package, sym
 
 CUT = ensure_package("CRAM-UTILITIES", "CUT", use=[COMMON_LISP])
 

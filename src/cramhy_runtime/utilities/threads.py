@@ -12,13 +12,13 @@ Source: cpl.md 13.3.
 from __future__ import annotations
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.condition_types import shown_with
-from cramhy_runtime.ground.conditions import Error, error, type_error
-from cramhy_runtime.ground.data import NO_VALUES, Symbol, all_values, list_from, truth
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import ensure_package, keyword
-from cramhy_runtime.ground.printing import define_printer, print_unreadable
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.condition_types import shown_with
+from cramhy_runtime.lisp_core.conditions import Error, error, type_error
+from cramhy_runtime.lisp_core.data import NO_VALUES, Symbol, all_values, list_from, truth
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.packages import ensure_package, keyword
+from cramhy_runtime.lisp_core.printing import define_printer, print_unreadable
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 
 from .wait_queue import need, time_limit
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections import deque
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import type_error
+from cramhy_runtime.lisp_core.conditions import type_error
 
 
 class Place:

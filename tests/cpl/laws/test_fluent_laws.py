@@ -4,7 +4,7 @@ import gc
 
 import pytest
 
-from cramhy_runtime.ground.packages import intern
+from cramhy_runtime.lisp_core.packages import intern
 
 
 @pytest.mark.law(1)

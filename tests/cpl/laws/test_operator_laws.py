@@ -67,7 +67,7 @@ def test_two_runs_of_one_name_at_a_time_would_share_a_tree_and_the_second_is_ref
 )
 def test_the_hooks_of_a_top_level_run_in_order_around_its_body_however_it_ends(plan_text, body, ends):
     from cramhy_runtime.cpl import hooks
-    from cramhy_runtime.ground.data import lisp_list
+    from cramhy_runtime.lisp_core.data import lisp_list
     from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 
     seen = []
@@ -103,7 +103,7 @@ def test_the_hooks_of_a_top_level_run_in_order_around_its_body_however_it_ends(p
 
 def test_what_the_setup_hook_binds_reaches_the_plan_if_it_is_a_task_variable(plan_text):
     from cramhy_runtime.cpl import hooks
-    from cramhy_runtime.ground.data import lisp_list
+    from cramhy_runtime.lisp_core.data import lisp_list
 
     plan_text("(define-task-variable *speed* 1) (defvar *plain* 1)")
     speed, plain = (plan_text.session.package.intern(name) for name in ("*SPEED*", "*PLAIN*"))

@@ -339,7 +339,7 @@ def test_with_task_tree_node_runs_its_body_at_a_path_of_its_own_with_parameters(
 
 def test_the_hooks_of_a_node_get_what_is_to_be_logged(plan_text):
     from cramhy_runtime.cpl import hooks
-    from cramhy_runtime.ground.data import list_from
+    from cramhy_runtime.lisp_core.data import list_from
     from cramhy_runtime.languages.commonlisp.printer.printer import princ_to_string
 
     seen = []

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from shrinking import parts
 
-from cramhy_runtime.ground.packages import find_package
+from cramhy_runtime.lisp_core.packages import find_package
 
 ADDRESS = re.compile(r"\{[0-9A-F]{6,}\}")
 

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from form_grammar import lisp_string
 
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import one
-from cramhy_runtime.ground.packages import find_package
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import one
+from cramhy_runtime.lisp_core.packages import find_package
 from cramhy_runtime.repl.session import Session
 
 ANSWER = Path(__file__).parent / "answer.lisp"

@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from cramhy_runtime.ground.source_places import locate
+from cramhy_runtime.lisp_core.source_places import locate
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for
 from cramhy_runtime.repl.session import condition_of
 

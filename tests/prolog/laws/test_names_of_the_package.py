@@ -3,8 +3,8 @@
 import pytest
 
 from cramhy_runtime.languages.commonlisp.evaluation.function_facts import lambda_list_of
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
-from cramhy_runtime.ground.packages import COMMON_LISP, find_package
+from cramhy_runtime.lisp_core.dispatch.generic_functions import GenericFunction
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, find_package
 from cramhy_runtime.languages.commonlisp.printer.printer import princ_to_string
 from cramhy_runtime.prolog.builtins import control
 from cramhy_runtime.prolog.engine import database

@@ -131,7 +131,7 @@ def test_in_a_session_the_arm_is_there_when_a_plan_asks_for_it():
 
 
 def test_without_mujoco_the_one_who_asks_learns_how_to_install_it(monkeypatch, table):
-    from cramhy_runtime.ground.condition_types import SimpleError
+    from cramhy_runtime.lisp_core.condition_types import SimpleError
     from cramhy_runtime.robot_world.al5d import demand
 
     monkeypatch.setitem(sys.modules, "cramhy_runtime.robot_world.al5d.node", None)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.lisp_core.printing import princ_to_string
 from cramhy_runtime.ros.wire import transmit
 
 POSE = """(make-msg "geometry_msgs/PoseStamped" (:frame_id :header) "map" (:stamp :header) 12.5d0 (:seq :header) 7

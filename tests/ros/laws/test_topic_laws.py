@@ -3,7 +3,7 @@
 import pytest
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.packages import intern
+from cramhy_runtime.lisp_core.packages import intern
 from cramhy_runtime.ros import graph
 from cramhy_runtime.ros.messages import message_class
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from cramhy_runtime.ground.packages import find_package
+from cramhy_runtime.lisp_core.packages import find_package
 from cramhy_runtime.ros.roslisp import utilities
 from cramhy_runtime.turtlesim.node import start_turtlesim
 

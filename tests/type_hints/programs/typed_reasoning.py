@@ -26,7 +26,7 @@ from cramhy_runtime.designators import (
     replace,
     solutions,
 )
-from cramhy_runtime.ground.data import Keyword
+from cramhy_runtime.lisp_core.data import Keyword
 from cramhy_runtime.process_modules import (
     AsynchronousModule,
     cancel,

@@ -5,8 +5,8 @@ from math import pi
 from typing import Any, assert_type
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.data import Cons, Keyword, lisp_list
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.data import Cons, Keyword, lisp_list
+from cramhy_runtime.lisp_core.packages import keyword
 from cramhy_runtime.repl.session import Session
 from cramhy_runtime.session import Image, fresh_start
 from cramhy_runtime.tf.buffer import FrameBuffer

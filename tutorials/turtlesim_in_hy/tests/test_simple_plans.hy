@@ -1,7 +1,7 @@
 (require cramhy *)
 (import math [pi]
         pytest [approx raises]
-        cramhy_runtime.ground.condition_types [TypeError_ :as LispTypeError]
+        cramhy_runtime.lisp_core.condition_types [TypeError_ :as LispTypeError]
         ..simple-plans [relative-angle-to])
 
 (defn turtle-at [x y theta]

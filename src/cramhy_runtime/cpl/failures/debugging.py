@@ -12,8 +12,8 @@ both variables count as nil.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import shown
-from cramhy_runtime.ground.conditions import (
+from cramhy_runtime.lisp_core.condition_types import shown
+from cramhy_runtime.lisp_core.conditions import (
     Restart,
     enter_debugger,
     find_restart,
@@ -23,7 +23,7 @@ from cramhy_runtime.ground.conditions import (
     restart_case,
     with_simple_restart,
 )
-from cramhy_runtime.ground.data import truth
+from cramhy_runtime.lisp_core.data import truth
 from ..current import current_task
 from .failure_types import PlanFailure, SimplePlanFailure
 from ..logging import active_tags, log

@@ -7,7 +7,7 @@ an `Exception`. An error that ends a branch reaches the parent in an envelope, w
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import Condition, SeriousCondition, SimpleCondition, formatted
+from cramhy_runtime.lisp_core.condition_types import Condition, SeriousCondition, SimpleCondition, formatted
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 if TYPE_CHECKING:

@@ -14,9 +14,9 @@ from cramhy_runtime import kernel
 from cramhy_runtime.kernel.active import ACTIVE
 from cramhy_runtime.kernel.images import Cell
 
-from cramhy_runtime.ground import condition_types as types
-from cramhy_runtime.ground.catching import Cluster, HandlerExit
-from cramhy_runtime.ground.conditions import (
+from cramhy_runtime.lisp_core import condition_types as types
+from cramhy_runtime.lisp_core.catching import Cluster, HandlerExit
+from cramhy_runtime.lisp_core.conditions import (
     error,
     handled,
     make_condition,
@@ -26,10 +26,10 @@ from cramhy_runtime.ground.conditions import (
     signal_condition,
     type_error,
 )
-from cramhy_runtime.ground.data import lisp_list, list_from
-from cramhy_runtime.ground.source_places import locate
-from cramhy_runtime.ground.classes import class_name
-from cramhy_runtime.ground.packages import is_symbol, symbol_name
+from cramhy_runtime.lisp_core.data import lisp_list, list_from
+from cramhy_runtime.lisp_core.source_places import locate
+from cramhy_runtime.lisp_core.classes import class_name
+from cramhy_runtime.lisp_core.packages import is_symbol, symbol_name
 from ..current import current_task
 from .debugging import BREAK_ON_PLAN_FAILURES, break_on
 from .failure_types import CommonLispErrorEnvelope, CompositeFailure, PlanFailure, SimplePlanFailure

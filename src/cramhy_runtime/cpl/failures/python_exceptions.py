@@ -17,8 +17,8 @@ from cramhy_runtime.kernel.typing_names import NoReturn, ParamSpec, TypeVar
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.reports import of_the_library
 
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.conditions import note_asked
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.conditions import note_asked
 from .failure_types import python_exception
 
 P = ParamSpec("P")

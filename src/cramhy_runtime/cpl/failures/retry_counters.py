@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import numbers
 
-from cramhy_runtime.ground.conditions import CompileError, error, type_error
-from cramhy_runtime.ground.data import Symbol, list_from, one
-from cramhy_runtime.ground.ports import PORTS
-from cramhy_runtime.ground.packages import is_symbol, symbol_name
+from cramhy_runtime.lisp_core.conditions import CompileError, error, type_error
+from cramhy_runtime.lisp_core.data import Symbol, list_from, one
+from cramhy_runtime.lisp_core.ports import PORTS
+from cramhy_runtime.lisp_core.packages import is_symbol, symbol_name
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 if TYPE_CHECKING:

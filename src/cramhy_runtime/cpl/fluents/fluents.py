@@ -24,18 +24,18 @@ from cramhy_runtime import kernel
 from cramhy_runtime.kernel.images import Cell
 from cramhy_runtime.kernel.tasks import shield
 
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.python_exceptions import from_python
-from cramhy_runtime.ground.conditions import SimpleTypeError, error, program_error
-from cramhy_runtime.ground.data import OWN_ANSWERS, TRUE_CLASSES, MultipleValues, Symbol, lisp_list, one, plain_truth, truth
-from cramhy_runtime.ground.equality import eql
-from cramhy_runtime.ground import functions
-from cramhy_runtime.ground.source_places import circumstance, locate
-from cramhy_runtime.ground.classes import make_instance
-from cramhy_runtime.ground.classes import find_class_or_error
-from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
-from cramhy_runtime.ground.packages import keyword
-from cramhy_runtime.ground.printing import prin1_to_string, princ_to_string
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.python_exceptions import from_python
+from cramhy_runtime.lisp_core.conditions import SimpleTypeError, error, program_error
+from cramhy_runtime.lisp_core.data import OWN_ANSWERS, TRUE_CLASSES, MultipleValues, Symbol, lisp_list, one, plain_truth, truth
+from cramhy_runtime.lisp_core.equality import eql
+from cramhy_runtime.lisp_core import functions
+from cramhy_runtime.lisp_core.source_places import circumstance, locate
+from cramhy_runtime.lisp_core.classes import make_instance
+from cramhy_runtime.lisp_core.classes import find_class_or_error
+from cramhy_runtime.lisp_core.dispatch.generic_errors import no_applicable_method
+from cramhy_runtime.lisp_core.packages import keyword
+from cramhy_runtime.lisp_core.printing import prin1_to_string, princ_to_string
 from ..failures.failure_types import CompositeFailure
 from ..hooks import on_make_fluent_hook
 from ..symbols import sym

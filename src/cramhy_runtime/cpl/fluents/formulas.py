@@ -15,7 +15,7 @@ and all nets of this shape share its code (``utilities/generated_functions.py``)
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import FLOATS, TRUE_CLASSES, one, plain_truth, truth
+from cramhy_runtime.lisp_core.data import FLOATS, TRUE_CLASSES, one, plain_truth, truth
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.utilities.generated_functions import generated_function
 from .fluents import Fluent

@@ -10,9 +10,9 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar
 
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground.equality import eql
-from cramhy_runtime.ground.printing import princ_to_string
-from cramhy_runtime.ground.source_places import circumstance
+from cramhy_runtime.lisp_core.equality import eql
+from cramhy_runtime.lisp_core.printing import princ_to_string
+from cramhy_runtime.lisp_core.source_places import circumstance
 from .fluents import Fluent, ValueFluent, reads_slot
 
 if TYPE_CHECKING:

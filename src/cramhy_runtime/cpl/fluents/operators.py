@@ -14,12 +14,12 @@ from operator import add, gt, lt, mul, sub
 from operator import eq as same_number
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, overload
 
-from cramhy_runtime.ground.condition_types import CaseFailure
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Cons, lisp_list, list_from, one, truth
-from cramhy_runtime.ground.equality import eq, eql
-from cramhy_runtime.ground.functions import identity
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.condition_types import CaseFailure
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import Cons, lisp_list, list_from, one, truth
+from cramhy_runtime.lisp_core.equality import eq, eql
+from cramhy_runtime.lisp_core.functions import identity
+from cramhy_runtime.lisp_core.packages import keyword
 from . import formulas
 from .fluents import Fluent, announce, check_fluent, function_of, make_fluent, value
 from .nets import CachedNet, Net, is_cacheable
@@ -29,7 +29,7 @@ from ..symbols import sym
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from cramhy_runtime.ground.data import Keyword
+    from cramhy_runtime.lisp_core.data import Keyword
     from ..signatures import Comparison, Missed
 
 T = TypeVar("T")

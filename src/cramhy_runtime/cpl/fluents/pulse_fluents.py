@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground.data import one, truth
+from cramhy_runtime.lisp_core.data import one, truth
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from .fluents import Fluent, value
 from .nets import Net, peekers

@@ -22,8 +22,8 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, ParamSpec, Se
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.unstarted import callable_part
 
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.conditions import error
 from ..tasks.block_order import is_left_in_order
 from ..tasks.timeouts import Block
 from ..failures.python_exceptions import raise_in_python

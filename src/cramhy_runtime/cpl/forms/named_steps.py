@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import partial, wraps
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, ParamSpec, TypeVar, TypeVarTuple
 
-from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.lisp_core.data import Symbol
 from ..failures.python_exceptions import for_python
 from .plans import call_cram_function
 from ..tree.tags import execute_tag, make_tag_task, prepare_tag

@@ -16,12 +16,12 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, over
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground import condition_types as types
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Cons, list_from, one, truth
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.python_exceptions import from_python
+from cramhy_runtime.lisp_core import condition_types as types
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import Cons, list_from, one, truth
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.python_exceptions import from_python
 from ..tree import finished_plans
 from ..tasks.branches import branch_tasks, run, run_forms, run_one
 from ..failures.failure_types import CompositeFailure, envelope, is_mistake, opened

@@ -8,8 +8,8 @@ step it is a part of, or for a fluent that never pulses: the kernel reports them
 
 from __future__ import annotations
 
-from cramhy_runtime.ground import condition_types as types
-from cramhy_runtime.ground.conditions import error, handler_bind, type_error
+from cramhy_runtime.lisp_core import condition_types as types
+from cramhy_runtime.lisp_core.conditions import error, handler_bind, type_error
 from ..fluents.operators import fl_pulsed
 from ..fluents.fluents import ValueFluent
 from ..statuses import CREATED, DEAD

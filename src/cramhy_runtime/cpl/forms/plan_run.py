@@ -17,8 +17,8 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar, Type
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.unstarted import callable_part
 
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import NO_VALUES
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import NO_VALUES
 from ..tree import finished_plans
 from ..failures.failure_types import opened
 from ..failures.python_exceptions import for_python, raise_in_python

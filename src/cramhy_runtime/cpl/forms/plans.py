@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.utilities import patterns
-from cramhy_runtime.ground import condition_types as types
-from cramhy_runtime.ground.conditions import error, style_warn, type_error
-from cramhy_runtime.ground.data import Cons, Symbol, all_values, lisp_list, list_from, truth
-from cramhy_runtime.ground.equality import equal
-from cramhy_runtime.ground.printing import prin1_to_string
-from cramhy_runtime.ground.packages import keyword, redefined
+from cramhy_runtime.lisp_core import condition_types as types
+from cramhy_runtime.lisp_core.conditions import error, style_warn, type_error
+from cramhy_runtime.lisp_core.data import Cons, Symbol, all_values, lisp_list, list_from, truth
+from cramhy_runtime.lisp_core.equality import equal
+from cramhy_runtime.lisp_core.printing import prin1_to_string
+from cramhy_runtime.lisp_core.packages import keyword, redefined
 from ..hooks import on_def_top_level_plan_hook
 from .operators import named_top_level
 from ..symbols import sym

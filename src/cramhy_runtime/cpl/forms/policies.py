@@ -16,11 +16,11 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar
 
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.kernel.unstarted import callable_part, plain_function
-from cramhy_runtime.ground import condition_types as types
-from cramhy_runtime.ground.condition_types import shown
-from cramhy_runtime.ground.conditions import as_name, error
-from cramhy_runtime.ground.data import UNSUPPLIED, list_from, one, python_list, truth
-from cramhy_runtime.ground.packages import is_symbol, redefined, symbol_name
+from cramhy_runtime.lisp_core import condition_types as types
+from cramhy_runtime.lisp_core.condition_types import shown
+from cramhy_runtime.lisp_core.conditions import as_name, error
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, list_from, one, python_list, truth
+from cramhy_runtime.lisp_core.packages import is_symbol, redefined, symbol_name
 from ..failures.failure_types import PolicyCheckConditionMet, PolicyInitFailed, PolicyNotFound
 from ..failures.handling import fail, fail_with_advice
 from ..hooks import on_with_policy_begin, on_with_policy_end

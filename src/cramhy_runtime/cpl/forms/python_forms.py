@@ -17,11 +17,11 @@ from cramhy_runtime.kernel.unstarted import callable_part
 
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.source_places import is_user_file
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.source_places import is_user_file
 from cramhy_runtime.kernel.reports import of_the_library
-from cramhy_runtime.ground.data import TRUE_CLASSES, Cons, list_from, truth
+from cramhy_runtime.lisp_core.data import TRUE_CLASSES, Cons, list_from, truth
 from ..failures import handling as failures
 from . import operators, policies
 from ..tasks import suspension, waiting

@@ -14,9 +14,9 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, ParamSpec, Ty
 
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.python_exceptions import condition_class
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.python_exceptions import condition_class
 from ..failures.failure_types import PlanFailure, python_exception
 from ..failures.handling import Handling, with_failure_handling
 from .waiting import sleep

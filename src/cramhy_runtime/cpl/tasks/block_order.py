@@ -19,8 +19,8 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel import reports
 
-from cramhy_runtime.ground import condition_types as types
-from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.lisp_core import condition_types as types
+from cramhy_runtime.lisp_core.conditions import error
 
 if TYPE_CHECKING:
     from types import FrameType

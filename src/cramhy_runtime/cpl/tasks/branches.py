@@ -16,8 +16,8 @@ from functools import partial
 
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground import condition_types as types
-from cramhy_runtime.ground.conditions import SimpleWarning, error, warn
+from cramhy_runtime.lisp_core import condition_types as types
+from cramhy_runtime.lisp_core.conditions import SimpleWarning, error, warn
 from ..failures.failure_types import PlanFailure, is_mistake, opened
 from ..failures.handling import signal_failure
 from ..current import inside_plan

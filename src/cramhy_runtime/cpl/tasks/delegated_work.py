@@ -16,7 +16,7 @@ from cramhy_runtime.kernel.typing_names import Any
 
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground.data import NO_VALUES
+from cramhy_runtime.lisp_core.data import NO_VALUES
 from .timeouts import Block, BlockEnded, level
 from .ending import end_tasks, limit_cleanup
 from .pausing import Unwind, obey

@@ -21,10 +21,10 @@ from cramhy_runtime.kernel.reports import where
 from cramhy_runtime.kernel.tasks import PARKED, shield
 from cramhy_runtime.kernel.timers import seconds as in_seconds
 
-from cramhy_runtime.ground.condition_types import SimpleWarning
-from cramhy_runtime.ground.conditions import warn
-from cramhy_runtime.ground.data import list_from
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.condition_types import SimpleWarning
+from cramhy_runtime.lisp_core.conditions import warn
+from cramhy_runtime.lisp_core.data import list_from
+from cramhy_runtime.lisp_core.dynamic import binding
 from ..logging import active_tags, log
 from ..statuses import DEAD
 from ..task_variables import define_task_state, inherit

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground.data import list_from
+from cramhy_runtime.lisp_core.data import list_from
 from .ending import end_tasks
 from ..logging import active_tags, log
 from .pausing import pause

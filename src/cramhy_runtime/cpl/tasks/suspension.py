@@ -17,7 +17,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, TypeVar
 
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
 from ..current import current_task, inside_plan
 from .pausing import AT_REST, Unwind, obey, request
 from .tasks import AbstractTask, check_reason

@@ -6,7 +6,7 @@ there, which also calls functions. So a plan without followers pays nothing.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import truth
+from cramhy_runtime.lisp_core.data import truth
 from .tasks import RECORD
 
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from itertools import dropwhile
 
-from cramhy_runtime.ground.data import list_from
-from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core.data import list_from
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
 from cramhy_runtime.utilities.queues import list_queue_contents, make_queue
 from ..fluents.operators import fl_funcall
 from ..statuses import ALIVE, DEAD, DONE, FAILED, status_list

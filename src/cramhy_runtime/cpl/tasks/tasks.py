@@ -24,13 +24,13 @@ from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.active import ACTIVE
 
-from cramhy_runtime.ground import condition_types as types
-from cramhy_runtime.ground.python_exceptions import from_python
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import NO_VALUES, Cons, Keyword, Symbol, truth
-from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.source_places import locate
-from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core import condition_types as types
+from cramhy_runtime.lisp_core.python_exceptions import from_python
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import NO_VALUES, Cons, Keyword, Symbol, truth
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.source_places import locate
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
 from cramhy_runtime.utilities.queues import Queue, enqueue
 from cramhy_runtime.utilities.threads import thread_of
 from cramhy_runtime.kernel.looking_on import only_looked_at

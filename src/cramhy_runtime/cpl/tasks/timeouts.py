@@ -21,7 +21,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Self
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.timers import seconds as in_seconds
 
-from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.lisp_core.conditions import error
 from ..failures.python_exceptions import raise_in_python
 from ..current import inside_plan
 from ..failures.failure_types import PlanFailure

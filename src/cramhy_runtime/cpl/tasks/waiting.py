@@ -15,9 +15,9 @@ from cramhy_runtime import kernel
 from cramhy_runtime.kernel.active import ACTIVE
 from cramhy_runtime.kernel.budget import budget
 
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import TRUE_CLASSES, truth
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import TRUE_CLASSES, truth
+from cramhy_runtime.lisp_core.packages import keyword
 from cramhy_runtime.kernel.images import Cell
 
 from ..fluents.fluents import Fluent

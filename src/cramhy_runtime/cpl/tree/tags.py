@@ -11,8 +11,8 @@ The tags of an inner ``with-tags`` belong to that form alone. In the original th
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import CompileError, error
-from cramhy_runtime.ground.data import Cons, Symbol, lisp_list
+from cramhy_runtime.lisp_core.conditions import CompileError, error
+from cramhy_runtime.lisp_core.data import Cons, Symbol, lisp_list
 from ..tasks.branches import run_one
 from ..hooks import on_begin_execute_tag_task, on_finish_execute_tag_task
 from ..logging import active_tags, log

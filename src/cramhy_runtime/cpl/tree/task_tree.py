@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.utilities import patterns
-from cramhy_runtime.ground.conditions import as_name, error, type_error
-from cramhy_runtime.ground.data import Cons, lisp_list, list_from, python_list, truth
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.conditions import as_name, error, type_error
+from cramhy_runtime.lisp_core.data import Cons, lisp_list, list_from, python_list, truth
+from cramhy_runtime.lisp_core.packages import keyword
 from . import finished_plans
 from ..tasks.branches import run_one
 from ..hooks import on_finishing_task_execution, on_preparing_task_execution

@@ -16,19 +16,19 @@ from io import StringIO
 from cramhy_runtime.kernel.images import Cell
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground import condition_types as types
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import NO_VALUES, Cons, Keyword, Symbol, all_values, list_from
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.source_places import describe
-from cramhy_runtime.ground.keyword_calls import lispify
-from cramhy_runtime.ground.classes import class_name
-from cramhy_runtime.ground.packages import symbol_name
-from cramhy_runtime.ground.packages import CURRENT as PACKAGE
-from cramhy_runtime.ground.packages import sym as lisp_symbol
-from cramhy_runtime.ground.printing import attempt_to_print, prin1_to_string
-from cramhy_runtime.ground.output import designated_stream
-from cramhy_runtime.ground.printing import report_text
+from cramhy_runtime.lisp_core import condition_types as types
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import NO_VALUES, Cons, Keyword, Symbol, all_values, list_from
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.source_places import describe
+from cramhy_runtime.lisp_core.keyword_calls import lispify
+from cramhy_runtime.lisp_core.classes import class_name
+from cramhy_runtime.lisp_core.packages import symbol_name
+from cramhy_runtime.lisp_core.packages import CURRENT as PACKAGE
+from cramhy_runtime.lisp_core.packages import sym as lisp_symbol
+from cramhy_runtime.lisp_core.printing import attempt_to_print, prin1_to_string
+from cramhy_runtime.lisp_core.output import designated_stream
+from cramhy_runtime.lisp_core.printing import report_text
 from ..tasks.branches import Branches
 from ..current import current_task
 from ..failures.failure_types import opened

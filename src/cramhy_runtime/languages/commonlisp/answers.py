@@ -1,13 +1,13 @@
-"""What Common Lisp answers at the ports of the ground: its printer, classes, streams, package locks and systems (`ground/ports.py`)."""
+"""What Common Lisp answers at the ports of lisp_core: its printer, classes, streams, package locks and systems (`lisp_core/ports.py`)."""
 
 from __future__ import annotations
 
-from cramhy_runtime.ground import classes
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import lisp_list, one
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import KEYWORD, Package, keyword
-from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.lisp_core import classes
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import lisp_list, one
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import KEYWORD, Package, keyword
+from cramhy_runtime.lisp_core.ports import PORTS
 from .compiler import compilation_unit
 from .objects import builtin_classes, protocol
 from .objects import classes as class_world

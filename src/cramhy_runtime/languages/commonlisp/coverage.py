@@ -10,15 +10,15 @@ from collections import Counter
 
 from .compiler.analyze import SPECIAL_FORMS
 from .compiler.style_checks import QUALITIES, STANDARD_DECLARATIONS
-from cramhy_runtime.ground.data import UNBOUND, Symbol, UndefinedFunction
+from cramhy_runtime.lisp_core.data import UNBOUND, Symbol, UndefinedFunction
 from .syntax.ansi_lambda_lists import lambda_lists
 from .evaluation.forms import SPECIAL_OPERATORS
 from .syntax.lambda_lists import KEYWORDS
 from .syntax.macros import ensure_loaded
 from .objects import classes
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
-from cramhy_runtime.ground.dispatch.method_combination import known_combination
-from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol
+from cramhy_runtime.lisp_core.dispatch.generic_functions import GenericFunction
+from cramhy_runtime.lisp_core.dispatch.method_combination import known_combination
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, is_symbol
 from .standard_names import ABSENT, INSIDE
 from .tools import documentation
 from .types import types

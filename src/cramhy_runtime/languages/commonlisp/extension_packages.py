@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.ground import hash_tables
-from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.lisp_core import hash_tables
+from cramhy_runtime.lisp_core.floats import SingleFloat
 from .evaluation import environment
 from .packages.face_definition import define_face
 from .files import files
 from .pathnames import pathnames
 from .numbers import random_state
 from .objects import protocol
-from cramhy_runtime.ground.packages import COMMON_LISP, Package, ensure_package, find_package, our_own, sym
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, Package, ensure_package, find_package, our_own, sym
 from .packages import package_functions
 
 INFINITIES = {

@@ -9,19 +9,19 @@ import importlib
 
 from . import answers
 from .packages.face_definition import define_face
-from cramhy_runtime.ground.data import lisp_list
-from cramhy_runtime.ground.keyword_calls import lispify
-from cramhy_runtime.ground.packages import STANDARD_NAMES, COMMON_LISP, sym
+from cramhy_runtime.lisp_core.data import lisp_list
+from cramhy_runtime.lisp_core.keyword_calls import lispify
+from cramhy_runtime.lisp_core.packages import STANDARD_NAMES, COMMON_LISP, sym
 from .python import python_packages
 from . import extension_packages
 
 MODULES = tuple(
-    """ground.equality ground.functions collections.lists collections.list_search collections.sequences
+    """lisp_core.equality lisp_core.functions collections.lists collections.list_search collections.sequences
     collections.sequence_change collections.sequence_mapping collections.sequence_search collections.sequence_sort
-    collections.strings collections.characters ground.hash_tables collections.arrays collections.array_making
+    collections.strings collections.characters lisp_core.hash_tables collections.arrays collections.array_making
     numbers.arithmetic numbers.rounding numbers.irrational numbers.bits numbers.random_state numbers.numbers
     types.types types.coercion types.type_relations objects.classes objects.class_definition objects.slots
-    objects.protocol ground.dispatch.generic_functions objects.structures streams.streams streams.stream_functions
+    objects.protocol lisp_core.dispatch.generic_functions objects.structures streams.streams streams.stream_functions
     files.file_streams pathnames.pathnames pathnames.wild_pathnames pathnames.logical_pathnames files.files files.file_stream_functions
     evaluation.universal_time evaluation.environment systems.program_files printer.printer printer.print_methods printer.pretty
     printer.pprint_dispatch format.format reader.reader reader.tokens reader.readtables reader.reader_functions
@@ -32,8 +32,8 @@ MODULES = tuple(
 
 HELPERS = {
     "objects.class_definition": "slot-spec define-class define-condition",
-    "ground.dispatch.generic_functions": "define-generic define-method",
-    "ground.dispatch.method_combination": "define-short-combination",
+    "lisp_core.dispatch.generic_functions": "define-generic define-method",
+    "lisp_core.dispatch.method_combination": "define-short-combination",
     "evaluation.long_combination": "define-long-combination",
     "objects.structures": "structure-slot define-structure slot-default",
     "types.types": "define-type",
@@ -49,7 +49,7 @@ HELPERS = {
     "compiler.failing_macros": "reached-failing-macro",
     "evaluation.definitions": "define-function define-macro define-variable define-constant define-symbol-macro",
     "loop.loop_support": "car-of-cons cdr-of-cons end-of-list collect collect-append collect-nconc loop-vector table-entries loop-symbols",
-    "ground.source_places": "source-position",
+    "lisp_core.source_places": "source-position",
     "evaluation.setf_places": "define-modifier define-setf-function define-setf-form define-expander",
     "evaluation.expansion_support": """next-values check-shape key-table key-given-p key-value case-failure ask-for-value check-type-failed
         handler-bind handler-case restart-report restart-case restart-bind with-simple-restart
@@ -98,4 +98,4 @@ _standard = set(STANDARD_NAMES.split())
 
 
 def _module(name):
-    return importlib.import_module(f"cramhy_runtime.{name}" if name.startswith("ground.") else f"{__package__}.{name}")
+    return importlib.import_module(f"cramhy_runtime.{name}" if name.startswith("lisp_core.") else f"{__package__}.{name}")

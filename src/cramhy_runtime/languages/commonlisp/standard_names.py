@@ -7,9 +7,9 @@ from both and from the image (see ``coverage.py``).
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import CompileError
-from cramhy_runtime.ground.data import Symbol, UNBOUND, UndefinedFunction
-from cramhy_runtime.ground.packages import COMMON_LISP
+from cramhy_runtime.lisp_core.conditions import CompileError
+from cramhy_runtime.lisp_core.data import Symbol, UNBOUND, UndefinedFunction
+from cramhy_runtime.lisp_core.packages import COMMON_LISP
 
 ABSENT: dict[str, str] = {}
 """Name → why it is not there and what to do instead. At present all 978 are there."""

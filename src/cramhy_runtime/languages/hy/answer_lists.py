@@ -13,8 +13,8 @@ from types import FunctionType
 
 from hy import models
 
-from cramhy_runtime.ground.data import EmptyList, MultipleValues
-from cramhy_runtime.ground.packages import intern
+from cramhy_runtime.lisp_core.data import EmptyList, MultipleValues
+from cramhy_runtime.lisp_core.packages import intern
 from cramhy_runtime.prolog.builtins.function_calls import RESULTS
 from cramhy_runtime.prolog.python.terms import gets_objects, list_argument, to_lisp
 from .lisp_data import GIVE_LISTS, inserted

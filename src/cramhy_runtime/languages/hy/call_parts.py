@@ -11,9 +11,9 @@ import contextlib
 import hy
 from hy import models
 
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import Cons, Symbol, list_from
-from cramhy_runtime.ground.packages import intern, sym
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import Cons, Symbol, list_from
+from cramhy_runtime.lisp_core.packages import intern, sym
 from ..operators.grammar import Many, Maybe, Text, Word, WrongShape, match
 from .lisp_data import call_of, is_dotted, is_quoted, lisp_data, symbol_of
 

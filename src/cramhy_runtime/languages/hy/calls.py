@@ -13,14 +13,14 @@ from cramhy_runtime.cpl.fluents.operators import cpl_parameter_fluent, define_cp
 from cramhy_runtime.cpl.failures.python_exceptions import for_python
 from cramhy_runtime.cpl.forms import plans
 from cramhy_runtime.cpl.tree.tags import enter_with_tags, execute_tag, make_tag_task, prepare_tag
-from cramhy_runtime.ground.classes import find_class
-from cramhy_runtime.ground.data import STANDS_FOR, Cons, Symbol, list_from
-from cramhy_runtime.ground.data import values as as_values
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.keyword_calls import lispify
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.packages import find_package_or_error, intern, keyword, sym
-from cramhy_runtime.ground.python_exceptions import condition_class
+from cramhy_runtime.lisp_core.classes import find_class
+from cramhy_runtime.lisp_core.data import STANDS_FOR, Cons, Symbol, list_from
+from cramhy_runtime.lisp_core.data import values as as_values
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.keyword_calls import lispify
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.packages import find_package_or_error, intern, keyword, sym
+from cramhy_runtime.lisp_core.python_exceptions import condition_class
 from cramhy_runtime.kernel import checkpoint, cleanup_here, refill
 from cramhy_runtime.kernel.budget import budget
 from cramhy_runtime.process_modules import AsynchronousModule

@@ -26,11 +26,11 @@ from hy import errors as hy_errors
 from hy.reader.exceptions import LexException
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.python_exceptions import from_python
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import COMMON_LISP_USER
-from cramhy_runtime.ground.source_places import describe, excerpt, exception_position, file_of_text, frame_position, locate
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.python_exceptions import from_python
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER
+from cramhy_runtime.lisp_core.source_places import describe, excerpt, exception_position, file_of_text, frame_position, locate
 from cramhy_runtime.kernel import uncaught
 from cramhy_runtime.kernel.reports import of_the_library
 

@@ -16,9 +16,9 @@ import functools
 import hy
 from hy import models
 
-from cramhy_runtime.ground.classes import find_class
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction
-from cramhy_runtime.ground.packages import common, is_symbol, sym
+from cramhy_runtime.lisp_core.classes import find_class
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, UndefinedFunction
+from cramhy_runtime.lisp_core.packages import common, is_symbol, sym
 from ..commonlisp.syntax.macros import ensure_loaded, macroexpand_1
 from .call_parts import Code, without_code
 from .lisp_data import call_of, constant_form, function_form, is_simple

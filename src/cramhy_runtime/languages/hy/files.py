@@ -12,11 +12,11 @@ from hy.reader import HyReader
 
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.compiler.core import hy_model
-from cramhy_runtime.ground.condition_types import Condition, Warning_
-from cramhy_runtime.ground.conditions import handler_bind, muffle_warning
-from cramhy_runtime.ground.data import Cons, list_from
+from cramhy_runtime.lisp_core.condition_types import Condition, Warning_
+from cramhy_runtime.lisp_core.conditions import handler_bind, muffle_warning
+from cramhy_runtime.lisp_core.data import Cons, list_from
 from cramhy_runtime.languages.commonlisp.syntax.hy_models import from_hy
-from cramhy_runtime.ground.packages import find_package_or_error, intern
+from cramhy_runtime.lisp_core.packages import find_package_or_error, intern
 from . import rest_of_file
 from .reader import ProgramReader, take_rest
 

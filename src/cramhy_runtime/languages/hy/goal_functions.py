@@ -17,11 +17,11 @@ from pathlib import Path
 import hy
 from hy import models
 
-from cramhy_runtime.ground.conditions import unknown_key
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol
-from cramhy_runtime.ground.keyword_calls import keyword_name, lisp_takes_keywords, lispify
-from cramhy_runtime.ground.packages import keyword
-from cramhy_runtime.ground.python_names import python_name
+from cramhy_runtime.lisp_core.conditions import unknown_key
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol
+from cramhy_runtime.lisp_core.keyword_calls import keyword_name, lisp_takes_keywords, lispify
+from cramhy_runtime.lisp_core.packages import keyword
+from cramhy_runtime.lisp_core.python_names import python_name
 from cramhy_runtime.prolog.builtins import function_calls
 
 from . import answer_lists, lisp_data

@@ -14,8 +14,8 @@ import ast
 import hy
 from hy import models
 
-from cramhy_runtime.ground.data import STANDS_FOR
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.data import STANDS_FOR
+from cramhy_runtime.lisp_core.packages import keyword
 
 from . import patches
 

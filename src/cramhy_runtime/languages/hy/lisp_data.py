@@ -12,8 +12,8 @@ import re
 import hy
 from hy import models
 
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from
-from cramhy_runtime.ground.packages import common, find_package, find_package_or_error, intern, make_package, named_package, symbol_name
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, list_from
+from cramhy_runtime.lisp_core.packages import common, find_package, find_package_or_error, intern, make_package, named_package, symbol_name
 from cramhy_runtime.kernel.images import per_image
 from ..commonlisp.syntax.hy_models import atom
 

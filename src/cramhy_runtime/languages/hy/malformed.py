@@ -17,7 +17,7 @@ from hy.compiler import Result, builds_model
 from hy.errors import HyCompileError, HyError, HyLanguageError, HyMacroExpansionError
 from hy.reader import HyReader
 
-from cramhy_runtime.ground.condition_types import Condition
+from cramhy_runtime.lisp_core.condition_types import Condition
 
 from .. import answered_texts, kept_hy
 from . import brackets, module_names, program_texts, shapes

@@ -17,9 +17,9 @@ import hy
 from hy import models
 from hy.errors import HySyntaxError
 
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import UndefinedFunction
-from cramhy_runtime.ground.packages import find_package, registered
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import UndefinedFunction
+from cramhy_runtime.lisp_core.packages import find_package, registered
 from ..operators import OPERATORS, operator_of
 from ..operators.declaration import hy_shape
 from ..operators.grammar import WrongShape

@@ -11,7 +11,7 @@ import os
 import re
 import sys
 
-from cramhy_runtime.ground.source_places import keep_text
+from cramhy_runtime.lisp_core.source_places import keep_text
 
 _NUMBER = re.compile(r"-\d+\Z")
 

@@ -17,8 +17,8 @@ from hy.errors import HyLanguageError
 from hy.reader import HyReader
 from hy.reader.exceptions import PrematureEndOfInput
 
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.data import Cons, Symbol
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.data import Cons, Symbol
 from cramhy_runtime.languages.commonlisp.reader.reader import NOTHING, incomplete
 from cramhy_runtime.languages.commonlisp.reader.reader import Reader as LispReader
 

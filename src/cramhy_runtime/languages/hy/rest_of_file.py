@@ -13,9 +13,9 @@ from contextlib import contextmanager
 
 from hy import models, read
 
-from cramhy_runtime.ground.data import Cons
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import is_symbol, symbol_name
+from cramhy_runtime.lisp_core.data import Cons
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import is_symbol, symbol_name
 
 from ..commonlisp.compiler import compilation_unit
 from ..commonlisp.reader.reader import incomplete

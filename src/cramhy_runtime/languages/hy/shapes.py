@@ -10,8 +10,8 @@ import re
 
 import hy
 
-from cramhy_runtime.ground.data import Symbol, UndefinedFunction
-from cramhy_runtime.ground.packages import COMMON_LISP, all_packages
+from cramhy_runtime.lisp_core.data import Symbol, UndefinedFunction
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, all_packages
 
 HY = {
     "cond": "(cond test value ...)",

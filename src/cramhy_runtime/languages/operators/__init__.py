@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.lisp_core.data import Symbol
 from cramhy_runtime.kernel.typing_names import Any
 
 from .acting import DESIGNATORS, EPISODES, PROCESS_MODULES, PROJECTION

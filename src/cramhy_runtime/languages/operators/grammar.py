@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from cramhy_runtime.kernel.late_patterns import late_pattern
-from cramhy_runtime.ground.data import Cons, Keyword, list_from
+from cramhy_runtime.lisp_core.data import Cons, Keyword, list_from
 from cramhy_runtime.kernel.typing_names import Any
 
 _TOKEN = late_pattern(r"""\(|\)|\[|\]|'|\.\.\.|"[^"]*"|[^\s()\[\]'".]+(?:\.(?!\.)[^\s()\[\]'".]*)*""")

@@ -6,10 +6,10 @@ prolog.md section 7.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.output import standard_output
-from cramhy_runtime.ground.ports import PORTS
-from cramhy_runtime.ground.conditions import Error, SimpleError, SimpleWarning, error, handler_case, type_error, warn
-from cramhy_runtime.ground.data import Cons, Symbol, UndefinedFunction, list_from, one, truth
+from cramhy_runtime.lisp_core.output import standard_output
+from cramhy_runtime.lisp_core.ports import PORTS
+from cramhy_runtime.lisp_core.conditions import Error, SimpleError, SimpleWarning, error, handler_case, type_error, warn
+from cramhy_runtime.lisp_core.data import Cons, Symbol, UndefinedFunction, list_from, one, truth
 
 from cramhy_runtime.utilities.lazy_lists import lazy_take
 from ..terms.deep_terms import LIST_SUSPECTED, refuse_endless

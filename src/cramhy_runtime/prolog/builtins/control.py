@@ -11,8 +11,8 @@ the choice point stack at which the enclosing clause or query was entered, and t
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import FLOATS, Cons, Keyword, Symbol, list_from
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import FLOATS, Cons, Keyword, Symbol, list_from
 
 from ..engine import database
 from ..engine.database import arguments_of, find_predicate, handled, undefined_step, valid_functor

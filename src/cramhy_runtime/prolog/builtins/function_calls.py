@@ -13,11 +13,11 @@ from collections.abc import Callable
 
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.typing_names import Any
-from cramhy_runtime.ground.catching import CATCHABLE, Case, HandlerExit, caught
-from cramhy_runtime.ground.conditions import Error, SimpleWarning, StorageCondition, type_error, undefined_function, warn
-from cramhy_runtime.ground.data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, is_ratio, lisp_list, truth
-from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.source_places import exception_position
+from cramhy_runtime.lisp_core.catching import CATCHABLE, Case, HandlerExit, caught
+from cramhy_runtime.lisp_core.conditions import Error, SimpleWarning, StorageCondition, type_error, undefined_function, warn
+from cramhy_runtime.lisp_core.data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, is_ratio, lisp_list, truth
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.source_places import exception_position
 
 from cramhy_runtime.utilities.lazy_lists import force_ll
 from cramhy_runtime.utilities.patterns import NOTHING, for_lisp

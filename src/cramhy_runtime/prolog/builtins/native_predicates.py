@@ -17,8 +17,8 @@ Handlers written in Lisp work on binding lists: `define_handler` adapts them.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import type_error, wrong_argument_count
-from cramhy_runtime.ground.data import Cons, list_from, one
+from cramhy_runtime.lisp_core.conditions import type_error, wrong_argument_count
+from cramhy_runtime.lisp_core.data import Cons, list_from, one
 
 from ..engine.database import changed, functor_entry
 from ..engine.fact_groups import built_in_group

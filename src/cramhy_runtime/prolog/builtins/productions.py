@@ -14,13 +14,13 @@ from contextlib import contextmanager
 
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.kernel.typing_names import Any
-from cramhy_runtime.ground.conditions import SimpleError, as_name, error, style_warn
-from cramhy_runtime.ground.data import Cons, Symbol, list_from, python_list
-from cramhy_runtime.ground.dynamic import binding, special
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import keyword
-from cramhy_runtime.ground.printing import define_printer
-from cramhy_runtime.ground.printing import print_slots
+from cramhy_runtime.lisp_core.conditions import SimpleError, as_name, error, style_warn
+from cramhy_runtime.lisp_core.data import Cons, Symbol, list_from, python_list
+from cramhy_runtime.lisp_core.dynamic import binding, special
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.packages import keyword
+from cramhy_runtime.lisp_core.printing import define_printer
+from cramhy_runtime.lisp_core.printing import print_slots
 from cramhy_runtime.utilities.patterns import ANONYMOUS, variable, variables_of, vars_in
 
 from .rete import content_key, match_fact, memory

@@ -12,14 +12,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
-from cramhy_runtime.ground.data import FLOATS, list_end
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from, list_parts, one, python_list, truth
-from cramhy_runtime.ground.equality import eql_key, equal_key
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.printing import define_printer, output_object, print_unreadable
-from cramhy_runtime.ground.dispatch.generic_functions import generic, when_methods_change
-from cramhy_runtime.ground.dispatch.methods import specializer_of
+from cramhy_runtime.lisp_core.data import FLOATS, list_end
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, list_from, list_parts, one, python_list, truth
+from cramhy_runtime.lisp_core.equality import eql_key, equal_key
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.printing import define_printer, output_object, print_unreadable
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic, when_methods_change
+from cramhy_runtime.lisp_core.dispatch.methods import specializer_of
 from cramhy_runtime.utilities.lazy_lists import force_ll, from_iterator, lazy_cdr
 from cramhy_runtime.utilities.patterns import ANONYMOUS, compared_by_python, equal, substitute_vars, variable, vars_in
 from cramhy_runtime.kernel.images import Cell, per_image

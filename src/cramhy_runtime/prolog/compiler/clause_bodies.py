@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections import namedtuple
 
-from cramhy_runtime.ground.data import Cons, list_from
+from cramhy_runtime.lisp_core.data import Cons, list_from
 from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
 
 from ..builtins import control

@@ -15,7 +15,7 @@ more Python call per clause, which closures would need at least, it runs at 1.2 
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, Symbol
+from cramhy_runtime.lisp_core.data import Cons, Symbol
 from cramhy_runtime.utilities.patterns import variable
 
 from ..engine import database

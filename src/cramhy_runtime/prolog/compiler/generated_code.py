@@ -7,7 +7,7 @@ function may be written in the middle of another one, since the goals after a ca
 from __future__ import annotations
 
 from cramhy_runtime.kernel.budget import budget
-from cramhy_runtime.ground.data import Cons, Symbol
+from cramhy_runtime.lisp_core.data import Cons, Symbol
 from cramhy_runtime.utilities.generated_functions import define_functions
 from cramhy_runtime.utilities.lazy_lists import LazyTail
 from cramhy_runtime.utilities.patterns import ANONYMOUS, same_atom, variable

@@ -9,7 +9,7 @@ new `Var` if a term must be built before the variable has a value.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, Symbol
+from cramhy_runtime.lisp_core.data import Cons, Symbol
 from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
 
 from ..engine.database import traced

@@ -11,7 +11,7 @@ same as without this.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.lisp_core.data import Cons
 from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
 
 from .generated_code import Rest, is_ground, variables

@@ -15,7 +15,7 @@ and if it cannot be written any more, it calls the predicate itself.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, Symbol, list_from, list_parts
+from cramhy_runtime.lisp_core.data import Cons, Symbol, list_from, list_parts
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
 

@@ -14,8 +14,8 @@ from __future__ import annotations
 import itertools
 from weakref import WeakSet
 
-from cramhy_runtime.ground.data import Cons, Symbol, list_from
-from cramhy_runtime.ground.packages import common, is_symbol
+from cramhy_runtime.lisp_core.data import Cons, Symbol, list_from
+from cramhy_runtime.lisp_core.packages import common, is_symbol
 from cramhy_runtime.kernel.images import Cell, part
 
 from ..terms import origins

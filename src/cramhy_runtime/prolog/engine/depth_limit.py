@@ -7,8 +7,8 @@ innermost of these goals. If they repeat, it shows the clauses of one turn.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import StorageCondition, error
-from cramhy_runtime.ground.source_places import describe
+from cramhy_runtime.lisp_core.conditions import StorageCondition, error
+from cramhy_runtime.lisp_core.source_places import describe
 from .goal_text import show
 
 _SHOWN = 1000

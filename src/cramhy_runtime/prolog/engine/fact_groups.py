@@ -11,9 +11,9 @@ from __future__ import annotations
 from itertools import zip_longest
 
 from cramhy_runtime.kernel.images import per_image
-from cramhy_runtime.ground.conditions import SimpleError, error, style_warn, type_error
-from cramhy_runtime.ground.data import Cons, list_from, python_list
-from cramhy_runtime.ground.source_places import circumstance, describe
+from cramhy_runtime.lisp_core.conditions import SimpleError, error, style_warn, type_error
+from cramhy_runtime.lisp_core.data import Cons, list_from, python_list
+from cramhy_runtime.lisp_core.source_places import circumstance, describe
 
 from .database import Clause, changed, functor_entry, functors, valid_functor
 from ..terms.origins import position_of_origin

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from itertools import zip_longest
 
-from cramhy_runtime.ground.data import Cons, list_from, python_list
-from cramhy_runtime.ground.ports import PORTS
-from cramhy_runtime.ground.printing import attempt_to_print, princ_to_string
-from cramhy_runtime.ground.source_places import describe
+from cramhy_runtime.lisp_core.data import Cons, list_from, python_list
+from cramhy_runtime.lisp_core.ports import PORTS
+from cramhy_runtime.lisp_core.printing import attempt_to_print, princ_to_string
+from cramhy_runtime.lisp_core.source_places import describe
 from cramhy_runtime.utilities.patterns import variable
 
 from cramhy_runtime.kernel.typing_names import Any, TYPE_CHECKING

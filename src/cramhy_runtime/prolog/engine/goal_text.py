@@ -8,13 +8,13 @@ from __future__ import annotations
 
 
 from cramhy_runtime.kernel.late_patterns import late_pattern
-from cramhy_runtime.ground.conditions import Error, handler_case
-from cramhy_runtime.ground.data import Cons, Symbol, list_from
-from cramhy_runtime.ground.source_places import describe
-from cramhy_runtime.ground.packages import keyword
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import sym as lisp_symbol
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.conditions import Error, handler_case
+from cramhy_runtime.lisp_core.data import Cons, Symbol, list_from
+from cramhy_runtime.lisp_core.source_places import describe
+from cramhy_runtime.lisp_core.packages import keyword
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import sym as lisp_symbol
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from cramhy_runtime.utilities.lazy_lists import LazyTail
 
 from .database import functors

@@ -15,7 +15,7 @@ import gc
 
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.budget import budget
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol
 from cramhy_runtime.utilities.generated_functions import generated_function
 from cramhy_runtime.utilities.lazy_lists import tail
 from cramhy_runtime.utilities.patterns import ANONYMOUS, same_atom

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from cramhy_runtime.ground.data import FLOATS, Cons, Keyword, Symbol
-from cramhy_runtime.ground.equality import equal_key
+from cramhy_runtime.lisp_core.data import FLOATS, Cons, Keyword, Symbol
+from cramhy_runtime.lisp_core.equality import equal_key
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.utilities.generated_functions import generated_function
 

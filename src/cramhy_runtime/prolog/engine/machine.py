@@ -21,7 +21,7 @@ from weakref import ref
 
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.budget import budget
-from cramhy_runtime.ground.dynamic import special
+from cramhy_runtime.lisp_core.dynamic import special
 
 from ..symbols import PROLOG
 from ..terms.terms import UNSET, Var, undo, unify

@@ -15,7 +15,7 @@ from collections import defaultdict
 from functools import lru_cache
 from itertools import islice
 
-from cramhy_runtime.ground.data import FLOATS, Cons, Keyword, Symbol
+from cramhy_runtime.lisp_core.data import FLOATS, Cons, Keyword, Symbol
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.utilities.generated_functions import generated_function
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import sys
 
-from cramhy_runtime.ground.data import Cons, Symbol
-from cramhy_runtime.ground.source_places import circumstance, describe, user_position
-from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.lisp_core.data import Cons, Symbol
+from cramhy_runtime.lisp_core.source_places import circumstance, describe, user_position
+from cramhy_runtime.lisp_core.ports import PORTS
 from cramhy_runtime.kernel.images import Cell, per_image
 
 from . import database

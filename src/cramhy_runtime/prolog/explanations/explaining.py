@@ -10,8 +10,8 @@ makes no calls that might change the world: such a goal stops its clause, and is
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from
-from cramhy_runtime.ground.packages import is_symbol
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, list_from
+from cramhy_runtime.lisp_core.packages import is_symbol
 
 from ..builtins import builtins, control  # noqa: F401  whose handlers are known here
 from ..engine import four_ports as ports

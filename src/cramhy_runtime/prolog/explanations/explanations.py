@@ -10,11 +10,11 @@ From Python `explain` returns an `Explanation`, whose ``str`` is that text; in L
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import Error, error, handler_case
-from cramhy_runtime.ground.data import UNSUPPLIED, Cons, MultipleValues, Symbol
-from cramhy_runtime.ground.packages import CURRENT as PACKAGE
-from cramhy_runtime.ground.source_places import describe
-from cramhy_runtime.ground.output import standard_output
+from cramhy_runtime.lisp_core.conditions import Error, error, handler_case
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, Cons, MultipleValues, Symbol
+from cramhy_runtime.lisp_core.packages import CURRENT as PACKAGE
+from cramhy_runtime.lisp_core.source_places import describe
+from cramhy_runtime.lisp_core.output import standard_output
 
 from . import explaining, failure_reasons as reasons
 from .explaining import start

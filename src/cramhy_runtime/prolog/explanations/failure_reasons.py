@@ -9,8 +9,8 @@ than one that is missing. Rooms above add reasons for their predicates.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, list_from, truth
-from cramhy_runtime.ground.packages import near_names
+from cramhy_runtime.lisp_core.data import Cons, MultipleValues, Symbol, list_from, truth
+from cramhy_runtime.lisp_core.packages import near_names
 
 from ..engine.goal_text import Names, readable, show
 from ..symbols import sym

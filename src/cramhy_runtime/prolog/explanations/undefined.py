@@ -7,10 +7,10 @@ or in a query of a function in a file, the warning comes once for each form that
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import SimpleStyleWarning, SimpleWarning, warn
-from cramhy_runtime.ground.data import Symbol, UndefinedFunction
-from cramhy_runtime.ground.source_places import describe
-from cramhy_runtime.ground.packages import COMMON_LISP, CURRENT
+from cramhy_runtime.lisp_core.conditions import SimpleStyleWarning, SimpleWarning, warn
+from cramhy_runtime.lisp_core.data import Symbol, UndefinedFunction
+from cramhy_runtime.lisp_core.source_places import describe
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, CURRENT
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.utilities.patterns import variable
 

@@ -27,7 +27,7 @@ import functools
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar, overload, subscripted
 
 from cramhy_runtime.kernel.unstarted import plain_function, ran
-from cramhy_runtime.ground.data import Cons, Symbol, list_from
+from cramhy_runtime.lisp_core.data import Cons, Symbol, list_from
 from ..builtins import native_predicates as natives
 from .spelling import exact_lisp_name, lisp_name
 from .terms import P, Name, claim, python_arguments, python_predicates, show, to_lisp, what_nil_means

@@ -20,11 +20,11 @@ from collections.abc import Mapping
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, Self, overload
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.condition_types import SimpleError, StyleWarning
-from cramhy_runtime.ground.conditions import handler_bind
-from cramhy_runtime.ground.data import Cons, Symbol, list_from
-from cramhy_runtime.ground.packages import near_names
-from cramhy_runtime.ground.restarts import muffle_warning
+from cramhy_runtime.lisp_core.condition_types import SimpleError, StyleWarning
+from cramhy_runtime.lisp_core.conditions import handler_bind
+from cramhy_runtime.lisp_core.data import Cons, Symbol, list_from
+from cramhy_runtime.lisp_core.packages import near_names
+from cramhy_runtime.lisp_core.restarts import muffle_warning
 from ..builtins import control
 from ..explanations import explanations
 from ..engine import fact_groups as facts

@@ -7,7 +7,7 @@ Python makes, are Python's, where it counts: `exact_lisp_name`.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.python_names import hy_name
+from cramhy_runtime.lisp_core.python_names import hy_name
 
 
 def lisp_name(name: str) -> str:

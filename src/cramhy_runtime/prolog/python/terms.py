@@ -29,11 +29,11 @@ from collections import deque
 from types import BuiltinFunctionType, FunctionType, GeneratorType, MethodType
 from cramhy_runtime.kernel.typing_names import Any, NoReturn, Self, annotations_of
 
-from cramhy_runtime.ground.data import STANDS_FOR, WRITABLE_STRINGS, Character, Cons, EmptyList, Keyword, Symbol, list_from
-from cramhy_runtime.ground.python_names import attribute_symbols, hy_name
-from cramhy_runtime.ground.packages import KEYWORD, Package, ensure_package, named_package, near_names, package_names, printed
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import CURRENT
+from cramhy_runtime.lisp_core.data import STANDS_FOR, WRITABLE_STRINGS, Character, Cons, EmptyList, Keyword, Symbol, list_from
+from cramhy_runtime.lisp_core.python_names import attribute_symbols, hy_name
+from cramhy_runtime.lisp_core.packages import KEYWORD, Package, ensure_package, named_package, near_names, package_names, printed
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import CURRENT
 from cramhy_runtime.utilities.lazy_lists import force_ll, lazy_list_p
 from cramhy_runtime.utilities.patterns import ANONYMOUS, NOTHING, Inserted
 from .ground import reasoning

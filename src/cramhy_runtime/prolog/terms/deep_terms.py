@@ -7,8 +7,8 @@ that contains it makes a term without end. Code that goes through very many cell
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import StorageCondition, error
-from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.lisp_core.conditions import StorageCondition, error
+from cramhy_runtime.lisp_core.data import Cons
 
 CYCLE_SUSPECTED = 1_000_000
 """After so many cells, code asks whether they end."""

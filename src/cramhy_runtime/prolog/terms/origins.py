@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 
-from cramhy_runtime.ground.source_places import code_position, is_lisp_text
+from cramhy_runtime.lisp_core.source_places import code_position, is_lisp_text
 
 _FRAMES = 2
 """So many frames are remembered: the innermost may be in code that a macro made, which has no place of its own."""

@@ -10,7 +10,7 @@ A `LazyTail` in a term stands for the list that it will compute. Looking at it f
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, EmptyList, Keyword, Symbol, list_from
+from cramhy_runtime.lisp_core.data import Cons, EmptyList, Keyword, Symbol, list_from
 
 from cramhy_runtime.utilities.lazy_lists import LazyTail, force_ll
 from cramhy_runtime.utilities.patterns import ANONYMOUS, fresh_name, same_atom

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...ground import conditions
-from ...ground.condition_types import SimpleError
+from ...lisp_core import conditions
+from ...lisp_core.condition_types import SimpleError
 from ... import kernel
 from ...ros import rosout
 from ...ros.names import split_arguments

@@ -7,8 +7,8 @@ is loaded then, not before.
 
 from __future__ import annotations
 
-from ...ground import conditions
-from ...ground.condition_types import SimpleError
+from ...lisp_core import conditions
+from ...lisp_core.condition_types import SimpleError
 from ...kernel.active import holds_baton
 from ...ros import graph
 from .names import NAME

@@ -15,9 +15,9 @@ from itertools import groupby
 from typing import Any
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import one
-from cramhy_runtime.ground.numbers import is_real
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import one
+from cramhy_runtime.lisp_core.numbers import is_real
 
 from .arrays import np
 from .costs import Cost

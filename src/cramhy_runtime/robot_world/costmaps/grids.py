@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from cramhy_runtime.ground.condition_types import TypeError_
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.numbers import is_real
+from cramhy_runtime.lisp_core.condition_types import TypeError_
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.numbers import is_real
 
 from .arrays import np
 

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.lisp_core.condition_types import SimpleError
+from cramhy_runtime.lisp_core.conditions import error
 
 from .. import shown
 from ..notes import Notes, same, seconds

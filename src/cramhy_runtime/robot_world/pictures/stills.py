@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cramhy_runtime import storage
-from cramhy_runtime.ground.condition_types import SimpleError, SimpleFileError
-from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.lisp_core.condition_types import SimpleError, SimpleFileError
+from cramhy_runtime.lisp_core.conditions import error
 
 from .drawing import draw
 from .views import overview

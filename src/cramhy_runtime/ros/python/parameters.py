@@ -5,7 +5,7 @@ In Lisp, false and an empty list are both NIL, and a dictionary is a struct (``r
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import UNSUPPLIED
+from cramhy_runtime.lisp_core.data import UNSUPPLIED
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 from .. import wire

@@ -10,7 +10,7 @@ The graph does not depend on this folder. Where the parts are, from the ground u
 prints these objects.
 """
 
-from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, ensure_package
 
 # Their tables are in languages/commonlisp/faces/ros/package.py; modules that only need some symbol find the packages here.
 for _package in ("ROSLISP", "ROSLISP-UTILITIES"):

@@ -7,11 +7,11 @@ it (roslisp.md 7.1 and trap 6).
 
 from __future__ import annotations
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import Condition, Error, SimpleError
-from cramhy_runtime.ground.printing import format_to_string
-from cramhy_runtime.ground.packages import near_names
-from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import Condition, Error, SimpleError
+from cramhy_runtime.lisp_core.printing import format_to_string
+from cramhy_runtime.lisp_core.packages import near_names
+from cramhy_runtime.lisp_core.printing import princ_to_string
 from ..names import allowed_name, check_graph_name
 from . import logging
 from .master import master_uri

@@ -7,13 +7,13 @@ The macros evaluate their arguments only if `enabled` is true. Source: roslisp.m
 
 from __future__ import annotations
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleCondition, SimpleError, SimpleWarning
-from cramhy_runtime.ground.data import Cons, LispString, Symbol, lisp_list, list_from
-from cramhy_runtime.ground.printing import format_to_string, guarded, shown
-from cramhy_runtime.ground.output import standard_output
-from cramhy_runtime.ground.packages import intern, string_designator, symbol_name
-from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import SimpleCondition, SimpleError, SimpleWarning
+from cramhy_runtime.lisp_core.data import Cons, LispString, Symbol, lisp_list, list_from
+from cramhy_runtime.lisp_core.printing import format_to_string, guarded, shown
+from cramhy_runtime.lisp_core.output import standard_output
+from cramhy_runtime.lisp_core.packages import intern, string_designator, symbol_name
+from cramhy_runtime.lisp_core.printing import princ_to_string
 from .. import graph, rosout, wire
 from ..rosout import DEBUG, ERROR, FATAL, INFO, LEVEL_CODES, LEVEL_NAMES, WARN
 from . import log_file

@@ -12,10 +12,10 @@ import errno
 import os
 
 from ... import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.data import LispString
-from cramhy_runtime.ground.dynamic import special
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import SimpleError
+from cramhy_runtime.lisp_core.data import LispString
+from cramhy_runtime.lisp_core.dynamic import special
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 if TYPE_CHECKING:

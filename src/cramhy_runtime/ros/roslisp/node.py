@@ -9,15 +9,15 @@ from __future__ import annotations
 import os
 
 from ... import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.data import Cons, LispString, Symbol, python_list, truth
-from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.hash_tables import HashTable
-from cramhy_runtime.ground.output import standard_output
-from cramhy_runtime.ground.floats import literal_float
-from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import SimpleError
+from cramhy_runtime.lisp_core.data import Cons, LispString, Symbol, python_list, truth
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.hash_tables import HashTable
+from cramhy_runtime.lisp_core.output import standard_output
+from cramhy_runtime.lisp_core.floats import literal_float
+from cramhy_runtime.lisp_core.packages import sym
+from cramhy_runtime.lisp_core.printing import princ_to_string
 from cramhy_runtime.utilities.wait_queue import need
 from .. import graph, messages, names, rosout
 from . import log_file, logging, master
@@ -30,7 +30,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from cramhy_runtime.ground.data import Keyword
+    from cramhy_runtime.lisp_core.data import Keyword
     from ..signatures import Text
 
 T = TypeVar("T")

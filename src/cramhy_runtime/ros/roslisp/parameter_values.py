@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleError, shown
-from cramhy_runtime.ground.data import Cons, LispString, Symbol, list_from
-from cramhy_runtime.ground.floats import literal_float
-from cramhy_runtime.ground.packages import symbol_name
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import SimpleError, shown
+from cramhy_runtime.lisp_core.data import Cons, LispString, Symbol, list_from
+from cramhy_runtime.lisp_core.floats import literal_float
+from cramhy_runtime.lisp_core.packages import symbol_name
 from .structs import Struct
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, NoReturn
 

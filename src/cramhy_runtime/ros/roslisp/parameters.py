@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.data import UNSUPPLIED, Cons, LispString, list_from
-from cramhy_runtime.ground.packages import is_symbol, symbol_name
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import SimpleError
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, Cons, LispString, list_from
+from cramhy_runtime.lisp_core.packages import is_symbol, symbol_name
 from .. import graph
 from . import master, node
 from .errors import close_names, legal, ros_error, rpc_error

@@ -10,14 +10,14 @@ from __future__ import annotations
 from collections import deque
 
 from ... import kernel
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.kernel.unstarted import plain_function
-from cramhy_runtime.ground.condition_types import Condition, Error, SimpleError, SimpleTypeError, shown
-from cramhy_runtime.ground.data import LispString, Symbol
-from cramhy_runtime.ground.functions import function_named
-from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
-from cramhy_runtime.ground.packages import sym, symbol_name
-from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.lisp_core.condition_types import Condition, Error, SimpleError, SimpleTypeError, shown
+from cramhy_runtime.lisp_core.data import LispString, Symbol
+from cramhy_runtime.lisp_core.functions import function_named
+from cramhy_runtime.lisp_core.dispatch.generic_errors import no_applicable_method
+from cramhy_runtime.lisp_core.packages import sym, symbol_name
+from cramhy_runtime.lisp_core.printing import princ_to_string
 from cramhy_runtime.utilities.wait_queue import need, time_limit
 from .. import messages, wire
 from ..message_building import get_field, instance

@@ -6,11 +6,11 @@ be lists and structs. ``set-param`` accepts structs too. Source: roslisp.md 8.1,
 
 from __future__ import annotations
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.data import Cons, list_from
-from cramhy_runtime.ground.packages import keyword, string_designator, sym
-from cramhy_runtime.ground.printing import define_printer
-from cramhy_runtime.ground.printing import print_slots
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.data import Cons, list_from
+from cramhy_runtime.lisp_core.packages import keyword, string_designator, sym
+from cramhy_runtime.lisp_core.printing import define_printer
+from cramhy_runtime.lisp_core.printing import print_slots
 from cramhy_runtime.kernel.typing_names import Any
 
 

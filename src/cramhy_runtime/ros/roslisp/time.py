@@ -8,10 +8,10 @@ from __future__ import annotations
 from contextlib import contextmanager
 
 from ... import kernel
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import MultipleValues, Symbol, one, truth
-from cramhy_runtime.ground.functions import function_named
-from cramhy_runtime.ground.numbers import need_real
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import MultipleValues, Symbol, one, truth
+from cramhy_runtime.lisp_core.functions import function_named
+from cramhy_runtime.lisp_core.numbers import need_real
 from .. import graph
 from . import logging
 from .clock import ros_time

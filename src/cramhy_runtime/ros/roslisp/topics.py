@@ -10,12 +10,12 @@ from __future__ import annotations
 from collections import deque
 
 from ... import kernel
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.kernel.unstarted import plain_function
-from cramhy_runtime.ground.condition_types import Condition, Error, SimpleTypeError, formatted, shown
-from cramhy_runtime.ground.data import NO_VALUES, LispString, Symbol
-from cramhy_runtime.ground.printing import format_to_string
-from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method, no_primary_method
+from cramhy_runtime.lisp_core.condition_types import Condition, Error, SimpleTypeError, formatted, shown
+from cramhy_runtime.lisp_core.data import NO_VALUES, LispString, Symbol
+from cramhy_runtime.lisp_core.printing import format_to_string
+from cramhy_runtime.lisp_core.dispatch.generic_errors import no_applicable_method, no_primary_method
 from ..messages import RosMessage, topic_class
 from ..received import lisp_receiver
 from ..topics import Publication
@@ -27,7 +27,7 @@ from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from cramhy_runtime.ground.data import MultipleValues
+    from cramhy_runtime.lisp_core.data import MultipleValues
     from ..graph import Node
     from ..signatures import Callback, MessageType, Text, TypeName
 

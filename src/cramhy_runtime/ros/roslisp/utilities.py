@@ -6,10 +6,10 @@ Init functions run by descending rank, those of equal rank in the order of regis
 from __future__ import annotations
 
 from cramhy_runtime.kernel.images import per_image
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.data import UNSUPPLIED, LispString, Symbol
-from cramhy_runtime.ground.functions import function_named
-from cramhy_runtime.ground.packages import intern, is_symbol, sym, symbol_name
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, LispString, Symbol
+from cramhy_runtime.lisp_core.functions import function_named
+from cramhy_runtime.lisp_core.packages import intern, is_symbol, sym, symbol_name
 from .. import graph
 from . import logging, node
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any

@@ -8,9 +8,9 @@ import tempfile
 import time
 from contextlib import contextmanager
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import CompileError, StyleWarning
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import CompileError, StyleWarning
+from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.languages.commonlisp.compiler import compilation_unit
 from cramhy_runtime.languages.commonlisp.compiler.frame_exits import DEBUGGED
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator

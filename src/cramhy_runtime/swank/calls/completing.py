@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import UNBOUND, Symbol
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.printing import attempt_to_print, prin1_to_string
+from cramhy_runtime.lisp_core.data import UNBOUND, Symbol
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.printing import attempt_to_print, prin1_to_string
 from cramhy_runtime.languages.commonlisp.collections.characters import CHARACTER_NAMES
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PRINT_LENGTH, PRINT_LEVEL
 from cramhy_runtime.session import arglists, completion, fuzzy

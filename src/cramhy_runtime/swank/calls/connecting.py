@@ -7,7 +7,7 @@ import platform
 import sys
 
 from cramhy_runtime import __version__
-from cramhy_runtime.ground.packages import KEYWORD, symbol_package
+from cramhy_runtime.lisp_core.packages import KEYWORD, symbol_package
 from cramhy_runtime.languages.commonlisp.reader.dispatch_macros import FEATURES
 
 from .. import images, indentation

@@ -6,7 +6,7 @@ describes and prints it.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.packages.package_functions import delete_package
 from cramhy_runtime.languages.commonlisp.tools.describing import description

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.data import all_values
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import symbol_name
-from cramhy_runtime.ground.printing import attempt_to_print, prin1_to_string
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.data import all_values
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import symbol_name
+from cramhy_runtime.lisp_core.printing import attempt_to_print, prin1_to_string
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PRINT_PRETTY
 from cramhy_runtime.languages.commonlisp.tools import tracing
@@ -196,12 +196,12 @@ def _what_to_do(why):
 def break_at(call, what):
     if isinstance(what, int):
         raise Refused("cramhy cannot stop where a frame returns. (break) in the code stops there.")
-    from cramhy_runtime.ground.data import list_from
+    from cramhy_runtime.lisp_core.data import list_from
 
     from .packages import symbol_of
 
     symbol = symbol_of(call, what)
-    from cramhy_runtime.ground.packages import sym
+    from cramhy_runtime.lisp_core.packages import sym
 
     tracing.trace(list_from([symbol, sym(":BREAK"), True]))
     return f"Calls of {prin1_to_string(symbol)} open the debugger."

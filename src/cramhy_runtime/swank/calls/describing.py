@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import UNBOUND, Symbol, UndefinedFunction
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
-from cramhy_runtime.ground.packages import is_symbol, sym
+from cramhy_runtime.lisp_core.data import UNBOUND, Symbol, UndefinedFunction
+from cramhy_runtime.lisp_core.dispatch.generic_functions import GenericFunction
+from cramhy_runtime.lisp_core.packages import is_symbol, sym
 from cramhy_runtime.languages.commonlisp.evaluation.forms import SPECIAL_OPERATORS
 from cramhy_runtime.languages.commonlisp.objects.classes import registered_class
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string

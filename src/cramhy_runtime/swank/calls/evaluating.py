@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PRINT_PRETTY, PRINT_RIGHT_MARGIN
 from cramhy_runtime.languages.commonlisp.streams import streams

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, Symbol, list_from
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import Cons, Symbol, list_from
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.languages.commonlisp.evaluation import evaluator
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PRINT_PRETTY, PRINT_RIGHT_MARGIN
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string

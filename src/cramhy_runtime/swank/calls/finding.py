@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.packages import is_symbol, symbol_name
+from cramhy_runtime.lisp_core.packages import is_symbol, symbol_name
 from cramhy_runtime.session import lookup
 from cramhy_runtime.session.arglists import symbol_named
 

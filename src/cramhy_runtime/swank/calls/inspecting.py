@@ -94,7 +94,7 @@ def history(call):
 @rpc("inspector-eval", evaluates=True)
 def inspector_eval(call, source):
     """A form in which ``*`` is the object that is shown."""
-    from cramhy_runtime.ground.dynamic import binding
+    from cramhy_runtime.lisp_core.dynamic import binding
     from cramhy_runtime.session.session import HISTORY
 
     from .evaluating import echo

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 
-from cramhy_runtime.ground.data import Symbol, lisp_list, list_from
-from cramhy_runtime.ground.packages import all_packages, sym
+from cramhy_runtime.lisp_core.data import Symbol, lisp_list, list_from
+from cramhy_runtime.lisp_core.packages import all_packages, sym
 from cramhy_runtime.languages.commonlisp.evaluation.symbols import fmakunbound
 from cramhy_runtime.languages.commonlisp.pathnames.namestrings import parse_native
 from cramhy_runtime.languages.commonlisp.pathnames.pathnames import DEFAULTS

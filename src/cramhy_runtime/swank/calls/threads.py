@@ -68,7 +68,7 @@ def debug_nth_thread(call, index):
     request = requests.request_of(task)
     if request is None or task is kernel.current() or getattr(request.owner, "connection", None) is not call.connection:
         raise Refused("Only tasks that a form from this Emacs has started can be stopped in its debugger.")
-    from cramhy_runtime.ground import conditions
+    from cramhy_runtime.lisp_core import conditions
 
     task.interject(lambda: conditions.break_("Stopped from Emacs."))
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.packages import is_symbol
+from cramhy_runtime.lisp_core.packages import is_symbol
 from cramhy_runtime.languages.commonlisp.printer.print_names import symbol_with_prefix
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.tools import recorded_calls, tracing
-from cramhy_runtime.ground.data import list_from
+from cramhy_runtime.lisp_core.data import list_from
 
 from ..inspector import line_of
 from ..rpcs import Refused, inner, number, rpc, text

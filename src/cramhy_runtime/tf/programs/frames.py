@@ -11,8 +11,8 @@ from __future__ import annotations
 import math
 
 from ... import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import Error, SimpleError
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import Error, SimpleError
 from ...ros import rosout
 from ...ros.messages import message_class
 from ...ros.roscpp import Program, anonymous, plain_words

@@ -12,8 +12,8 @@ from __future__ import annotations
 from math import isfinite
 
 from ... import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import SimpleError
 from ...robot_world import urdf_parts
 from ...robot_world.description_files import read_text
 from ...robot_world.descriptions import Description, DescriptionError, Joint

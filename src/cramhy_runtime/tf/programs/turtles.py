@@ -11,8 +11,8 @@ from __future__ import annotations
 import math
 
 from ... import kernel
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleError
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import SimpleError
 from ...ros import rosout, wire
 from ...ros.messages import message_class
 from ...ros.roscpp import Program, plain_words

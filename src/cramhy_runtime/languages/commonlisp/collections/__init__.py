@@ -1,1 +1,1 @@
-"""Lists, arrays, strings and sequences (ANSI chapters 13 to 17). Hash tables are in ``ground/hash_tables.py``."""
+"""Lists, arrays, strings and sequences (ANSI chapters 13 to 17). Hash tables are in ``lisp_core/hash_tables.py``."""

@@ -12,15 +12,15 @@ from __future__ import annotations
 import math
 from itertools import product
 
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import UNSUPPLIED, Character, Cons, KindString, LispString
-from cramhy_runtime.ground.heap import check_room
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, Character, Cons, KindString, LispString
+from cramhy_runtime.lisp_core.heap import check_room
 from .arrays import array_element_type, dimensions_of, without_fill_pointer
 from .element_types import check_element, upgraded_element_type
 from .element_types import initial_element as default_element
 from .lists import items_of
 from .sequence_types import DIMENSION_LIMIT, INDEX_TYPE, char_of, elements, text
-from cramhy_runtime.ground.arrays import (
+from cramhy_runtime.lisp_core.arrays import (
     CHARACTER,
     STRING_KINDS,
     CharactersOfArray,

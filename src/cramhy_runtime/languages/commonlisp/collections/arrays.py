@@ -12,13 +12,13 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.ground.condition_types import SimpleTypeError
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import WRITABLE_STRINGS, Character, LispString, MultipleValues, list_from
+from cramhy_runtime.lisp_core.condition_types import SimpleTypeError
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import WRITABLE_STRINGS, Character, LispString, MultipleValues, list_from
 from .element_types import FLOAT_CLASSES, LIMITS, check_element, upgraded_element_type
 from .sequence_types import char_of, constant_changed
-from cramhy_runtime.ground.arrays import InvalidArray, InvalidArrayIndex, followers_moved, wrong_rank
-from cramhy_runtime.ground.arrays import (
+from cramhy_runtime.lisp_core.arrays import InvalidArray, InvalidArrayIndex, followers_moved, wrong_rank
+from cramhy_runtime.lisp_core.arrays import (
     SharedCharacters,
     BIT,
     LispArray,

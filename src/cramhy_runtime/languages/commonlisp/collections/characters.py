@@ -11,11 +11,11 @@ import re
 import unicodedata
 
 from cramhy_runtime.kernel.late_patterns import late_pattern
-from cramhy_runtime.ground.condition_types import SimpleTypeError
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Character, LispString
-from cramhy_runtime.ground.equality import folded
-from cramhy_runtime.ground.packages import is_symbol, string_designator, symbol_name
+from cramhy_runtime.lisp_core.condition_types import SimpleTypeError
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import Character, LispString
+from cramhy_runtime.lisp_core.equality import folded
+from cramhy_runtime.lisp_core.packages import is_symbol, string_designator, symbol_name
 
 CONSTANTS = VARIABLES = {"CHAR-CODE-LIMIT": 0x110000}
 LISP_NAMES = """

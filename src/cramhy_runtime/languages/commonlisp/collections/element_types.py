@@ -6,12 +6,12 @@ An implementation keeps only some specialised arrays and upgrades other types to
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.ports import PORTS
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Character, Cons, Symbol, lisp_list
-from cramhy_runtime.ground.floats import SingleFloat
-from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.arrays import BASE_CHAR, BIT, CHARACTER, STRING_KINDS
+from cramhy_runtime.lisp_core.ports import PORTS
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import Character, Cons, Symbol, lisp_list
+from cramhy_runtime.lisp_core.floats import SingleFloat
+from cramhy_runtime.lisp_core.packages import sym
+from cramhy_runtime.lisp_core.arrays import BASE_CHAR, BIT, CHARACTER, STRING_KINDS
 
 _SINGLE, _DOUBLE, _FIXNUM = sym("SINGLE-FLOAT"), sym("DOUBLE-FLOAT"), sym("FIXNUM")
 FLOAT_CLASSES = {_SINGLE: SingleFloat, _DOUBLE: float}

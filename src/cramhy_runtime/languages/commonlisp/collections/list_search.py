@@ -10,13 +10,13 @@ leaves it open. Source: ANSI 14.2; checked against SBCL.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import SimpleTypeError
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import STRETCH, UNSUPPLIED, Cons, MultipleValues, Symbol, list_from
+from cramhy_runtime.lisp_core.condition_types import SimpleTypeError
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import STRETCH, UNSUPPLIED, Cons, MultipleValues, Symbol, list_from
 from cramhy_runtime.kernel.active import checkpoint
-from cramhy_runtime.ground.equality import EQUAL_TO_THEMSELVES, eql
-from cramhy_runtime.ground.functions import equal_to, key_of, match_of, predicate_of, test_of
-from cramhy_runtime.ground.packages import is_symbol, redefined
+from cramhy_runtime.lisp_core.equality import EQUAL_TO_THEMSELVES, eql
+from cramhy_runtime.lisp_core.functions import equal_to, key_of, match_of, predicate_of, test_of
+from cramhy_runtime.lisp_core.packages import is_symbol, redefined
 from .lists import items_of, not_a_list
 from .sequence_types import in_turns
 
@@ -158,7 +158,7 @@ def _contains(items, key, compare):
     Without ``:test`` it looks the ``eql`` key up in a set, so sets of any size are handled in linear time.
     """
     if compare is None:
-        from cramhy_runtime.ground.equality import eql_key
+        from cramhy_runtime.lisp_core.equality import eql_key
 
         keys = {eql_key(item if key is None else key(item)) for item in items}
         return lambda item: eql_key(item if key is None else key(item)) in keys

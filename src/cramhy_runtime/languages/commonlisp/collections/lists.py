@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import itertools
 
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import STRETCH, Cons, MultipleValues, conses, list_end, list_from, list_parts, new_object
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.heap import CONS, check_room
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import STRETCH, Cons, MultipleValues, conses, list_end, list_from, list_parts, new_object
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.heap import CONS, check_room
 from cramhy_runtime.kernel.active import checkpoint
 
 LISP_NAMES = """
@@ -415,7 +415,7 @@ def _same_tail(thing, tail):
         return True
     if isinstance(thing, Cons) or isinstance(tail, Cons):
         return False
-    from cramhy_runtime.ground.equality import eql
+    from cramhy_runtime.lisp_core.equality import eql
 
     return eql(thing, tail) is not None
 

@@ -8,12 +8,12 @@ Source: ANSI 17.3; texts are SBCL's.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, LispString
-from cramhy_runtime.ground.equality import eql_key
-from cramhy_runtime.ground.functions import accepted, function_of, key_of, match_of, predicate_of, test_of
+from cramhy_runtime.lisp_core.data import Cons, LispString
+from cramhy_runtime.lisp_core.equality import eql_key
+from cramhy_runtime.lisp_core.functions import accepted, function_of, key_of, match_of, predicate_of, test_of
 from cramhy_runtime.kernel.active import checkpoint
 from .sequence_types import elements, in_turns, limit, same_kind, span, store_all
-from cramhy_runtime.ground.arrays import Vector
+from cramhy_runtime.lisp_core.arrays import Vector
 
 LISP_NAMES = """
 remove remove-if remove-if-not delete delete-if delete-if-not remove-duplicates delete-duplicates

@@ -5,12 +5,12 @@ With several sequences the shortest decides where to stop. Source: ANSI 17.3; te
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import UNSUPPLIED, Cons, LispString, MultipleValues, one
-from cramhy_runtime.ground.functions import function_of, holds, key_of, primary
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, Cons, LispString, MultipleValues, one
+from cramhy_runtime.lisp_core.functions import function_of, holds, key_of, primary
+from cramhy_runtime.lisp_core.packages import sym
 from .lists import cells
 from .sequence_types import elements, in_turns, part, sequence_type, store_all
-from cramhy_runtime.ground.arrays import Vector
+from cramhy_runtime.lisp_core.arrays import Vector
 
 PLUS = sym("+")
 LISP_NAMES = "map map-into reduce every some notany notevery"

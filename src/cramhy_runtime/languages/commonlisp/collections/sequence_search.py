@@ -8,9 +8,9 @@ Source: ANSI 17.2.1 and 17.3; texts are SBCL's.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import STRETCH, TEXTS, Character, Cons
-from cramhy_runtime.ground.equality import EQUAL_TO_THEMSELVES, eql
-from cramhy_runtime.ground.functions import accepted, function_of, holds, match_of, predicate_of, test_of, values_of
+from cramhy_runtime.lisp_core.data import STRETCH, TEXTS, Character, Cons
+from cramhy_runtime.lisp_core.equality import EQUAL_TO_THEMSELVES, eql
+from cramhy_runtime.lisp_core.functions import accepted, function_of, holds, match_of, predicate_of, test_of, values_of
 from cramhy_runtime.kernel.active import checkpoint
 from .lists import cells
 from .sequence_types import bounds, elements, in_turns, part, span

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from functools import cmp_to_key
 
-from cramhy_runtime.ground.equality import is_number
-from cramhy_runtime.ground.functions import directly, function_of, holds, key_of, values_of
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.equality import is_number
+from cramhy_runtime.lisp_core.functions import directly, function_of, holds, key_of, values_of
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.kernel.active import checkpoint
 from .sequence_types import elements, in_turns, same_kind, sequence_type, store_all
 

@@ -10,15 +10,25 @@ Law: what is no sequence is a ``type-error`` with SBCL's text, and bounds outsid
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import SimpleTypeError, TypeError_, formatted
-from cramhy_runtime.ground.conditions import error, program_error, type_error
-from cramhy_runtime.ground.data import CHARACTERS, WRITABLE_STRINGS, Character, Cons, FreshString, KindString, LispString, Symbol, list_from
-from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.lisp_core.condition_types import SimpleTypeError, TypeError_, formatted
+from cramhy_runtime.lisp_core.conditions import error, program_error, type_error
+from cramhy_runtime.lisp_core.data import (
+    CHARACTERS,
+    WRITABLE_STRINGS,
+    Character,
+    Cons,
+    FreshString,
+    KindString,
+    LispString,
+    Symbol,
+    list_from,
+)
+from cramhy_runtime.lisp_core.packages import sym
+from cramhy_runtime.lisp_core.ports import PORTS
 from cramhy_runtime.kernel.active import checkpoint
 from .element_types import check_element, upgraded_element_type
 from .lists import items_of
-from cramhy_runtime.ground.arrays import BASE_CHAR, BIT, CHARACTER, STRING_KINDS, LispArray, TypedVector, Vector, array_type, is_simple
+from cramhy_runtime.lisp_core.arrays import BASE_CHAR, BIT, CHARACTER, STRING_KINDS, LispArray, TypedVector, Vector, array_type, is_simple
 
 DIMENSION_LIMIT = 4611686018427387901
 INDEX_TYPE = f"(MOD {DIMENSION_LIMIT})"

@@ -9,11 +9,11 @@ ANSI chapter 17; texts are SBCL's.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import STRETCH, TEXTS, UNSUPPLIED, Character, Cons, FreshString, LispString, list_from
-from cramhy_runtime.ground.heap import CONS, POINTER, check_room
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import STRETCH, TEXTS, UNSUPPLIED, Character, Cons, FreshString, LispString, list_from
+from cramhy_runtime.lisp_core.heap import CONS, POINTER, check_room
 from cramhy_runtime.kernel.active import checkpoint
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.packages import sym
 from .element_types import check_element
 from .element_types import initial_element as default_element
 from .lists import items_of, not_a_list
@@ -30,7 +30,7 @@ from .sequence_types import (
     sequence_type,
     store_all,
 )
-from cramhy_runtime.ground.arrays import LispArray, TypedVector, Vector
+from cramhy_runtime.lisp_core.arrays import LispArray, TypedVector, Vector
 
 STRING = sym("STRING")
 LISP_NAMES = "length elt subseq copy-seq reverse nreverse concatenate make-sequence fill replace"

@@ -9,13 +9,13 @@ Law: results are fresh, except those of functions named destructive, which retur
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import SimpleTypeError
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import CHARACTERS, TEXTS, UNSUPPLIED, WRITABLE_STRINGS, Character, FreshString, KindString, LispString
-from cramhy_runtime.ground.equality import folded
-from cramhy_runtime.ground.packages import is_symbol, symbol_name
-from cramhy_runtime.ground.heap import check_room
-from cramhy_runtime.ground.arrays import BASE_CHAR
+from cramhy_runtime.lisp_core.condition_types import SimpleTypeError
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import CHARACTERS, TEXTS, UNSUPPLIED, WRITABLE_STRINGS, Character, FreshString, KindString, LispString
+from cramhy_runtime.lisp_core.equality import folded
+from cramhy_runtime.lisp_core.packages import is_symbol, symbol_name
+from cramhy_runtime.lisp_core.heap import check_room
+from cramhy_runtime.lisp_core.arrays import BASE_CHAR
 from .arrays import InvalidArrayIndex
 from .element_types import check_element, upgraded_element_type
 from .characters import downcased, is_alphanumeric, upcased

@@ -7,16 +7,16 @@ has a value shows at run time, with the error that the user knows.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import CompileError, SimpleProgramError, error
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction, lisp_list, one
+from cramhy_runtime.lisp_core.conditions import CompileError, SimpleProgramError, error
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, UndefinedFunction, lisp_list, one
 from .compilation_unit import expanding
 from .failing_macros import expanded_or_failing, is_of_user, reached_at_once
 from ..syntax.lambda_lists import parse, variables_of
 from ..syntax.macros import ensure_loaded, macroexpand_1
-from cramhy_runtime.ground.python_names import python_name
-from cramhy_runtime.ground.dispatch.methods import Shape
+from cramhy_runtime.lisp_core.python_names import python_name
+from cramhy_runtime.lisp_core.dispatch.methods import Shape
 from cramhy_runtime.storage.dependency_tracing import run
-from cramhy_runtime.ground.packages import is_symbol, sym
+from cramhy_runtime.lisp_core.packages import is_symbol, sym
 from ..reader.form_places import FormPlaces
 from . import nodes
 from .declared_types import declared_types

@@ -14,17 +14,17 @@ from __future__ import annotations
 
 import sys
 
-from cramhy_runtime.ground.condition_types import shown_with
-from cramhy_runtime.ground.conditions import Condition, SimpleStyleWarning, SimpleWarning, matches, signal_condition, with_simple_restart
-from cramhy_runtime.ground.data import Cons, Symbol, UndefinedFunction, lisp_list, python_list
-from cramhy_runtime.ground.dynamic import bind, special, unbind
-from cramhy_runtime.ground.equality import eql_key
-from cramhy_runtime.ground.packages import COMMON_LISP, sym
+from cramhy_runtime.lisp_core.condition_types import shown_with
+from cramhy_runtime.lisp_core.conditions import Condition, SimpleStyleWarning, SimpleWarning, matches, signal_condition, with_simple_restart
+from cramhy_runtime.lisp_core.data import Cons, Symbol, UndefinedFunction, lisp_list, python_list
+from cramhy_runtime.lisp_core.dynamic import bind, special, unbind
+from cramhy_runtime.lisp_core.equality import eql_key
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, sym
 from ..packages.package_errors import PACKAGE
-from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.lisp_core.ports import PORTS
 from ..syntax.ansi_lambda_lists import standard_shape
 from ..syntax.function_shapes import shape_of, wrong_call
-from cramhy_runtime.ground.source_places import frame_position, is_user_file
+from cramhy_runtime.lisp_core.source_places import frame_position, is_user_file
 from .follow_up_warnings import inside, without_consequences
 
 CURRENT = special("CRAMHY::*COMPILATION-UNIT*")

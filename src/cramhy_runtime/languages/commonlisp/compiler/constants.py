@@ -10,13 +10,13 @@ from __future__ import annotations
 from fractions import Fraction
 from operator import attrgetter
 
-from cramhy_runtime.ground.arrays import LispArray, SimpleArray, TypedVector, Vector
-from cramhy_runtime.ground.catching import Case
-from cramhy_runtime.ground.keyword_calls import KeywordCalls
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import Character, Cons, LispString, Symbol, all_values
-from cramhy_runtime.ground.floats import SingleFloat
-from cramhy_runtime.ground.packages import Package
+from cramhy_runtime.lisp_core.arrays import LispArray, SimpleArray, TypedVector, Vector
+from cramhy_runtime.lisp_core.catching import Case
+from cramhy_runtime.lisp_core.keyword_calls import KeywordCalls
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import Character, Cons, LispString, Symbol, all_values
+from cramhy_runtime.lisp_core.floats import SingleFloat
+from cramhy_runtime.lisp_core.packages import Package
 from ..format.format_pieces import Piece
 from ..numbers.complex_numbers import parts
 from ..objects.class_objects import StandardObject

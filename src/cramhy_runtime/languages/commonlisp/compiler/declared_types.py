@@ -7,13 +7,13 @@ are not defined, and types of several values.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.numbers import FIXNUM_LIMIT
-from cramhy_runtime.ground.ports import PORTS
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.printing import prin1_to_string
-from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, one
-from cramhy_runtime.ground.conses import list_parts
-from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym
+from cramhy_runtime.lisp_core.numbers import FIXNUM_LIMIT
+from cramhy_runtime.lisp_core.ports import PORTS
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.printing import prin1_to_string
+from cramhy_runtime.lisp_core.data import Cons, MultipleValues, Symbol, one
+from cramhy_runtime.lisp_core.conses import list_parts
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, is_symbol, sym
 
 TYPE, OPTIMIZE, SAFETY = sym("TYPE"), sym("OPTIMIZE"), sym("SAFETY")
 OTHERS = {

@@ -7,9 +7,9 @@ variable used by an inner function is captured, a block left from an inner funct
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons
-from cramhy_runtime.ground.python_names import python_name
-from cramhy_runtime.ground.packages import sym, symbol_name
+from cramhy_runtime.lisp_core.data import Cons
+from cramhy_runtime.lisp_core.python_names import python_name
+from cramhy_runtime.lisp_core.packages import sym, symbol_name
 from .core import HEADS
 from .kinds import ANY
 

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 from cramhy_runtime.kernel.typing_names import annotations_of
 
-from cramhy_runtime.ground.data import Symbol
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import Symbol
+from cramhy_runtime.lisp_core.packages import sym
 from . import nodes
 from .passes import ON
 from .kinds import ABS, ANY, DIVIDE, MAX, MIN, MINUS, NONE_YET, PLUS, SMOOTH, SQRT, STEPS, TIMES, kind_of, raw

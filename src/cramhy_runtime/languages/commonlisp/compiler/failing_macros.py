@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from textwrap import indent
 
-from cramhy_runtime.ground.condition_types import Error, ProgramError, SimpleWarning
-from cramhy_runtime.ground.conditions import error, handler_case
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, lisp_list
-from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.condition_types import Error, ProgramError, SimpleWarning
+from cramhy_runtime.lisp_core.conditions import error, handler_case
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, lisp_list
+from cramhy_runtime.lisp_core.packages import sym
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.storage.dependency_tracing import current
 

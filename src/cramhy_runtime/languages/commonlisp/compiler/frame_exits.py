@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import sys
 
-from cramhy_runtime.ground.data import Symbol
-from cramhy_runtime.ground.dynamic import special
+from cramhy_runtime.lisp_core.data import Symbol
+from cramhy_runtime.lisp_core.dynamic import special
 
 DEBUGGED = special(Symbol("*DEBUGGED*"), False)
 """Whether functions are compiled so that a debugger can leave their calls. It costs a block around the body."""

@@ -13,9 +13,9 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.ground.data import Cons, Symbol
-from cramhy_runtime.ground.floats import SingleFloat
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import Cons, Symbol
+from cramhy_runtime.lisp_core.floats import SingleFloat
+from cramhy_runtime.lisp_core.packages import sym
 from . import nodes
 from .declared_types import FIXNUM
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from cramhy_runtime.utilities.records import dataclass
 
-from cramhy_runtime.ground.dispatch.reached_slots import read_attribute, written_attribute
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.dispatch.reached_slots import read_attribute, written_attribute
+from cramhy_runtime.lisp_core.packages import sym
 from . import nodes
 from .facts import walk
 from .kinds import INT

@@ -9,9 +9,9 @@ This module does not know fluents: the face of the plan language tells it what m
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import SimpleStyleWarning
-from cramhy_runtime.ground.data import Cons, Symbol
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import SimpleStyleWarning
+from cramhy_runtime.lisp_core.data import Cons, Symbol
+from cramhy_runtime.lisp_core.packages import sym
 
 AND, OR = sym("AND"), sym("OR")
 _COMBINATIONS = {AND: ("FL-AND", "last"), OR: ("FL-OR", "first")}

@@ -16,10 +16,10 @@ Rows of ``make bench`` without a pass, as times of the row with it. ``mapping``:
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, Symbol, lisp_list, list_from
+from cramhy_runtime.lisp_core.data import Cons, Symbol, lisp_list, list_from
 from ..syntax.lambda_lists import gensym
 from ..loop.loop_support import CAR_OF_CONS, CDR_OF_CONS, COLLECT, COLLECT_NCONC, END_OF_LIST
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.packages import sym
 from .nodes import CallLocal, LocalVariable, Support
 from .passes import ON, WRITTEN_OUT, enter
 

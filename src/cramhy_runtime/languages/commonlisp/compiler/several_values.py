@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from types import FunctionType
 
-from cramhy_runtime.ground.data import Symbol, all_values
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import Symbol, all_values
+from cramhy_runtime.lisp_core.packages import sym
 
 VALUES = sym("VALUES")
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, lisp_list, list_from
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import Cons, lisp_list, list_from
+from cramhy_runtime.lisp_core.packages import sym
 from ..syntax.lambda_lists import gensym
 from .analyze import LAMBDA
 from .environment import Variable

@@ -6,10 +6,10 @@ analyzer, the form and the environment, and gives a node.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, Symbol, UndefinedFunction, lisp_list, list_from
+from cramhy_runtime.lisp_core.data import Cons, Symbol, UndefinedFunction, lisp_list, list_from
 from ..syntax.lambda_lists import gensym
-from cramhy_runtime.ground.dispatch.methods import Shape
-from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym, symbol_name, symbol_package
+from cramhy_runtime.lisp_core.dispatch.methods import Shape
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, is_symbol, sym, symbol_name, symbol_package
 from ..packages.package_errors import locked
 from .open_coding import next_method
 from .analyze import SETF, SPECIAL_FORMS, progn

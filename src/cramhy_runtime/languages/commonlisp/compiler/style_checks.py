@@ -10,17 +10,17 @@ from __future__ import annotations
 
 from functools import partial
 
-from cramhy_runtime.ground.condition_types import shown_with
-from cramhy_runtime.ground.conditions import SimpleStyleWarning, SimpleWarning, error
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol
+from cramhy_runtime.lisp_core.condition_types import shown_with
+from cramhy_runtime.lisp_core.conditions import SimpleStyleWarning, SimpleWarning, error
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol
 from . import compilation_unit
 from .compilation_unit import Mention
 from ..syntax.declaration_names import EXTENSIONS, is_declared, is_extension
 from ..syntax.function_shapes import wrong_call, wrong_call_of_lambda
-from cramhy_runtime.ground.packages import COMMON_LISP, sym
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, sym
 from ..standard_names import missing
-from cramhy_runtime.ground.dispatch.methods import Shape
-from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.lisp_core.dispatch.methods import Shape
+from cramhy_runtime.lisp_core.ports import PORTS
 from .environment import Variable, function_key
 
 CRAMHY = sym("CRAMHY::X").package

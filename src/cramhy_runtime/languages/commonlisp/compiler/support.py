@@ -17,14 +17,14 @@ from itertools import zip_longest
 from operator import itemgetter
 from types import FunctionType
 
-from cramhy_runtime.ground.arrays import SimpleArray, TypedVector, Vector
-from cramhy_runtime.ground.catching import CATCHABLE, Case, caught, catch, throw
-from cramhy_runtime.ground.functions import fdefinition, setf_function  # noqa: F401  compiled code calls them
+from cramhy_runtime.lisp_core.arrays import SimpleArray, TypedVector, Vector
+from cramhy_runtime.lisp_core.catching import CATCHABLE, Case, caught, catch, throw
+from cramhy_runtime.lisp_core.functions import fdefinition, setf_function  # noqa: F401  compiled code calls them
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel.active import ACTIVE
 from cramhy_runtime.kernel.budget import TICKS, budget
 
-from cramhy_runtime.ground.conditions import (
+from cramhy_runtime.lisp_core.conditions import (
     Condition,
     SimpleControlError,
     error,
@@ -35,7 +35,7 @@ from cramhy_runtime.ground.conditions import (
     unknown_key,
 )
 from .frame_exits import FrameExit, ends_here
-from cramhy_runtime.ground.data import (
+from cramhy_runtime.lisp_core.data import (
     FreshString,
     KindString,
     Character,
@@ -53,20 +53,20 @@ from cramhy_runtime.ground.data import (
     one,
     truth,
 )
-from cramhy_runtime.ground.floats import SingleFloat
-from cramhy_runtime.ground.floats import new_single, to_float32
-from cramhy_runtime.ground.hash_tables import REMOVED, HashTable, need_table, value_and_presence, value_in_table
-from cramhy_runtime.ground.keyword_calls import keyword_calls
-from cramhy_runtime.ground.dynamic import Bindings, bind, unbind
-from cramhy_runtime.ground.functions import function_of
+from cramhy_runtime.lisp_core.floats import SingleFloat
+from cramhy_runtime.lisp_core.floats import new_single, to_float32
+from cramhy_runtime.lisp_core.hash_tables import REMOVED, HashTable, need_table, value_and_presence, value_in_table
+from cramhy_runtime.lisp_core.keyword_calls import keyword_calls
+from cramhy_runtime.lisp_core.dynamic import Bindings, bind, unbind
+from cramhy_runtime.lisp_core.functions import function_of
 from ..format.format import write_text
 from ..format.format_templates import decimal, piece_of, prin1_atom, princ_atom
 from ..numbers import arithmetic
 from ..numbers.irrational import complex_
 from ..objects.makers import maker
 from ..objects.slots import named_slot
-from cramhy_runtime.ground.packages import find_package_or_error, intern, keyword, printed
-from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.lisp_core.packages import find_package_or_error, intern, keyword, printed
+from cramhy_runtime.lisp_core.ports import PORTS
 from ..pathnames.pathname_objects import pathname_of_parts
 from ..pathnames.pathnames import logical_host
 from ..syntax.backquote import Comma

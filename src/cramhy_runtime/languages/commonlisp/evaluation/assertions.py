@@ -6,11 +6,11 @@ The test is evaluated with its arguments in variables when it is a function call
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.ports import PORTS
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.conditions import SimpleError, error, types
-from cramhy_runtime.ground.data import UNSUPPLIED, Cons, Symbol, lisp_list, list_from, truth
-from cramhy_runtime.ground.packages import is_symbol, sym
+from cramhy_runtime.lisp_core.ports import PORTS
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.conditions import SimpleError, error, types
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, Cons, Symbol, lisp_list, list_from, truth
+from cramhy_runtime.lisp_core.packages import is_symbol, sym
 from ..streams.stream_functions import y_or_n_p
 from .forms import SPECIAL_OPERATORS, constantp
 from ..syntax.lambda_lists import gensym, support

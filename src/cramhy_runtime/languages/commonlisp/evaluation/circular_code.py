@@ -7,9 +7,9 @@ forms and the compiler all walk lists to their ends.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import CompileError, error
-from cramhy_runtime.ground.data import Cons, Symbol
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import CompileError, error
+from cramhy_runtime.lisp_core.data import Cons, Symbol
+from cramhy_runtime.lisp_core.packages import sym
 
 QUOTE, MACROLET = sym("QUOTE"), sym("MACROLET")
 _OPEN, _DONE = 1, 2

@@ -7,11 +7,11 @@ same by functions and lambda expressions. The compiler never asks for them.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, lisp_list, list_from
+from cramhy_runtime.lisp_core.data import Cons, lisp_list, list_from
 
 from ..syntax.body_parts import body_parts
 from ..syntax.lambda_lists import gensym, support
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.packages import sym
 from .setf_places import macro
 
 FUNCTION, LAMBDA, LIST, QUOTE = sym("FUNCTION"), sym("LAMBDA"), sym("LIST"), sym("QUOTE")

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from ..compiler import support
-from cramhy_runtime.ground.conditions import handled, type_error
-from cramhy_runtime.ground.conditions import make_condition as make
-from cramhy_runtime.ground.data import UNBOUND, list_from, one
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import COMMON_LISP, printed, sym
+from cramhy_runtime.lisp_core.conditions import handled, type_error
+from cramhy_runtime.lisp_core.conditions import make_condition as make
+from cramhy_runtime.lisp_core.data import UNBOUND, list_from, one
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, printed, sym
 from ..reader.reader import read_from_string
 from ..types.internal_types import readable
 from .symbols import place_of, symbol_function
 from . import compiled_operators  # noqa: F401  it defines macros
 from . import setf_places as places
 from .evaluator import PACKAGE, evaluate
-from cramhy_runtime.ground.restarts import Restart
-from cramhy_runtime.ground.functions import functionp
+from cramhy_runtime.lisp_core.restarts import Restart
+from cramhy_runtime.lisp_core.functions import functionp
 
 LISP_NAMES = """eval compiled-function-p fdefinition get-setf-expansion
 error signal warn cerror break invoke-debugger compute-restarts find-restart invoke-restart invoke-restart-interactively restart-name

@@ -7,10 +7,10 @@ checked for its shape all the same, so that a slip of the pen is found.
 from __future__ import annotations
 
 from ..compiler.declared_types import checkable
-from cramhy_runtime.ground.conditions import error, program_error, type_error, warn
-from cramhy_runtime.ground.conses import list_parts
-from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, list_from, python_list
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import error, program_error, type_error, warn
+from cramhy_runtime.lisp_core.conses import list_parts
+from cramhy_runtime.lisp_core.data import Cons, MultipleValues, Symbol, list_from, python_list
+from cramhy_runtime.lisp_core.packages import sym
 from ..packages.package_errors import check_function_name
 from ..types.types import is_known_type
 from ..compiler.compilation_unit import muffle

@@ -6,15 +6,15 @@ Lisp name (``__lisp_name__``) and the file it came from, for printing, ``describ
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.printing import prin1_to_string
-from cramhy_runtime.ground.conditions import CompileError, error, program_error, restart_case, style_warn, type_error, warn
-from cramhy_runtime.ground.conditions import types as condition_types
-from cramhy_runtime.ground.data import Cons, Symbol, UNBOUND, UNSUPPLIED, UndefinedFunction, lisp_list, one
-from cramhy_runtime.ground.equality import eql
-from cramhy_runtime.ground.python_names import python_name
-from cramhy_runtime.ground.source_places import describe
+from cramhy_runtime.lisp_core.printing import prin1_to_string
+from cramhy_runtime.lisp_core.conditions import CompileError, error, program_error, restart_case, style_warn, type_error, warn
+from cramhy_runtime.lisp_core.conditions import types as condition_types
+from cramhy_runtime.lisp_core.data import Cons, Symbol, UNBOUND, UNSUPPLIED, UndefinedFunction, lisp_list, one
+from cramhy_runtime.lisp_core.equality import eql
+from cramhy_runtime.lisp_core.python_names import python_name
+from cramhy_runtime.lisp_core.source_places import describe
 from cramhy_runtime.kernel.images import per_image
-from cramhy_runtime.ground.packages import printed, sym, symbol_name
+from cramhy_runtime.lisp_core.packages import printed, sym, symbol_name
 from ..packages.package_errors import check_symbol, locked
 from .evaluator import macro_lambda
 

@@ -9,12 +9,12 @@ DEFINE-METHOD-COMBINATION.
 from __future__ import annotations
 
 from ..compiler.environment import Env, LocalMacro
-from cramhy_runtime.ground.data import Cons, lisp_list, list_from, python_list
+from cramhy_runtime.lisp_core.data import Cons, lisp_list, list_from, python_list
 from .evaluator import compile_lambda
 from ..syntax.lambda_lists import gensym, parse
-from cramhy_runtime.ground.packages import sym, symbol_name
-from cramhy_runtime.ground.dispatch.method_combination import AROUND, link
-from cramhy_runtime.ground.dispatch.methods import Shape
+from cramhy_runtime.lisp_core.packages import sym, symbol_name
+from cramhy_runtime.lisp_core.dispatch.method_combination import AROUND, link
+from cramhy_runtime.lisp_core.dispatch.methods import Shape
 
 CALL_METHOD, MAKE_METHOD, LAMBDA, QUOTE = sym("CALL-METHOD"), sym("MAKE-METHOD"), sym("LAMBDA"), sym("QUOTE")
 

@@ -9,9 +9,9 @@ import gc
 import os
 import sys
 
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import NO_VALUES, Character, LispString, list_from
-from cramhy_runtime.ground.packages import is_symbol, string_designator, sym
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import NO_VALUES, Character, LispString, list_from
+from cramhy_runtime.lisp_core.packages import is_symbol, string_designator, sym
 from ..files.file_streams import open_
 from ..streams.streams import CONSOLE_OUTPUT, STANDARD_INPUT, STANDARD_OUTPUT, BroadcastStream, EchoStream, standard_output
 from .process_usage import peak_memory

@@ -10,14 +10,14 @@ from __future__ import annotations
 import functools
 
 from cramhy_runtime.kernel.images import Cell
-from cramhy_runtime.ground.function_codes import note_code
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.function_codes import note_code
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from ..compiler.environment import EXECUTE, SITUATIONS
 from ..compiler.support import NAMESPACE
-from cramhy_runtime.ground.conditions import CompileError, error
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, lisp_list, list_from, one
-from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.packages import COMMON_LISP, COMMON_LISP_USER, sym
+from cramhy_runtime.lisp_core.conditions import CompileError, error
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, lisp_list, list_from, one
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, COMMON_LISP_USER, sym
 from ..reader.form_places import FormPlaces
 from .circular_code import refuse_circular_code
 from .plain_calls import code_of_plain_call

@@ -5,15 +5,15 @@ A macro only rearranges forms; the work is done here. Users do not call these by
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.functions import check_shape  # noqa: F401  macros name it here
+from cramhy_runtime.lisp_core.functions import check_shape  # noqa: F401  macros name it here
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.hash_tables import need_table
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.hash_tables import need_table
 from ..collections.list_search import without_property
 from ..compiler.support import function_of, next_method_exists  # noqa: F401  macros name the second one here
-from cramhy_runtime.ground.conditions import CaseFailure, SimpleTypeError, error, program_error
-from cramhy_runtime.ground.data import MultipleValues, boolean, python_list, truth
-from cramhy_runtime.ground.packages import is_symbol, keyword, sym, symbol_name
+from cramhy_runtime.lisp_core.conditions import CaseFailure, SimpleTypeError, error, program_error
+from cramhy_runtime.lisp_core.data import MultipleValues, boolean, python_list, truth
+from cramhy_runtime.lisp_core.packages import is_symbol, keyword, sym, symbol_name
 from ..streams.streams import StringOutputStream
 from ..types.type_names import simplified_type
 

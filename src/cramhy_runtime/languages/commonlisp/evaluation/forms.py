@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import StyleWarning, error, type_error, types
-from cramhy_runtime.ground.data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, one
-from cramhy_runtime.ground.packages import is_symbol, redefined, sym
+from cramhy_runtime.lisp_core.conditions import StyleWarning, error, type_error, types
+from cramhy_runtime.lisp_core.data import Cons, Keyword, MultipleValues, Symbol, UndefinedFunction, one
+from cramhy_runtime.lisp_core.packages import is_symbol, redefined, sym
 from ..compiler import compilation_unit
 from ..packages.package_errors import check_function_name
 from ..syntax import macros
@@ -12,7 +12,7 @@ from ..collections.lists import items_of
 from .definitions import data
 from .evaluator import compile_lambda
 from .symbols import place_of
-from cramhy_runtime.ground.functions import function_of, functionp
+from cramhy_runtime.lisp_core.functions import function_of, functionp
 
 LISP_NAMES = "macro-function compiler-macro-function macroexpand macroexpand-1 special-operator-p constantp compile"
 

@@ -9,15 +9,15 @@ it came from, so that nothing is kept for it; it is there for functions of files
 from __future__ import annotations
 
 
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import FLOATS, Cons, Keyword, Symbol, lisp_list, list_from
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.dispatch.methods import shape_items
-from cramhy_runtime.ground.packages import COMMON_LISP_USER, is_symbol, sym, symbol_name
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import FLOATS, Cons, Keyword, Symbol, lisp_list, list_from
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.dispatch.methods import shape_items
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER, is_symbol, sym, symbol_name
 from ..reader.reader import Reader
 from ..syntax.body_parts import body_parts
 from .evaluator import PACKAGE, evaluate
-from cramhy_runtime.ground.source_places import is_user_file
+from cramhy_runtime.lisp_core.source_places import is_user_file
 
 IN_PACKAGE, SETF = sym("IN-PACKAGE"), sym("SETF")
 

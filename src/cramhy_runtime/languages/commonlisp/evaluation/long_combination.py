@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, Symbol, lisp_list, list_from, one, python_list, truth
-from cramhy_runtime.ground.dispatch.generic_errors import no_primary_method_error
-from cramhy_runtime.ground.dispatch.method_combination import Combination, invalid, register_combination, retrying
-from cramhy_runtime.ground.packages import printed, symbol_name
+from cramhy_runtime.lisp_core.data import Cons, Symbol, lisp_list, list_from, one, python_list, truth
+from cramhy_runtime.lisp_core.dispatch.generic_errors import no_primary_method_error
+from cramhy_runtime.lisp_core.dispatch.method_combination import Combination, invalid, register_combination, retrying
+from cramhy_runtime.lisp_core.packages import printed, symbol_name
 from .effective_forms import function_of_form
 
 

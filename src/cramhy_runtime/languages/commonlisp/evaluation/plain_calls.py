@@ -12,8 +12,8 @@ import _ast as trees  # what `ast` is made of; that one takes 4 ms to import
 import math
 from types import FunctionType
 
-from cramhy_runtime.ground.data import Cons, Symbol
-from cramhy_runtime.ground.packages import COMMON_LISP, CRAMHY, sym
+from cramhy_runtime.lisp_core.data import Cons, Symbol
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, CRAMHY, sym
 from ..compiler.frame_exits import DEBUGGED
 
 QUOTE = sym("QUOTE")

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import functools
 
-from cramhy_runtime.ground.conditions import CompileError, error
-from cramhy_runtime.ground.data import Cons, Keyword, MultipleValues, Symbol, lisp_list, list_from, one
-from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, redefined, sym, symbol_package
+from cramhy_runtime.lisp_core.conditions import CompileError, error
+from cramhy_runtime.lisp_core.data import Cons, Keyword, MultipleValues, Symbol, lisp_list, list_from, one
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, is_symbol, redefined, sym, symbol_package
 from ..packages.package_errors import check_symbol
 from .definitions import data
 from .evaluator import macro_lambda

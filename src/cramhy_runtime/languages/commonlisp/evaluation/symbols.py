@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from weakref import WeakKeyDictionary
 
-from cramhy_runtime.ground import packages
+from cramhy_runtime.lisp_core import packages
 from ..collections.list_search import symbol_plist
 from ..collections.lists import copy_list
 from ..collections.sequence_types import is_string
 from ..compiler.support import fdefinition, value_of
-from cramhy_runtime.ground.conditions import error, type_error, undefined_function
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UNBOUND, UndefinedFunction, lisp_list, truth
+from cramhy_runtime.lisp_core.conditions import error, type_error, undefined_function
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, UNBOUND, UndefinedFunction, lisp_list, truth
 from .definitions import traced_like
 from .evaluator import PACKAGE
-from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.functions import functionp, invalid_function_name
-from cramhy_runtime.ground.packages import find_package_or_error, is_symbol, keyword, sym
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.functions import functionp, invalid_function_name
+from cramhy_runtime.lisp_core.packages import find_package_or_error, is_symbol, keyword, sym
 from ..packages.package_errors import check_function_name, check_symbol
 
 LISP_NAMES = """symbolp keywordp symbol-name symbol-package symbol-value set symbol-function boundp fboundp makunbound fmakunbound

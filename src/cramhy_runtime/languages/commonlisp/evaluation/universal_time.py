@@ -11,8 +11,8 @@ from fractions import Fraction
 
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import MultipleValues
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import MultipleValues
 from ..files.files import UNIVERSAL_EPOCH
 from .process_usage import processor_time
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import EndOfFile, SimpleTypeError, error, type_error
-from cramhy_runtime.ground.data import UNSUPPLIED, Character, LispString
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.conditions import EndOfFile, SimpleTypeError, error, type_error
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, Character, LispString
+from cramhy_runtime.lisp_core.packages import keyword
 from ..streams.external_formats import external_format
 from .file_streams import FileStream
 from ..pathnames.pathnames import ON_NAMED_FILE

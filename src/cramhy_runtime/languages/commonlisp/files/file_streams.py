@@ -9,20 +9,20 @@ fails.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 import contextlib
 import os
 
 from cramhy_runtime import kernel
 
 from cramhy_runtime import storage
-from cramhy_runtime.ground.conditions import FileError, SimpleFileError, StreamError, error, restart_case, type_error
-from cramhy_runtime.ground.data import UNSUPPLIED, Cons, Symbol, lisp_list
+from cramhy_runtime.lisp_core.conditions import FileError, SimpleFileError, StreamError, error, restart_case, type_error
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, Cons, Symbol, lisp_list
 from .files import FileDoesNotExist, FileExists, absolute, is_regular, physical, reason
 from ..pathnames.namestrings import native_namestring
 from ..pathnames.pathname_objects import LogicalPathname
 from ..pathnames.pathnames import merge_pathnames, pathname
-from cramhy_runtime.ground.packages import is_symbol, sym
+from cramhy_runtime.lisp_core.packages import is_symbol, sym
 from ..types.type_relations import subtypep
 from ..types.types import expand_type
 from ..streams.basic_streams import FdStream, InputStream, OutputStream, complain_closed, misused

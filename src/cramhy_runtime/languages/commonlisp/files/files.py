@@ -10,8 +10,8 @@ import os
 import stat
 from pathlib import Path
 
-from cramhy_runtime.ground.conditions import FileError, SimpleFileError, error
-from cramhy_runtime.ground.data import MultipleValues, boolean, list_from
+from cramhy_runtime.lisp_core.conditions import FileError, SimpleFileError, error
+from cramhy_runtime.lisp_core.data import MultipleValues, boolean, list_from
 from cramhy_runtime.storage import owners
 from ..streams.streams import standard_output
 from ..pathnames.logical_pathnames import translate_logical_pathname

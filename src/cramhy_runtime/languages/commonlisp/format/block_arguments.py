@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.lisp_core.data import Cons
 
 
 class Ring:

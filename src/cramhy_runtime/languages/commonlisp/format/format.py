@@ -8,8 +8,8 @@ argument is next. What each directive does is in ``format_directives.py`` and th
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Cons, FreshString, LispString, MultipleValues, list_from, one, python_list
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import Cons, FreshString, LispString, MultipleValues, list_from, one, python_list
 from ..collections.characters import character_name
 from ..streams.streams import OutputStream, StringOutputStream, output_stream, standard_output
 from .format_parser import Directive, FormatError, parse

@@ -6,9 +6,9 @@ leaves open.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import Error, handler_bind, type_error
-from cramhy_runtime.ground.data import Character, list_from, truth
-from cramhy_runtime.ground.packages import named_package
+from cramhy_runtime.lisp_core.conditions import Error, handler_bind, type_error
+from cramhy_runtime.lisp_core.data import Character, list_from, truth
+from cramhy_runtime.lisp_core.packages import named_package
 from cramhy_runtime.kernel.active import checkpoint
 from ..printer import print_controls as controls
 from ..printer.pretty import call_logical_block, pprint_indent, pprint_newline, pprint_tab

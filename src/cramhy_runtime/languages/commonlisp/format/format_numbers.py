@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.floats import SingleFloat
 from ..printer.float_printing import fixed_text, marker, scaled
 from ..printer.print_controls import PRINT_BASE, PRINT_RADIX, bound
 from ..printer.print_names import digits_in_base

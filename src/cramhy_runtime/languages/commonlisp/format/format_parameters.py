@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Character
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import Character
 from .format_parser import ARGUMENT_MARK, REMAINING_MARK
 
 NO_CHARACTER = ""

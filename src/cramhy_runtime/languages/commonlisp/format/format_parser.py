@@ -8,8 +8,8 @@ SBCL 2.2.9.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import Error, error
-from cramhy_runtime.ground.data import UNBOUND
+from cramhy_runtime.lisp_core.conditions import Error, error
+from cramhy_runtime.lisp_core.data import UNBOUND
 
 NEWLINE = "\n"
 

@@ -6,7 +6,7 @@ an object that has a print function or does not fit. Templates (``format_templat
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import FLOATS, Character, Cons
+from cramhy_runtime.lisp_core.data import FLOATS, Character, Cons
 from .format_numbers import integer_field, write_fixed
 from .format_parser import Directive
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 
-from cramhy_runtime.ground.data import Keyword
+from cramhy_runtime.lisp_core.data import Keyword
 from ..printer.print_controls import PRINT_CASE, PRINT_CIRCLE, PRINT_BASE, PRINT_RADIX, PRINT_READABLY, UPCASE
 from ..printer.print_names import symbol_text
 from ..printer.printer import PRINT_PPRINT_DISPATCH, atom_text

@@ -25,9 +25,9 @@ keywords are recognized by name, in any package. Source: ANSI 6.1; message texts
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, lisp_list, list_from
+from cramhy_runtime.lisp_core.data import Cons, lisp_list, list_from
 from ..syntax.lambda_lists import gensym
-from cramhy_runtime.ground.packages import is_symbol, sym, symbol_name
+from cramhy_runtime.lisp_core.packages import is_symbol, sym, symbol_name
 from . import loop_accumulation, loop_iteration
 from .loop_support import END_LOOP, NEXT_LOOP
 from .loop_tokens import Tokens

@@ -6,9 +6,9 @@ kind. A list is built behind a header cell; a variable named by ``into`` always 
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, lisp_list
+from cramhy_runtime.lisp_core.data import Cons, lisp_list
 from ..syntax.lambda_lists import gensym
-from cramhy_runtime.ground.packages import is_symbol, sym
+from cramhy_runtime.lisp_core.packages import is_symbol, sym
 from .loop_support import CDR_OF_CONS, COLLECT, COLLECT_APPEND, COLLECT_NCONC
 from .loop_tokens import zero
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from cramhy_runtime.utilities.records import dataclass, field
 
-from cramhy_runtime.ground.data import Cons, lisp_list, list_from
+from cramhy_runtime.lisp_core.data import Cons, lisp_list, list_from
 from ..syntax.lambda_lists import gensym
-from cramhy_runtime.ground.packages import is_symbol, sym, symbol_name
+from cramhy_runtime.lisp_core.packages import is_symbol, sym, symbol_name
 from .loop_support import CAR_OF_CONS, CDR_OF_CONS, END_LOOP, LOOP_SYMBOLS, LOOP_VECTOR, TABLE_ENTRIES
 from .loop_tokens import zero
 

@@ -7,11 +7,11 @@ that collects is linear; the list under construction hangs behind a header cell.
 from __future__ import annotations
 
 from ..collections.arrays import vectorp
-from cramhy_runtime.ground.hash_tables import maphash
+from cramhy_runtime.lisp_core.hash_tables import maphash
 from ..collections.lists import not_a_list
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Cons, list_from, new_object
-from cramhy_runtime.ground.packages import find_package_or_error, intern
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import Cons, list_from, new_object
+from cramhy_runtime.lisp_core.packages import find_package_or_error, intern
 
 NEXT_LOOP, END_LOOP = intern("NEXT-LOOP", "CRAMHY"), intern("END-LOOP", "CRAMHY")
 """The tags of a loop. ``(go cramhy::end-loop)`` is what ``loop-finish`` does."""

@@ -6,11 +6,11 @@ keyword the wrong one resembles.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import SimpleProgramError
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, list_from
-from cramhy_runtime.ground.floats import SingleFloat
-from cramhy_runtime.ground.packages import is_symbol, near_names, symbol_name
+from cramhy_runtime.lisp_core.condition_types import SimpleProgramError
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import Cons, list_from
+from cramhy_runtime.lisp_core.floats import SingleFloat
+from cramhy_runtime.lisp_core.packages import is_symbol, near_names, symbol_name
 
 NOTHING = object()
 

@@ -15,10 +15,10 @@ import math
 import sys
 from fractions import Fraction
 
-from cramhy_runtime.ground.conditions import DivisionByZero, FloatingPointInvalidOperation, FloatingPointOverflow, error, type_error
-from cramhy_runtime.ground.data import MultipleValues, lisp_list, one
-from cramhy_runtime.ground.floats import LARGEST_SINGLE, SPLITTER, SingleFloat, new_single, rational_to_float32, to_float32
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import DivisionByZero, FloatingPointInvalidOperation, FloatingPointOverflow, error, type_error
+from cramhy_runtime.lisp_core.data import MultipleValues, lisp_list, one
+from cramhy_runtime.lisp_core.floats import LARGEST_SINGLE, SPLITTER, SingleFloat, new_single, rational_to_float32, to_float32
+from cramhy_runtime.lisp_core.packages import sym
 from .float_traps import DIVIDE_BY_ZERO, INVALID, OVERFLOW, infinity, is_masked, quotient_by_zero
 from .complex_numbers import ExactComplex, SingleComplex, of_parts, parts
 

@@ -6,9 +6,9 @@ byte specifier is the pair ``(size . position)``. Source: ANSI 12.1.1.3.2.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Cons, boolean
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import Cons, boolean
+from cramhy_runtime.lisp_core.packages import sym
 from .arithmetic import is_integer, need_integer
 
 LISP_NAMES = """ash logand logior logxor logeqv lognot lognand lognor logandc1 logandc2 logorc1 logorc2 logtest logbitp logcount

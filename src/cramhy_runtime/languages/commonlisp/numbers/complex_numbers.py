@@ -7,7 +7,7 @@ imaginary part is a rational. They are added and multiplied in ``arithmetic.py``
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.lisp_core.floats import SingleFloat
 
 
 class SingleComplex(complex):

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.ground.data import UNBOUND, Symbol, lisp_list, list_from, python_list
-from cramhy_runtime.ground.dynamic import binding, special
-from cramhy_runtime.ground.floats import result_class
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.data import UNBOUND, Symbol, lisp_list, list_from, python_list
+from cramhy_runtime.lisp_core.dynamic import binding, special
+from cramhy_runtime.lisp_core.floats import result_class
+from cramhy_runtime.lisp_core.packages import keyword
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:

@@ -10,12 +10,12 @@ import cmath
 import math
 from fractions import Fraction
 
-from cramhy_runtime.ground.conditions import ArithmeticError_, DivisionByZero, FloatingPointOverflow, error, type_error
-from cramhy_runtime.ground.data import UNSUPPLIED, MultipleValues, lisp_list
-from cramhy_runtime.ground.floats import SingleFloat
-from cramhy_runtime.ground.floats import result_class
-from cramhy_runtime.ground.numbers import FIXNUM_LIMIT
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import ArithmeticError_, DivisionByZero, FloatingPointOverflow, error, type_error
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, MultipleValues, lisp_list
+from cramhy_runtime.lisp_core.floats import SingleFloat
+from cramhy_runtime.lisp_core.floats import result_class
+from cramhy_runtime.lisp_core.numbers import FIXNUM_LIMIT
+from cramhy_runtime.lisp_core.packages import sym
 from .float_traps import OVERFLOW, is_masked
 from .arithmetic import (
     abs_,

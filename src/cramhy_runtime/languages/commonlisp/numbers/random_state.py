@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import random as python_random
 
-from cramhy_runtime.ground.conditions import SimpleTypeError, error, type_error
-from cramhy_runtime.ground.floats import SingleFloat
-from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import SimpleTypeError, error, type_error
+from cramhy_runtime.lisp_core.floats import SingleFloat
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.packages import sym
 from .arithmetic import is_integer
 
 LISP_NAMES = "random make-random-state random-state-p"

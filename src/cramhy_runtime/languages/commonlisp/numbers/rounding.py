@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.ground.data import MultipleValues
-from cramhy_runtime.ground.floats import SingleFloat, result_class
+from cramhy_runtime.lisp_core.data import MultipleValues
+from cramhy_runtime.lisp_core.floats import SingleFloat, result_class
 from .arithmetic import div2, mul2, need_real, overflow, single_of, sub2
 from .irrational import to_double
 

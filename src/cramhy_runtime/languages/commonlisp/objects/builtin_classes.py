@@ -12,12 +12,12 @@ import types as python_types
 from fractions import Fraction
 from pathlib import PurePath
 
-from cramhy_runtime.ground.arrays import BitVector, LispArray, SimpleArray, SimpleBitVector, TypedVector, Vector
-from cramhy_runtime.ground.classes import BigInteger
-from cramhy_runtime.ground.conditions import Condition, Restart
-from cramhy_runtime.ground.data import Character, Cons, Keyword, LispString, Symbol
-from cramhy_runtime.ground.floats import SingleFloat
-from cramhy_runtime.ground.packages import Package, sym
+from cramhy_runtime.lisp_core.arrays import BitVector, LispArray, SimpleArray, SimpleBitVector, TypedVector, Vector
+from cramhy_runtime.lisp_core.classes import BigInteger
+from cramhy_runtime.lisp_core.conditions import Condition, Restart
+from cramhy_runtime.lisp_core.data import Character, Cons, Keyword, LispString, Symbol
+from cramhy_runtime.lisp_core.floats import SingleFloat
+from cramhy_runtime.lisp_core.packages import Package, sym
 from cramhy_runtime.kernel.images import Cell
 
 

@@ -7,11 +7,11 @@ function is a bare attribute access. Source: ANSI 7.1, 7.5 and 9.1; texts are SB
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.conditions import SimpleError, error
-from cramhy_runtime.ground.data import UNBOUND, Symbol, list_from, one, python_list
-from cramhy_runtime.ground.python_names import python_name
-from cramhy_runtime.ground.packages import is_symbol, keyword, sym, symbol_name
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.conditions import SimpleError, error
+from cramhy_runtime.lisp_core.data import UNBOUND, Symbol, list_from, one, python_list
+from cramhy_runtime.lisp_core.python_names import python_name
+from cramhy_runtime.lisp_core.packages import is_symbol, keyword, sym, symbol_name
 from ..streams.streams import StringOutputStream
 from ..packages.package_errors import check_symbol
 from ..syntax.declaration_names import check_type_name
@@ -41,8 +41,8 @@ from .classes import (
     registered_class,
     symbol_class,
 )
-from cramhy_runtime.ground.dispatch.generic_functions import FunctionObject, add_method, ensure_generic_function, remove_method
-from cramhy_runtime.ground.dispatch.methods import ReaderMethod, WriterMethod
+from cramhy_runtime.lisp_core.dispatch.generic_functions import FunctionObject, add_method, ensure_generic_function, remove_method
+from cramhy_runtime.lisp_core.dispatch.methods import ReaderMethod, WriterMethod
 from .slots import reader_for, writer_for
 
 

@@ -13,13 +13,13 @@ had computed about it.
 from __future__ import annotations
 
 from . import protocol_functions
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 
-from cramhy_runtime.ground import classes
-from cramhy_runtime.ground.conditions import SimpleError, UnboundSlot, error
-from cramhy_runtime.ground.data import UNBOUND, Symbol, python_list
-from cramhy_runtime.ground.python_names import python_name
-from cramhy_runtime.ground.packages import keyword, printed, sym, symbol_name
+from cramhy_runtime.lisp_core import classes
+from cramhy_runtime.lisp_core.conditions import SimpleError, UnboundSlot, error
+from cramhy_runtime.lisp_core.data import UNBOUND, Symbol, python_list
+from cramhy_runtime.lisp_core.python_names import python_name
+from cramhy_runtime.lisp_core.packages import keyword, printed, sym, symbol_name
 from . import builtin_classes
 
 

@@ -9,13 +9,13 @@ A symbol's class is one object from the first definition on, also when it is def
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import shown, shown_with
-from cramhy_runtime.ground.conditions import CellError, Condition, SimpleProgramError, SimpleTypeError, TypeError_, error, type_error
-from cramhy_runtime.ground.data import Symbol
-from cramhy_runtime.ground.dispatch.generic_functions import FunctionObject, no_method_for
-from cramhy_runtime.ground.dispatch.methods import ConditionClass
-from cramhy_runtime.ground.packages import ensure_package, find_package, is_symbol, sym
-from cramhy_runtime.ground.plain_answers import registered as _classes
+from cramhy_runtime.lisp_core.condition_types import shown, shown_with
+from cramhy_runtime.lisp_core.conditions import CellError, Condition, SimpleProgramError, SimpleTypeError, TypeError_, error, type_error
+from cramhy_runtime.lisp_core.data import Symbol
+from cramhy_runtime.lisp_core.dispatch.generic_functions import FunctionObject, no_method_for
+from cramhy_runtime.lisp_core.dispatch.methods import ConditionClass
+from cramhy_runtime.lisp_core.packages import ensure_package, find_package, is_symbol, sym
+from cramhy_runtime.lisp_core.plain_answers import registered as _classes
 from .builtin_classes import CLASSES, STRUCTURES, BuiltInClass, lisp_mro, system_class
 from .class_objects import StandardClass, StandardObject, touch_classes
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 from functools import cache
 from itertools import count
 
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.data import FLOATS, UNSUPPLIED, Character, Keyword, one, python_list
-from cramhy_runtime.ground.dispatch.keyword_checks import ALLOW_OTHER_KEYS
-from cramhy_runtime.ground.keyword_calls import GIVEN, name_of_key
-from cramhy_runtime.ground.packages import symbol_name
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.data import FLOATS, UNSUPPLIED, Character, Keyword, one, python_list
+from cramhy_runtime.lisp_core.dispatch.keyword_checks import ALLOW_OTHER_KEYS
+from cramhy_runtime.lisp_core.keyword_calls import GIVEN, name_of_key
+from cramhy_runtime.lisp_core.packages import symbol_name
 from cramhy_runtime.utilities.generated_functions import generated_function
 
 _CONSTANTS = frozenset({int, *FLOATS, bool, type(None), str, Keyword, Character})

@@ -13,20 +13,20 @@ import copy
 from types import FunctionType
 from fractions import Fraction
 
-from cramhy_runtime.ground.condition_types import Condition, ProgramError, shown
-from cramhy_runtime.ground.conditions import SimpleError, error, program_error, type_error
-from cramhy_runtime.ground.data import FLOATS, UNBOUND, Character, Cons, Keyword, LispString, Symbol, list_from, one, python_list
-from cramhy_runtime.ground.packages import is_symbol, keyword, symbol_name
+from cramhy_runtime.lisp_core.condition_types import Condition, ProgramError, shown
+from cramhy_runtime.lisp_core.conditions import SimpleError, error, program_error, type_error
+from cramhy_runtime.lisp_core.data import FLOATS, UNBOUND, Character, Cons, Keyword, LispString, Symbol, list_from, one, python_list
+from cramhy_runtime.lisp_core.packages import is_symbol, keyword, symbol_name
 from .builtin_classes import BuiltInClass, lisp_mro
 from .class_definition import default_initargs
 from .class_objects import SlotDefinition, StandardClass, StandardObject, effective_slots, find_slot, may_be_unbound
 from .constructors import instance_constructor
-from cramhy_runtime.ground.classes import when_classes_change
+from cramhy_runtime.lisp_core.classes import when_classes_change
 from .classes import StructureClass, SystemClass, class_name, class_of, find_class_or_error, metaclass_of, qualified
-from cramhy_runtime.ground.dispatch.generic_functions import no_method_for, when_methods_change
-from cramhy_runtime.ground.dispatch.method_combination import AFTER, STANDARD
+from cramhy_runtime.lisp_core.dispatch.generic_functions import no_method_for, when_methods_change
+from cramhy_runtime.lisp_core.dispatch.method_combination import AFTER, STANDARD
 from cramhy_runtime.kernel.images import part
-from cramhy_runtime.ground.dispatch.keyword_checks import ALLOW_OTHER_KEYS, other_keys_allowed
+from cramhy_runtime.lisp_core.dispatch.keyword_checks import ALLOW_OTHER_KEYS, other_keys_allowed
 
 
 class InitargError(ProgramError):

@@ -7,8 +7,8 @@ and when another image comes. Where the protocol of ANSI 7.1 has more to do than
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.classes import find_class_or_error
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.classes import find_class_or_error
+from cramhy_runtime.lisp_core.packages import sym
 from .class_objects import StandardObject
 from .instances import constructor_for, when_plans_change
 

@@ -14,11 +14,11 @@ from __future__ import annotations
 
 import weakref
 
-from cramhy_runtime.ground.conditions import SimpleError, error
-from cramhy_runtime.ground.data import UNBOUND, Cons, Symbol, boolean, lisp_list, list_from, one, python_list, truth
-from cramhy_runtime.ground.dispatch.generic_functions import when_methods_change
-from cramhy_runtime.ground.packages import is_symbol, keyword, sym, symbol_name
-from cramhy_runtime.ground.python_names import python_name
+from cramhy_runtime.lisp_core.conditions import SimpleError, error
+from cramhy_runtime.lisp_core.data import UNBOUND, Cons, Symbol, boolean, lisp_list, list_from, one, python_list, truth
+from cramhy_runtime.lisp_core.dispatch.generic_functions import when_methods_change
+from cramhy_runtime.lisp_core.packages import is_symbol, keyword, sym, symbol_name
+from cramhy_runtime.lisp_core.python_names import python_name
 
 from . import class_definition, instances, protocol_functions, slots
 from .builtin_classes import lisp_mro

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import weakref
 
-from cramhy_runtime.ground.conditions import SimpleError, error
-from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, boolean, lisp_list, list_from, one, python_list
-from cramhy_runtime.ground.dispatch import generic_functions as generics
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction, when_methods_change
-from cramhy_runtime.ground.dispatch.method_combination import AFTER, AROUND, BEFORE, find_combination, link
-from cramhy_runtime.ground.dispatch.methods import EqlSpecializer, Method, ReaderMethod, WriterMethod
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import SimpleError, error
+from cramhy_runtime.lisp_core.data import Cons, MultipleValues, Symbol, boolean, lisp_list, list_from, one, python_list
+from cramhy_runtime.lisp_core.dispatch import generic_functions as generics
+from cramhy_runtime.lisp_core.dispatch.generic_functions import GenericFunction, when_methods_change
+from cramhy_runtime.lisp_core.dispatch.method_combination import AFTER, AROUND, BEFORE, find_combination, link
+from cramhy_runtime.lisp_core.dispatch.methods import EqlSpecializer, Method, ReaderMethod, WriterMethod
+from cramhy_runtime.lisp_core.packages import sym
 
 from . import protocol_functions
 from .builtin_classes import lisp_mro

@@ -7,23 +7,23 @@ and CHANGE-CLASS are here too, because methods on them are allowed. PRINT-OBJECT
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import shown
-from cramhy_runtime.ground.conditions import SimpleError, error, type_error, wrong_argument_count
-from cramhy_runtime.ground.data import UNSUPPLIED, Cons, MultipleValues, Symbol, lisp_list, list_from, python_list
-from cramhy_runtime.ground.functions import functionp
-from cramhy_runtime.ground.packages import is_symbol, sym, symbol_name
-from cramhy_runtime.ground.dispatch import generic_functions as generics
-from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
+from cramhy_runtime.lisp_core.condition_types import shown
+from cramhy_runtime.lisp_core.conditions import SimpleError, error, type_error, wrong_argument_count
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, Cons, MultipleValues, Symbol, lisp_list, list_from, python_list
+from cramhy_runtime.lisp_core.functions import functionp
+from cramhy_runtime.lisp_core.packages import is_symbol, sym, symbol_name
+from cramhy_runtime.lisp_core.dispatch import generic_functions as generics
+from cramhy_runtime.lisp_core.dispatch.open_functions import open_to_methods
 from ..packages.package_errors import check_function_name
 from . import instances, slots
 from .builtin_classes import CLASSES
 from .class_objects import Slot, direct_slots, effective_slots
 from .classes import class_name, find_class_or_error
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction, Method, find_method_or_none, generic, no_method_for
-from cramhy_runtime.ground.dispatch.methods import specializer_of
+from cramhy_runtime.lisp_core.dispatch.generic_functions import GenericFunction, Method, find_method_or_none, generic, no_method_for
+from cramhy_runtime.lisp_core.dispatch.methods import specializer_of
 from . import protocol_functions  # noqa: F401  makes the functions that get their defaults here
-from cramhy_runtime.ground.dispatch.generic_functions import protocol_function
-from cramhy_runtime.ground.dispatch.generic_errors import no_next_method_error
+from cramhy_runtime.lisp_core.dispatch.generic_functions import protocol_function
+from cramhy_runtime.lisp_core.dispatch.generic_errors import no_next_method_error
 
 LISP_NAMES = """make-instance allocate-instance initialize-instance reinitialize-instance shared-initialize change-class
 update-instance-for-different-class update-instance-for-redefined-class slot-missing slot-unbound no-applicable-method

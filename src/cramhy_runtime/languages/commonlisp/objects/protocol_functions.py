@@ -5,7 +5,7 @@ They stand below the modules that call them; ``protocol.py``, above these, gives
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
 
 _INITARGS = "&rest initargs &key &allow-other-keys)"
 allocate_instance = generic("ALLOCATE-INSTANCE", f"(class {_INITARGS}")

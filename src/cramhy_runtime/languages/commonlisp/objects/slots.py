@@ -11,15 +11,15 @@ from __future__ import annotations
 from . import protocol_functions
 from operator import attrgetter
 
-from cramhy_runtime.ground.condition_types import MissingSlot
-from cramhy_runtime.ground.condition_types import shown
-from cramhy_runtime.ground.conditions import Condition, SimpleError, UnboundSlot, ask_value, error, restart_case, type_error
-from cramhy_runtime.ground.slot_classes import Classes
-from cramhy_runtime.ground.data import UNBOUND, Symbol, boolean, list_from, one, truth
-from cramhy_runtime.ground.packages import is_symbol, sym
-from cramhy_runtime.ground.python_names import python_name
+from cramhy_runtime.lisp_core.condition_types import MissingSlot
+from cramhy_runtime.lisp_core.condition_types import shown
+from cramhy_runtime.lisp_core.conditions import Condition, SimpleError, UnboundSlot, ask_value, error, restart_case, type_error
+from cramhy_runtime.lisp_core.slot_classes import Classes
+from cramhy_runtime.lisp_core.data import UNBOUND, Symbol, boolean, list_from, one, truth
+from cramhy_runtime.lisp_core.packages import is_symbol, sym
+from cramhy_runtime.lisp_core.python_names import python_name
 from .class_objects import InstanceSlot, SlotMember, StandardObject, effective_slots, find_slot, may_be_unbound
-from cramhy_runtime.ground.classes import when_classes_change
+from cramhy_runtime.lisp_core.classes import when_classes_change
 from .classes import class_of
 
 LISP_NAMES = "slot-value slot-boundp slot-makunbound slot-exists-p"

@@ -14,20 +14,20 @@ from ..collections.element_types import initial_element, upgraded_element_type
 from ..collections.strings import string
 from ..collections.sequence_types import elements, typed_vector
 from . import protocol_functions
-from cramhy_runtime.ground.ports import PORTS
-from cramhy_runtime.ground.conditions import SimpleError, error, program_error, type_error
-from cramhy_runtime.ground.data import UNSUPPLIED, Cons, Symbol, UndefinedFunction, lisp_list, list_from, one, python_list
+from cramhy_runtime.lisp_core.ports import PORTS
+from cramhy_runtime.lisp_core.conditions import SimpleError, error, program_error, type_error
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, Cons, Symbol, UndefinedFunction, lisp_list, list_from, one, python_list
 from ..syntax.function_shapes import shape_of
-from cramhy_runtime.ground.python_names import python_name
-from cramhy_runtime.ground.packages import Package, intern, is_symbol, keyword, redefined, sym, symbol_name
+from cramhy_runtime.lisp_core.python_names import python_name
+from cramhy_runtime.lisp_core.packages import Package, intern, is_symbol, keyword, redefined, sym, symbol_name
 from ..packages.package_errors import check_symbol
 from ..syntax.declaration_names import check_type_name
-from cramhy_runtime.ground.printing import CURRENT_LEVEL, LEVELS_COUNT
+from cramhy_runtime.lisp_core.printing import CURRENT_LEVEL, LEVELS_COUNT
 from .builtin_classes import set_structure_object
 from .constructors import keyword_constructor, maker_of_values
 from .classes import StructureClass, register_class, registered_class
-from cramhy_runtime.ground.dispatch.generic_functions import add_method
-from cramhy_runtime.ground.dispatch.methods import Shape
+from cramhy_runtime.lisp_core.dispatch.generic_functions import add_method
+from cramhy_runtime.lisp_core.dispatch.methods import Shape
 
 LISP_NAMES = "copy-structure"
 

@@ -12,11 +12,11 @@ from __future__ import annotations
 
 import sys
 
-from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
-from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.keyword_calls import lispify
-from cramhy_runtime.ground.python_names import python_name
-from cramhy_runtime.ground.packages import ensure_package, find_package_or_error, intern
+from cramhy_runtime.lisp_core.dispatch.open_functions import open_to_methods
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.keyword_calls import lispify
+from cramhy_runtime.lisp_core.python_names import python_name
+from cramhy_runtime.lisp_core.packages import ensure_package, find_package_or_error, intern
 
 
 def define_face(

@@ -6,9 +6,9 @@ defined again gets what is new in the definition; what it has beyond that stays,
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import CompileError, SimpleTypeError, error, program_error, restart_case, warn
-from cramhy_runtime.ground.data import UNBOUND, Cons, MultipleValues, Symbol, list_from, truth
-from cramhy_runtime.ground.packages import (
+from cramhy_runtime.lisp_core.conditions import CompileError, SimpleTypeError, error, program_error, restart_case, warn
+from cramhy_runtime.lisp_core.data import UNBOUND, Cons, MultipleValues, Symbol, list_from, truth
+from cramhy_runtime.lisp_core.packages import (
     all_packages,
     defined_by_program,
     find_package,
@@ -22,7 +22,7 @@ from cramhy_runtime.ground.packages import (
     sym,
     symbol_name,
 )
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from cramhy_runtime.storage.dependency_tracing import is_library
 from .package_errors import PACKAGE, SimplePackageError, unlocked
 from .package_functions import add_nicknames, add_package_local_nickname, export, import_, shadow, shadowing_import, use_package

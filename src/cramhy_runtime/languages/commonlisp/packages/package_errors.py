@@ -8,15 +8,15 @@ be given other meanings by mistake, and it does not change; a restart or ``witho
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.ports import PORTS
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.ports import PORTS
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from contextlib import contextmanager
 
-from cramhy_runtime.ground.condition_types import PackageError, formatted
-from cramhy_runtime.ground.conditions import error, restart_case
-from cramhy_runtime.ground.data import UNBOUND, Cons, Symbol, list_from
-from cramhy_runtime.ground.dynamic import binding, special
-from cramhy_runtime.ground.packages import (
+from cramhy_runtime.lisp_core.condition_types import PackageError, formatted
+from cramhy_runtime.lisp_core.conditions import error, restart_case
+from cramhy_runtime.lisp_core.data import UNBOUND, Cons, Symbol, list_from
+from cramhy_runtime.lisp_core.dynamic import binding, special
+from cramhy_runtime.lisp_core.packages import (
     COMMON_LISP,
     COMMON_LISP_USER,
     KEYWORD,

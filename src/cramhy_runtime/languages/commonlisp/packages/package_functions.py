@@ -6,11 +6,11 @@ goes on. Where SBCL's restart TAKE-NEW leaves the old symbol visible (both are i
 
 from __future__ import annotations
 
-from cramhy_runtime.ground import packages
-from cramhy_runtime.ground.condition_types import Condition, PackageError
-from cramhy_runtime.ground.conditions import cerror, error, restart_case, type_error, with_simple_restart
-from cramhy_runtime.ground.data import Cons, LispString, MultipleValues, list_from, python_list
-from cramhy_runtime.ground.packages import (
+from cramhy_runtime.lisp_core import packages
+from cramhy_runtime.lisp_core.condition_types import Condition, PackageError
+from cramhy_runtime.lisp_core.conditions import cerror, error, restart_case, type_error, with_simple_restart
+from cramhy_runtime.lisp_core.data import Cons, LispString, MultipleValues, list_from, python_list
+from cramhy_runtime.lisp_core.packages import (
     Package,
     find_package_or_error,
     is_string_designator,

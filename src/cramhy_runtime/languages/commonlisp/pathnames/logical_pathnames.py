@@ -5,11 +5,11 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Character
-from cramhy_runtime.ground.printing import prin1_to_string
-from cramhy_runtime.ground.conditions import SimpleFileError, SimpleTypeError, error, type_error
-from cramhy_runtime.ground.data import Cons, LispString, lisp_list, list_from, python_list
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import Character
+from cramhy_runtime.lisp_core.printing import prin1_to_string
+from cramhy_runtime.lisp_core.conditions import SimpleFileError, SimpleTypeError, error, type_error
+from cramhy_runtime.lisp_core.data import Cons, LispString, lisp_list, list_from, python_list
+from cramhy_runtime.lisp_core.packages import sym
 from .namestrings import NamestringParseError, parse_logical
 from .pathname_objects import LogicalHost, LogicalPathname
 from .pathnames import logical_host, logical_hosts, pathname

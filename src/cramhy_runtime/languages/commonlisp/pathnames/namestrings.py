@@ -10,12 +10,12 @@ what ``\\`` is elsewhere. The device of a share is its name, ``//server/share``.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Character
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.data import Character
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 import os
 
-from cramhy_runtime.ground.conditions import FileError, ParseError, error
-from cramhy_runtime.ground.data import Cons, list_from
+from cramhy_runtime.lisp_core.conditions import FileError, ParseError, error
+from cramhy_runtime.lisp_core.data import Cons, list_from
 from .pathname_objects import (
     ABSOLUTE,
     BACK,

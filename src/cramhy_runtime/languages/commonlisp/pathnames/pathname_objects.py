@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.packages import keyword
 
 ABSOLUTE, RELATIVE, UP, BACK, HOME = map(keyword, "ABSOLUTE RELATIVE UP BACK HOME".split())
 WILD, WILD_INFERIORS, NEWEST, UNSPECIFIC = map(keyword, "WILD WILD-INFERIORS NEWEST UNSPECIFIC".split())

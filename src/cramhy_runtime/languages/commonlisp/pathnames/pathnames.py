@@ -11,10 +11,10 @@ import pathlib
 
 from cramhy_runtime.kernel.images import per_image
 from ..collections.sequence_types import bounds
-from cramhy_runtime.ground.conditions import SimpleTypeError, error, type_error
-from cramhy_runtime.ground.data import UNSUPPLIED, FreshString, LispString, MultipleValues, python_list
-from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.conditions import SimpleTypeError, error, type_error
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, FreshString, LispString, MultipleValues, python_list
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.packages import keyword
 from ..streams.streams import Stream
 from .namestrings import (
     NamestringParseError,

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Symbol, list_from
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import Symbol, list_from
+from cramhy_runtime.lisp_core.packages import keyword
 from .pathname_objects import WILD, WILD_INFERIORS, LogicalPathname, Pathname, Pattern
 from .pathnames import customary, pathname
 

@@ -5,15 +5,15 @@ The names have their package in front, always, as in SBCL.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, lisp_list, list_from
-from cramhy_runtime.ground.packages import is_symbol, sym
+from cramhy_runtime.lisp_core.data import Cons, lisp_list, list_from
+from cramhy_runtime.lisp_core.packages import is_symbol, sym
 from .print_names import symbol_with_prefix, token
 from .printer import define_printer, output_object, print_unreadable
 from ..objects.classes import class_name, has_own_name, metaclass_of
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
-from cramhy_runtime.ground.dispatch.generic_errors import ShownAsGeneric
-from cramhy_runtime.ground.dispatch.method_combination import Combination
-from cramhy_runtime.ground.dispatch.methods import EqlSpecializer, Method
+from cramhy_runtime.lisp_core.dispatch.generic_functions import GenericFunction
+from cramhy_runtime.lisp_core.dispatch.generic_errors import ShownAsGeneric
+from cramhy_runtime.lisp_core.dispatch.method_combination import Combination
+from cramhy_runtime.lisp_core.dispatch.methods import EqlSpecializer, Method
 
 
 def name_text(name):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import PurePath
 
-from cramhy_runtime.ground.data import Cons, list_from
-from cramhy_runtime.ground.conditions import Error, handler_case
+from cramhy_runtime.lisp_core.data import Cons, list_from
+from cramhy_runtime.lisp_core.conditions import Error, handler_case
 from ..pathnames.namestrings import directory_list, namestring
 from ..pathnames.pathname_objects import LogicalHost, Pathname, Pattern, UnixHost
 from ..files.file_streams import FileStream

@@ -6,9 +6,9 @@ long, may not fit, or is to be cut, marked or printed by somebody's own function
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction
-from cramhy_runtime.ground.packages import COMMON_LISP
-from cramhy_runtime.ground.printing import LEVELS_COUNT
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, UndefinedFunction
+from cramhy_runtime.lisp_core.packages import COMMON_LISP
+from cramhy_runtime.lisp_core.printing import LEVELS_COUNT
 from .pprint_dispatch import PRINT_PPRINT_DISPATCH
 from .pretty_stream import DEFAULT_LINE_LENGTH
 from .print_controls import PRINT_LENGTH, PRINT_LEVEL, PRINT_PRETTY, PRINT_READABLY, PRINT_RIGHT_MARGIN

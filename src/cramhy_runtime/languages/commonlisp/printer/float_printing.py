@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.ground.floats import SingleFloat, to_float32
-from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.printing import NUMBERS_OF_PYTHON
+from cramhy_runtime.lisp_core.floats import SingleFloat, to_float32
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.packages import sym
+from cramhy_runtime.lisp_core.printing import NUMBERS_OF_PYTHON
 
 READ_DEFAULT_FLOAT_FORMAT = special("*READ-DEFAULT-FLOAT-FORMAT*", sym("SINGLE-FLOAT"))
 _DOUBLE_NAMES = (sym("DOUBLE-FLOAT"), sym("LONG-FLOAT"))

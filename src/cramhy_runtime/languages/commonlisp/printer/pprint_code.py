@@ -9,9 +9,9 @@ them as format controls; here they are functions, because they run often. Which 
 from __future__ import annotations
 
 from .components import COMPONENTS
-from cramhy_runtime.ground.data import Cons, Symbol
-from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym, symbol_name
+from cramhy_runtime.lisp_core.data import Cons, Symbol
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, is_symbol, sym, symbol_name
 from .pretty import call_logical_block, is_pair, newline_if_pretty, pprint_fill, pprint_linear
 from .print_controls import PRINT_PRETTY, bound
 

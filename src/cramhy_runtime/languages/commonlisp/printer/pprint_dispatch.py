@@ -9,15 +9,15 @@ priority first. Source: ANSI 22.2.1.4; SBCL ``src/code/pprint.lisp``.
 from __future__ import annotations
 
 from .components import COMPONENTS
-from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.lisp_core.ports import PORTS
 from fractions import Fraction
 
-from cramhy_runtime.ground.arrays import LispArray, is_bit_vector
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol, UndefinedFunction, python_list
-from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.equality import equal
-from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, sym
+from cramhy_runtime.lisp_core.arrays import LispArray, is_bit_vector
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import Cons, MultipleValues, Symbol, UndefinedFunction, python_list
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.equality import equal
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, is_symbol, sym
 from . import pprint_code as code
 from .pretty import pprint_fill
 from .print_arrays import pprint_array

@@ -33,9 +33,9 @@ from numbers import Real
 
 from .components import COMPONENTS
 from cramhy_runtime.kernel.active import checkpoint
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Cons, Symbol
-from cramhy_runtime.ground.packages import is_symbol, symbol_name
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import Cons, Symbol
+from cramhy_runtime.lisp_core.packages import is_symbol, symbol_name
 from ..streams.streams import BroadcastStream, output_stream
 from . import print_controls as controls
 from .pretty_stream import LineLimit, PrettyStream

@@ -1,6 +1,6 @@
 """Arrays as text: ``#(1 2)``, ``#2A((1 2) (3 4))``, ``#*101``.
 
-Vectors are Python lists or the classes of ``ground/arrays.py``. Source: ANSI 22.1.3.7 and 22.1.3.8; layout as in SBCL.
+Vectors are Python lists or the classes of ``lisp_core/arrays.py``. Source: ANSI 22.1.3.7 and 22.1.3.8; layout as in SBCL.
 """
 
 from __future__ import annotations
@@ -8,8 +8,8 @@ from __future__ import annotations
 from .components import COMPONENTS
 import math
 
-from cramhy_runtime.ground.arrays import CHARACTER, LispArray, Vector, is_bit_vector
-from cramhy_runtime.ground.data import Character, Cons, list_from
+from cramhy_runtime.lisp_core.arrays import CHARACTER, LispArray, Vector, is_bit_vector
+from cramhy_runtime.lisp_core.data import Character, Cons, list_from
 from .pretty import NO_OBJECT, call_logical_block, newline_if_pretty
 from .print_controls import PRINT_ARRAY, PRINT_READABLY, deeper, length_limit, too_deep
 

@@ -12,11 +12,11 @@ from fractions import Fraction
 
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Character, Symbol
-from cramhy_runtime.ground.dynamic import binding, special
-from cramhy_runtime.ground.printing import CURRENT_LEVEL, LEVELS_COUNT
-from cramhy_runtime.ground.packages import COMMON_LISP_USER, keyword
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import Character, Symbol
+from cramhy_runtime.lisp_core.dynamic import binding, special
+from cramhy_runtime.lisp_core.printing import CURRENT_LEVEL, LEVELS_COUNT
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER, keyword
 
 
 UPCASE, DOWNCASE, CAPITALIZE = keyword("UPCASE"), keyword("DOWNCASE"), keyword("CAPITALIZE")

@@ -6,8 +6,8 @@ classes or methods change.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.classes import when_classes_change
-from cramhy_runtime.ground.dispatch.generic_functions import EqlSpecializer, protocol_function, when_methods_change
+from cramhy_runtime.lisp_core.classes import when_classes_change
+from cramhy_runtime.lisp_core.dispatch.generic_functions import EqlSpecializer, protocol_function, when_methods_change
 from ..objects import instances
 from ..streams.streams import output_stream
 from . import printer

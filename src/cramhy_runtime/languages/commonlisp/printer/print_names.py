@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import unicodedata
 
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Symbol
-from cramhy_runtime.ground.packages import COMMON_LISP, KEYWORD
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import Symbol
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, KEYWORD
 from cramhy_runtime.kernel.active import checkpoint
 from ..collections.characters import character_name
 from ..reader.readtables import READTABLE

@@ -12,15 +12,15 @@ an object is first printed, so that the same run prints the same bytes (law 5). 
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.lisp_core.ports import PORTS
 from cramhy_runtime.kernel.active import checkpoint
-from cramhy_runtime.ground.classes import class_name
+from cramhy_runtime.lisp_core.classes import class_name
 import weakref
 from fractions import Fraction
 
-from cramhy_runtime.ground.arrays import LispArray
-from cramhy_runtime.ground.conditions import PrintNotReadable, error
-from cramhy_runtime.ground.data import (
+from cramhy_runtime.lisp_core.arrays import LispArray
+from cramhy_runtime.lisp_core.conditions import PrintNotReadable, error
+from cramhy_runtime.lisp_core.data import (
     UNSUPPLIED,
     WRITABLE_STRINGS,
     Character,
@@ -31,11 +31,11 @@ from cramhy_runtime.ground.data import (
     MultipleValues,
     Symbol,
 )
-from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.lisp_core.floats import SingleFloat
 from ..streams.streams import BroadcastStream, Stream, StringOutputStream, output_stream
-from cramhy_runtime.ground.plain_answers import printers, printers_found
-from cramhy_runtime.ground.plain_answers import printer_for as nearest_printer
-from cramhy_runtime.ground.printing import SUPPRESS, bounded, define_printer, print_suppressed
+from cramhy_runtime.lisp_core.plain_answers import printers, printers_found
+from cramhy_runtime.lisp_core.plain_answers import printer_for as nearest_printer
+from cramhy_runtime.lisp_core.printing import SUPPRESS, bounded, define_printer, print_suppressed
 from cramhy_runtime.kernel.looking_on import only_looked_at
 from cramhy_runtime.kernel.images import Cell
 from . import print_controls as controls

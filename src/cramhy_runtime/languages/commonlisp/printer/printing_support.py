@@ -5,9 +5,9 @@ The macros (``hy_src/cramhy/cl.hy``) only put the forms of their bodies into fun
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import LispString
-from cramhy_runtime.ground.packages import COMMON_LISP_USER, sym
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import LispString
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER, sym
 from ..streams.streams import STANDARD_OUTPUT, TERMINAL_IO, StringOutputStream, output_stream
 from . import print_controls, printer
 from .float_printing import READ_DEFAULT_FLOAT_FORMAT
@@ -62,7 +62,7 @@ def print_unreadable_object(obj, stream, body=None, *, type=None, identity=None)
 def make_fill_pointer_output_stream(string):
     """A stream that appends to ``string``, which has a fill pointer."""
     if not isinstance(string, LispString) or string.fill_pointer is None:
-        from cramhy_runtime.ground.conditions import type_error
+        from cramhy_runtime.lisp_core.conditions import type_error
 
         return type_error(string, "(AND STRING (SATISFIES ARRAY-HAS-FILL-POINTER-P))")
     return StringOutputStream(string)

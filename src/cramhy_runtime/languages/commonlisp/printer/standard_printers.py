@@ -7,17 +7,17 @@ ANSI 22.1.3.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.lisp_core.ports import PORTS
 import weakref
 
-from cramhy_runtime.ground.arrays import LispArray
-from cramhy_runtime.ground.condition_types import shown_with
-from cramhy_runtime.ground.conditions import CaseFailure, Condition, Restart, SimpleCondition, TypeError_
-from cramhy_runtime.ground.data import Cons, LispString, Symbol, lisp_list, list_from
-from cramhy_runtime.ground.hash_tables import HashTable, hash_table_test
+from cramhy_runtime.lisp_core.arrays import LispArray
+from cramhy_runtime.lisp_core.condition_types import shown_with
+from cramhy_runtime.lisp_core.conditions import CaseFailure, Condition, Restart, SimpleCondition, TypeError_
+from cramhy_runtime.lisp_core.data import Cons, LispString, Symbol, lisp_list, list_from
+from cramhy_runtime.lisp_core.hash_tables import HashTable, hash_table_test
 from ..numbers.complex_numbers import parts
 from ..numbers.random_state import RandomState
-from cramhy_runtime.ground.packages import Package, all_packages, is_symbol, keyword, sym, symbol_name
+from cramhy_runtime.lisp_core.packages import Package, all_packages, is_symbol, keyword, sym, symbol_name
 from ..syntax.backquote import COMMA, COMMA_KINDS, Comma
 from ..streams.streams import SynonymStream
 from . import print_controls as controls

@@ -16,13 +16,13 @@ import importlib
 
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground.hash_tables import HashTable, make_hash_table, set_gethash
-from cramhy_runtime.ground.conditions import Condition, error, signal_exception, type_error
-from cramhy_runtime.ground.data import TRUE_CLASSES, WRITABLE_STRINGS, Character, Cons, Keyword, Symbol, list_from, plain_truth
-from cramhy_runtime.ground.data import values as as_values
-from cramhy_runtime.ground.packages import is_symbol, sym, symbol_name
-from cramhy_runtime.ground import python_names
-from cramhy_runtime.ground.python_exceptions import exception, python_condition  # noqa: F401  exception is one of the names
+from cramhy_runtime.lisp_core.hash_tables import HashTable, make_hash_table, set_gethash
+from cramhy_runtime.lisp_core.conditions import Condition, error, signal_exception, type_error
+from cramhy_runtime.lisp_core.data import TRUE_CLASSES, WRITABLE_STRINGS, Character, Cons, Keyword, Symbol, list_from, plain_truth
+from cramhy_runtime.lisp_core.data import values as as_values
+from cramhy_runtime.lisp_core.packages import is_symbol, sym, symbol_name
+from cramhy_runtime.lisp_core import python_names
+from cramhy_runtime.lisp_core.python_exceptions import exception, python_condition  # noqa: F401  exception is one of the names
 
 NAMES = """call call-blocking getattr hasattr item delitem list vector tuple dict set str repr values hash-table eval exec raise
 exception object method"""

@@ -8,16 +8,16 @@ structure, or condition) TURTLE-MOTION. Functions take keyword arguments for ``&
 from __future__ import annotations
 
 
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import Cons, Symbol, UNBOUND, UndefinedFunction
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import Cons, Symbol, UNBOUND, UndefinedFunction
 from ..evaluation.function_facts import lambda_list_of
 from ..syntax.lambda_lists import parse
-from cramhy_runtime.ground.python_names import attribute_symbols, hy_name, python_name
+from cramhy_runtime.lisp_core.python_names import attribute_symbols, hy_name, python_name
 from ..objects.classes import symbol_class
-from cramhy_runtime.ground.packages import near_names, symbol_name
+from cramhy_runtime.lisp_core.packages import near_names, symbol_name
 from ..printer.print_controls import PACKAGE, bound
 from ..printer.printer import prin1_to_string
-from cramhy_runtime.ground.python_names import lisp_spelling
+from cramhy_runtime.lisp_core.python_names import lisp_spelling
 
 
 def find(package, name):

@@ -12,17 +12,17 @@ from __future__ import annotations
 import builtins
 import importlib
 
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Symbol, lisp_list
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import Symbol, lisp_list
 from ..evaluation.definitions import data
 from ..packages.face_definition import define_face
 from ..objects.classes import alias_class
-from cramhy_runtime.ground.packages import Package, find_package, is_symbol, ours, register, string_designator, sym, symbol_name
+from cramhy_runtime.lisp_core.packages import Package, find_package, is_symbol, ours, register, string_designator, sym, symbol_name
 from ..packages.package_functions import add_nicknames
 from . import python_calls
 from .python_calls import apply_python, guarded
-from cramhy_runtime.ground.python_exceptions import PYTHON, condition_class
-from cramhy_runtime.ground.python_names import lisp_spelling, python_spelling
+from cramhy_runtime.lisp_core.python_exceptions import PYTHON, condition_class
+from cramhy_runtime.lisp_core.python_names import lisp_spelling, python_spelling
 
 ATTRIBUTE = sym("CRAMHY::MODULE-ATTRIBUTE")
 

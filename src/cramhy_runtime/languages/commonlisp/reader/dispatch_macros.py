@@ -16,17 +16,17 @@ from ..collections.characters import name_char
 from ..collections.sequence_types import elements
 from ..collections.strings import string
 from ..collections.arrays import CONSTANTS
-from cramhy_runtime.ground.arrays import Vector, bit_vector
-from cramhy_runtime.ground.python_exceptions import condition_for
-from cramhy_runtime.ground.conditions import Condition, Error, style_warn
-from cramhy_runtime.ground.data import NO_VALUES, Character, Cons, LispString, Symbol, list_from, one, truth
-from cramhy_runtime.ground.dynamic import binding, special
-from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.lisp_core.arrays import Vector, bit_vector
+from cramhy_runtime.lisp_core.python_exceptions import condition_for
+from cramhy_runtime.lisp_core.conditions import Condition, Error, style_warn
+from cramhy_runtime.lisp_core.data import NO_VALUES, Character, Cons, LispString, Symbol, list_from, one, truth
+from cramhy_runtime.lisp_core.dynamic import binding, special
+from cramhy_runtime.lisp_core.ports import PORTS
 from ..numbers.arithmetic import is_real
 from ..numbers.random_state import restored_state
 from ..objects.structures import structure_named
 from cramhy_runtime.storage.dependency_tracing import watched
-from cramhy_runtime.ground.packages import KEYWORD, is_symbol, keyword, near_names, sym, symbol_name
+from cramhy_runtime.lisp_core.packages import KEYWORD, is_symbol, keyword, near_names, sym, symbol_name
 from . import tokens
 from ..syntax.backquote import COMMA, COMMA_KINDS, Comma
 from .reader_errors import fail, place

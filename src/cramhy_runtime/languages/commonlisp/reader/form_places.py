@@ -10,7 +10,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections import deque
 
-from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.lisp_core.data import Cons
 from ..syntax.backquote import Comma
 
 _FAR = 2000

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import re
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import EndOfFile, ReaderError, ReaderPackageError, SimpleStyleWarning, SimpleWarning, shown
-from cramhy_runtime.ground.conditions import ask_value, restart_case
-from cramhy_runtime.ground.data import Symbol
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import named_package, find_package_or_error, near_names, package_names, sym
-from cramhy_runtime.ground.source_places import describe
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import EndOfFile, ReaderError, ReaderPackageError, SimpleStyleWarning, SimpleWarning, shown
+from cramhy_runtime.lisp_core.conditions import ask_value, restart_case
+from cramhy_runtime.lisp_core.data import Symbol
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import named_package, find_package_or_error, near_names, package_names, sym
+from cramhy_runtime.lisp_core.source_places import describe
 from cramhy_runtime.ros.definition_files import why_no_lisp_package
 from cramhy_runtime.ros.former_types import successor_of_symbol
 from ..packages.package_errors import PackageLockedError, locked, violated

@@ -5,8 +5,8 @@ After an object at top level one white-space character is consumed as well, unle
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Character, LispString, MultipleValues, list_from, truth
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import Character, LispString, MultipleValues, list_from, truth
 from .dispatch_macros import FEATURES, READ_EVAL
 from .readtables import READTABLE
 from .text_reader import NOTHING, PACKAGE, SUPPRESS, Reader, StreamReader, as_reader

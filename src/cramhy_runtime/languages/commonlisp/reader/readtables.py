@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import re
 
-from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Character, Keyword, MultipleValues, Symbol, boolean
+from cramhy_runtime.lisp_core.condition_types import SimpleError
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import Character, Keyword, MultipleValues, Symbol, boolean
 from cramhy_runtime.storage.dependency_tracing import run
-from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.packages import keyword
 
 UPCASE = keyword("UPCASE")
 INVALID = " \t\n\r\f\b\x7f"

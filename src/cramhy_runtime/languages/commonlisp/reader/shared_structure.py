@@ -5,7 +5,7 @@ While the object is read, a `_Label` stands for it; then the object takes the pl
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import NO_VALUES, Cons
+from cramhy_runtime.lisp_core.data import NO_VALUES, Cons
 from ..syntax.backquote import Comma
 from .reader_errors import fail
 from .text_reader import SUPPRESS, as_reader

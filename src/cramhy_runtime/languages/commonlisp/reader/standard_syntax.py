@@ -6,7 +6,7 @@ are here. Source: ANSI 2.4.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import NO_VALUES, FreshString
+from cramhy_runtime.lisp_core.data import NO_VALUES, FreshString
 from . import dispatch_macros
 from .reader_errors import QuietEnd, QuietFailure
 from .readtables import READTABLE, STANDARD, DispatchTable

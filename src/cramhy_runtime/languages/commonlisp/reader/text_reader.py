@@ -11,9 +11,9 @@ Source: ANSI 2.2 and 2.3.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import NO_VALUES, Character, Cons, MultipleValues, Symbol, list_from, one
-from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.packages import COMMON_LISP_USER, KEYWORD, named_package, sym
+from cramhy_runtime.lisp_core.data import NO_VALUES, Character, Cons, MultipleValues, Symbol, list_from, one
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER, KEYWORD, named_package, sym
 from ..streams.streams import EchoStream, FdStream, InputStream, input_stream
 from . import reader_errors, tokens
 from ..syntax.backquote import QUASIQUOTE, Comma

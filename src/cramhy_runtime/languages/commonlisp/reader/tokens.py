@@ -10,18 +10,18 @@ from __future__ import annotations
 
 from cramhy_runtime.kernel.late_patterns import late_pattern
 from ..collections.sequence_types import TURN, BoundingIndicesBad, in_turns
-from cramhy_runtime.ground.condition_types import SimpleParseError
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.conditions import type_error
+from cramhy_runtime.lisp_core.condition_types import SimpleParseError
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.conditions import type_error
 import math
 import re
 import unicodedata
 from fractions import Fraction
 
-from cramhy_runtime.ground.data import LispString, MultipleValues
-from cramhy_runtime.ground.floats import SingleFloat, to_float32
-from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import LispString, MultipleValues
+from cramhy_runtime.lisp_core.floats import SingleFloat, to_float32
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.kernel.active import checkpoint
 
 _DECIMAL = late_pattern(

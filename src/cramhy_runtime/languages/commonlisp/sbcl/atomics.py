@@ -6,8 +6,8 @@ Source: SBCL's manual, chapter 13.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, list_from, lisp_list
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import Cons, list_from, lisp_list
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 from ..evaluation.setf_places import setf_expansion

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import sys
 
-from cramhy_runtime.ground.data import NO_VALUES, Symbol, lisp_list, list_from, truth
-from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.printing import prin1_to_string
-from cramhy_runtime.ground.source_places import describe
+from cramhy_runtime.lisp_core.data import NO_VALUES, Symbol, lisp_list, list_from, truth
+from cramhy_runtime.lisp_core.packages import sym
+from cramhy_runtime.lisp_core.printing import prin1_to_string
+from cramhy_runtime.lisp_core.source_places import describe
 from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.utilities.threads import current_thread
 

@@ -12,13 +12,13 @@ from __future__ import annotations
 from contextlib import contextmanager
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import ask_value, cerror, error, restart_case, type_error
-from cramhy_runtime.ground.condition_types import SeriousCondition
-from cramhy_runtime.ground.data import truth
-from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.printing import princ_to_string
-from cramhy_runtime.ground.restarts import find_restart, invoke_restart
+from cramhy_runtime.lisp_core.conditions import ask_value, cerror, error, restart_case, type_error
+from cramhy_runtime.lisp_core.condition_types import SeriousCondition
+from cramhy_runtime.lisp_core.data import truth
+from cramhy_runtime.lisp_core.numbers import is_real
+from cramhy_runtime.lisp_core.packages import sym
+from cramhy_runtime.lisp_core.printing import princ_to_string
+from cramhy_runtime.lisp_core.restarts import find_restart, invoke_restart
 from cramhy_runtime.kernel import tasks
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 

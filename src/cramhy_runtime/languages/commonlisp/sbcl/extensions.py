@@ -9,14 +9,14 @@ import math
 import sys
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground import hash_tables
-from cramhy_runtime.ground.condition_types import Condition, SeriousCondition
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Cons, LispString, MultipleValues, boolean, lisp_list, list_from, one
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.hash_tables import need_table
-from cramhy_runtime.ground.numbers import FIXNUM_LIMIT
-from cramhy_runtime.ground.packages import printed, sym, symbol_name
+from cramhy_runtime.lisp_core import hash_tables
+from cramhy_runtime.lisp_core.condition_types import Condition, SeriousCondition
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import Cons, LispString, MultipleValues, boolean, lisp_list, list_from, one
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.hash_tables import need_table
+from cramhy_runtime.lisp_core.numbers import FIXNUM_LIMIT
+from cramhy_runtime.lisp_core.packages import printed, sym, symbol_name
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.utilities.locks import lock_of_table

@@ -10,10 +10,10 @@ become generic when a program defines a method on them. Source: SBCL's manual, c
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import UNSUPPLIED, Character, MultipleValues, all_values, boolean, lisp_list, one, truth
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction, generic
-from cramhy_runtime.ground.dispatch.open_functions import Opening, open_to_methods
-from cramhy_runtime.ground.packages import ensure_package, keyword, sym
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, Character, MultipleValues, all_values, boolean, lisp_list, one, truth
+from cramhy_runtime.lisp_core.dispatch.generic_functions import GenericFunction, generic
+from cramhy_runtime.lisp_core.dispatch.open_functions import Opening, open_to_methods
+from cramhy_runtime.lisp_core.packages import ensure_package, keyword, sym
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 from ..collections.sequence_types import elements, part

@@ -8,9 +8,9 @@ from __future__ import annotations
 import os
 import struct
 
-from cramhy_runtime.ground.condition_types import Error, SimpleError, Warning_
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.lisp_core.condition_types import Error, SimpleError, Warning_
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.floats import SingleFloat
 from cramhy_runtime.kernel.typing_names import Any, NoReturn
 
 from ..collections.sequences import replace, subseq
@@ -40,7 +40,7 @@ class FatalCompilerError(Error):
     condition: Any = None
 
     def report(self) -> str:
-        from cramhy_runtime.ground.printing import princ_to_string
+        from cramhy_runtime.lisp_core.printing import princ_to_string
 
         return princ_to_string(self.condition)
 

@@ -7,8 +7,8 @@ shields of their own, which nothing here takes away. Source: SBCL's ``src/code/e
 from __future__ import annotations
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.kernel.typing_names import Any, NamedTuple
 
 

@@ -5,9 +5,9 @@ An environment is what a macro gets behind ``&environment``, or nil for the glob
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, Symbol, lisp_list, list_from, one, python_list
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.lisp_core.data import Cons, Symbol, lisp_list, list_from, one, python_list
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.packages import keyword, sym
 from cramhy_runtime.kernel.typing_names import Any
 
 from ..compiler.environment import Env, LocalFunction, LocalMacro, SpecialVariable, SymbolMacro, Variable, function_key

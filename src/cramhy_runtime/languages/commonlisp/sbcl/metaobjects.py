@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import sys
 
-from cramhy_runtime.ground.data import boolean, list_from, lisp_list, one
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction, all_generic_functions
-from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
-from cramhy_runtime.ground.dispatch.methods import EqlSpecializer
-from cramhy_runtime.ground.keyword_calls import lispify
-from cramhy_runtime.ground.packages import ensure_package, sym
+from cramhy_runtime.lisp_core.data import boolean, list_from, lisp_list, one
+from cramhy_runtime.lisp_core.dispatch.generic_functions import GenericFunction, all_generic_functions
+from cramhy_runtime.lisp_core.dispatch.open_functions import open_to_methods
+from cramhy_runtime.lisp_core.dispatch.methods import EqlSpecializer
+from cramhy_runtime.lisp_core.keyword_calls import lispify
+from cramhy_runtime.lisp_core.packages import ensure_package, sym
 from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.utilities.wait_queue import need
 

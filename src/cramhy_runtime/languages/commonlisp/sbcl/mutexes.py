@@ -8,10 +8,10 @@ Source: SBCL's manual, chapter 13; texts are SBCL's.
 from __future__ import annotations
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import error, type_error, warn
-from cramhy_runtime.ground.data import boolean, truth
-from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.printing import define_printer, prin1_to_string, print_unreadable
+from cramhy_runtime.lisp_core.conditions import error, type_error, warn
+from cramhy_runtime.lisp_core.data import boolean, truth
+from cramhy_runtime.lisp_core.packages import sym
+from cramhy_runtime.lisp_core.printing import define_printer, prin1_to_string, print_unreadable
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.utilities.locks import Lock
 from cramhy_runtime.utilities.wait_queue import Line, need, time_limit

@@ -8,11 +8,11 @@ import sys
 
 from cramhy_runtime.cpl.task_variables import define_task_state
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.data import lisp_list
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.keyword_calls import lispify
-from cramhy_runtime.ground.packages import find_package_or_error, sym
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.data import lisp_list
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.keyword_calls import lispify
+from cramhy_runtime.lisp_core.packages import find_package_or_error, sym
 from cramhy_runtime.utilities import threads as utility_threads
 
 from ..packages.face_definition import define_face

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import stat
 
-from cramhy_runtime.ground.conditions import Error, error
-from cramhy_runtime.ground.data import list_from, truth
+from cramhy_runtime.lisp_core.conditions import Error, error
+from cramhy_runtime.lisp_core.data import list_from, truth
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from ..evaluation.universal_time import UNIVERSAL_EPOCH, get_universal_time
 

@@ -5,10 +5,10 @@ Source: SBCL's structure ``readtable``.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Character, Cons, list_from
-from cramhy_runtime.ground.hash_tables import HashTable
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import Character, Cons, list_from
+from cramhy_runtime.lisp_core.hash_tables import HashTable
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.kernel.typing_names import Any
 
 from ..collections.array_making import make_array

@@ -10,8 +10,8 @@ import select
 import socket
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.data import list_from, lisp_list, truth
-from cramhy_runtime.ground.packages import keyword, symbol_name
+from cramhy_runtime.lisp_core.data import list_from, lisp_list, truth
+from cramhy_runtime.lisp_core.packages import keyword, symbol_name
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 from ..files.file_streams import FileStream, element_of

@@ -7,12 +7,12 @@ or at the next turn of a loop. Source: SBCL's manual, chapter 13; texts are SBCL
 from __future__ import annotations
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import Cons, MultipleValues, all_values, boolean, list_from, truth
-from cramhy_runtime.ground.dynamic import global_value
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import is_symbol
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import Cons, MultipleValues, all_values, boolean, list_from, truth
+from cramhy_runtime.lisp_core.dynamic import global_value
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.packages import is_symbol
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from cramhy_runtime.kernel.typing_names import Any, NoReturn
 from cramhy_runtime.utilities import threads
 from cramhy_runtime.utilities.threads import Thread, ThreadError, fail, shown_in_messages, thread_of

@@ -7,11 +7,11 @@ interrupts, in another one, or in a new one for each call. Source: SBCL's manual
 from __future__ import annotations
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import NO_VALUES, boolean, list_from, truth
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.printing import define_printer, prin1_to_string, print_unreadable
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import NO_VALUES, boolean, list_from, truth
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.numbers import is_real
+from cramhy_runtime.lisp_core.printing import define_printer, prin1_to_string, print_unreadable
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.utilities.threads import Thread, thread_of

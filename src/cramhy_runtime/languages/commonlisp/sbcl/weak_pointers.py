@@ -11,10 +11,10 @@ import gc as collector
 import weakref
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.data import MultipleValues, boolean
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.printing import define_printer, prin1_to_string
+from cramhy_runtime.lisp_core.data import MultipleValues, boolean
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.packages import sym
+from cramhy_runtime.lisp_core.printing import define_printer, prin1_to_string
 from cramhy_runtime.kernel.typing_names import Any
 from cramhy_runtime.utilities.wait_queue import need
 

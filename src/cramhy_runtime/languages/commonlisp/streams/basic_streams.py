@@ -8,11 +8,11 @@ chapter 21.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import ClosedStreamError
-from cramhy_runtime.ground.condition_types import SimpleTypeError
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.packages import ensure_package, sym
-from cramhy_runtime.ground.printing import MAKING
+from cramhy_runtime.lisp_core.condition_types import ClosedStreamError
+from cramhy_runtime.lisp_core.condition_types import SimpleTypeError
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.packages import ensure_package, sym
+from cramhy_runtime.lisp_core.printing import MAKING
 
 _EXTERNAL = {"SB-SYS": "FD-STREAM", "SB-IMPL": "", "SB-PRETTY": "PPRINT-DISPATCH-TABLE", "SB-FORMAT": "FORMAT-ERROR"}
 for _package, _external in _EXTERNAL.items():

@@ -6,13 +6,13 @@ a character where an error would be.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Character
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.data import Character
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 import codecs
 
-from cramhy_runtime.ground.conditions import StreamError, error, restart_case
-from cramhy_runtime.ground.data import Cons, list_from, python_list
-from cramhy_runtime.ground.packages import ensure_package, is_symbol, keyword, sym
+from cramhy_runtime.lisp_core.conditions import StreamError, error, restart_case
+from cramhy_runtime.lisp_core.data import Cons, list_from, python_list
+from cramhy_runtime.lisp_core.packages import ensure_package, is_symbol, keyword, sym
 
 _NAMES = {
     "DEFAULT": "utf-8",

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from ..collections.element_types import upgraded_element_type
 from ..collections.sequence_types import INDEX_TYPE, bounds, elements, part
-from cramhy_runtime.ground.arrays import BASE_CHAR, CHARACTER
-from cramhy_runtime.ground.conditions import EndOfFile, error, type_error
-from cramhy_runtime.ground.data import (
+from cramhy_runtime.lisp_core.arrays import BASE_CHAR, CHARACTER
+from cramhy_runtime.lisp_core.conditions import EndOfFile, error, type_error
+from cramhy_runtime.lisp_core.data import (
     WRITABLE_STRINGS,
     Character,
     Cons,
@@ -22,8 +22,8 @@ from cramhy_runtime.ground.data import (
     boolean,
     list_from,
 )
-from cramhy_runtime.ground.packages import is_symbol, sym
-from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.lisp_core.packages import is_symbol, sym
+from cramhy_runtime.lisp_core.ports import PORTS
 from . import streams
 from .streams import (
     BroadcastStream,

@@ -7,10 +7,10 @@ up at every write, because pytest and REPLs replace ``sys.stdout``. Source: ANSI
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.equality import equal
-from cramhy_runtime.ground.condition_types import UnboundVariable
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.conditions import type_error
+from cramhy_runtime.lisp_core.equality import equal
+from cramhy_runtime.lisp_core.condition_types import UnboundVariable
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.conditions import type_error
 import sys
 import weakref
 
@@ -18,9 +18,9 @@ from cramhy_runtime.kernel import standard_input
 from cramhy_runtime.kernel.reports import write_shown
 from cramhy_runtime.kernel.terminals import readable
 
-from cramhy_runtime.ground.data import UNBOUND, lisp_list
-from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.packages import is_symbol, sym
+from cramhy_runtime.lisp_core.data import UNBOUND, lisp_list
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.packages import is_symbol, sym
 from .basic_streams import (
     FdStream,
     FileOutput,

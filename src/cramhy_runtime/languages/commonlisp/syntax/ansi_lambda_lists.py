@@ -9,8 +9,8 @@ from __future__ import annotations
 import re
 from functools import cache
 
-from cramhy_runtime.ground.dispatch.methods import Shape
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.dispatch.methods import Shape
+from cramhy_runtime.lisp_core.packages import sym
 
 TABLE = """
 (&rest numbers) * +

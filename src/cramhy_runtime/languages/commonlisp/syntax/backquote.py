@@ -9,8 +9,8 @@ Source: ANSI 2.4.6.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, Keyword, lisp_list, list_from
-from cramhy_runtime.ground.packages import ensure_package, find_package, intern, is_symbol, sym
+from cramhy_runtime.lisp_core.data import Cons, Keyword, lisp_list, list_from
+from cramhy_runtime.lisp_core.packages import ensure_package, find_package, intern, is_symbol, sym
 
 for _name in ("SB-INT", "SB-IMPL", "CRAMHY"):
     ensure_package(_name)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import Cons
+from cramhy_runtime.lisp_core.packages import sym
 
 DECLARE = sym("DECLARE")
 

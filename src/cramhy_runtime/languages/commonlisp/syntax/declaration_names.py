@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import Symbol
 
 EXTENSIONS = """MAYBE-INLINE TRULY-DYNAMIC-EXTENT DISABLE-PACKAGE-LOCKS ENABLE-PACKAGE-LOCKS GLOBAL ALWAYS-BOUND FREEZE-TYPE DEPRECATED
 START-BLOCK END-BLOCK""".split()

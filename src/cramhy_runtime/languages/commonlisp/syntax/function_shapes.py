@@ -9,10 +9,10 @@ from __future__ import annotations
 import types
 from copy import copy
 
-from cramhy_runtime.ground.data import Keyword, list_from, python_list
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
-from cramhy_runtime.ground.dispatch.methods import Shape
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.data import Keyword, list_from, python_list
+from cramhy_runtime.lisp_core.dispatch.generic_functions import GenericFunction
+from cramhy_runtime.lisp_core.dispatch.methods import Shape
+from cramhy_runtime.lisp_core.packages import keyword
 
 ALLOW_OTHER_KEYS = keyword("ALLOW-OTHER-KEYS")
 

@@ -10,8 +10,8 @@ from fractions import Fraction
 
 from hy import models
 
-from cramhy_runtime.ground.data import Character, Cons, Keyword, Symbol, list_from
-from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.lisp_core.data import Character, Cons, Keyword, Symbol, list_from
+from cramhy_runtime.lisp_core.packages import keyword, sym
 from .macro_symbols import symbol_in
 
 

@@ -7,9 +7,9 @@ latter into ordinary bindings, so that the compiler knows only one kind of varia
 from __future__ import annotations
 
 
-from cramhy_runtime.ground.conditions import CompileError, error
-from cramhy_runtime.ground.data import Cons, Symbol, lisp_list, list_from
-from cramhy_runtime.ground.packages import keyword, sym, symbol_name
+from cramhy_runtime.lisp_core.conditions import CompileError, error
+from cramhy_runtime.lisp_core.data import Cons, Symbol, lisp_list, list_from
+from cramhy_runtime.lisp_core.packages import keyword, sym, symbol_name
 
 KEYWORDS = {name: f"&{name}" for name in ("OPTIONAL", "REST", "BODY", "KEY", "AUX", "WHOLE", "ENVIRONMENT", "ALLOW-OTHER-KEYS")}
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.packages import COMMON_LISP, intern
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, intern
 
 
 def symbol_in(text, package):

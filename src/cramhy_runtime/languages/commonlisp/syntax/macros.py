@@ -9,11 +9,11 @@ from __future__ import annotations
 import functools
 import importlib
 
-from cramhy_runtime.ground.conditions import CompileError, Error, error, handler_case, type_error
-from cramhy_runtime.ground.data import Cons, Symbol, one
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import COMMON_LISP, is_symbol, our_own, sym
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.conditions import CompileError, Error, error, handler_case, type_error
+from cramhy_runtime.lisp_core.data import Cons, Symbol, one
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, is_symbol, our_own, sym
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from cramhy_runtime.storage.dependency_tracing import run
 from .backquote import QUOTE, Comma
 from .operator_macros import define_all

@@ -8,9 +8,9 @@ turns it into Lisp data. So a macro is written once and serves ``.lisp`` files, 
 from __future__ import annotations
 
 
-from cramhy_runtime.ground.conditions import CompileError, Condition, error
-from cramhy_runtime.ground.data import list_from
-from cramhy_runtime.ground.packages import COMMON_LISP, find_package, find_package_or_error, keyword, sym
+from cramhy_runtime.lisp_core.conditions import CompileError, Condition, error
+from cramhy_runtime.lisp_core.data import list_from
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, find_package, find_package_or_error, keyword, sym
 from ...operators import TABLES, operator_of
 from ...operators.grammar import UnknownOption, WrongShape, fill, match
 from .macro_shapes import EXAMPLES, SHAPES

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, list_from, lisp_list, truth
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import Cons, list_from, lisp_list, truth
 from ..packages.face_definition import define_face
 from ..files.files import lisp_path
 from ..objects.classes import alias_class
-from cramhy_runtime.ground.dispatch.generic_functions import protocol_function
-from cramhy_runtime.ground.keyword_calls import lispify
-from cramhy_runtime.ground.packages import ensure_package, is_symbol, keyword, string_designator, sym, symbol_name
+from cramhy_runtime.lisp_core.dispatch.generic_functions import protocol_function
+from cramhy_runtime.lisp_core.keyword_calls import lispify
+from cramhy_runtime.lisp_core.packages import ensure_package, is_symbol, keyword, string_designator, sym, symbol_name
 from ..reader.dispatch_macros import FEATURES
 from ..streams.streams import STANDARD_OUTPUT
 from cramhy_runtime.ros import search_folders

@@ -10,10 +10,10 @@ from __future__ import annotations
 import platform
 from pathlib import Path
 
-from cramhy_runtime.ground.conditions import Error, SimpleError, Warning_, error
-from cramhy_runtime.ground.data import Cons, all_values, list_from, lisp_list, one
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import is_symbol, keyword, string_designator, sym, symbol_name
+from cramhy_runtime.lisp_core.conditions import Error, SimpleError, Warning_, error
+from cramhy_runtime.lisp_core.data import Cons, all_values, list_from, lisp_list, one
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.packages import is_symbol, keyword, string_designator, sym, symbol_name
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.kernel.typing_names import Any
 

@@ -20,9 +20,9 @@ from operator import attrgetter, is_
 
 from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.kernel.typing_names import Any
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, UndefinedFunction
 from cramhy_runtime.kernel.reports import of_the_library
-from cramhy_runtime.ground.packages import common, named_package, registered, sym, was_redefined
+from cramhy_runtime.lisp_core.packages import common, named_package, registered, sym, was_redefined
 from ..evaluation.evaluator import PACKAGE
 from ..reader.readtables import READTABLE, STANDARD, DispatchTable, Readtable
 from ..syntax.backquote import Comma

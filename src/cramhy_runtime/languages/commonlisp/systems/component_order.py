@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import CompileError, error
-from cramhy_runtime.ground.data import list_from
+from cramhy_runtime.lisp_core.conditions import CompileError, error
+from cramhy_runtime.lisp_core.data import list_from
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 from .system_definitions import Component, Module, SourceFile

@@ -10,10 +10,10 @@ from __future__ import annotations
 import re
 from contextlib import contextmanager
 
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import Character, Cons, list_from
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import KEYWORD, named_package
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import Character, Cons, list_from
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import KEYWORD, named_package
 from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from cramhy_runtime.storage.dependencies import file_state, unchanged
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from pathlib import Path
 
-    from cramhy_runtime.ground.data import Value
+    from cramhy_runtime.lisp_core.data import Value
 
 OF_SBCL = tuple(IMPLIED_FEATURES["SBCL"])
 _NAMES = late_pattern(r"\bsb-[-a-z0-9]+::?[^\s()'\"`,;|#]+", re.IGNORECASE)

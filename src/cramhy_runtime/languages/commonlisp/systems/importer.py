@@ -14,10 +14,10 @@ import sys
 import types
 from pathlib import Path
 
-from cramhy_runtime.ground.data import Symbol
-from cramhy_runtime.ground.python_names import attribute_symbols
-from cramhy_runtime.ground.python_names import python_name
-from cramhy_runtime.ground.packages import all_packages, find_package
+from cramhy_runtime.lisp_core.data import Symbol
+from cramhy_runtime.lisp_core.python_names import attribute_symbols
+from cramhy_runtime.lisp_core.python_names import python_name
+from cramhy_runtime.lisp_core.packages import all_packages, find_package
 from cramhy_runtime.kernel.images import part
 from ..python import python_face
 from . import loader, systems

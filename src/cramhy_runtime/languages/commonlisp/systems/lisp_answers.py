@@ -9,9 +9,9 @@ from __future__ import annotations
 import types
 from typing import Any
 
-from cramhy_runtime.ground.data import UNBOUND, Cons, Symbol
-from cramhy_runtime.ground.hash_tables import HashTable
-from cramhy_runtime.ground.packages import Package, all_packages, find_package, sym
+from cramhy_runtime.lisp_core.data import UNBOUND, Cons, Symbol
+from cramhy_runtime.lisp_core.hash_tables import HashTable
+from cramhy_runtime.lisp_core.packages import Package, all_packages, find_package, sym
 from cramhy_runtime.storage.dependencies import KINDS, Kind, Unanswerable
 
 from ..evaluation.definitions import take_as_keyword

@@ -14,9 +14,9 @@ import types
 from collections.abc import Callable
 from typing import Any
 
-from cramhy_runtime.ground.data import Cons, Symbol
-from cramhy_runtime.ground.functions import apply, funcall, function_of
-from cramhy_runtime.ground.packages import Package, sym
+from cramhy_runtime.lisp_core.data import Cons, Symbol
+from cramhy_runtime.lisp_core.functions import apply, funcall, function_of
+from cramhy_runtime.lisp_core.packages import Package, sym
 from cramhy_runtime.storage import dependency_tracing
 from cramhy_runtime.storage.dependency_tracing import Trace, questions
 

@@ -28,15 +28,15 @@ from cramhy_runtime.storage.dependencies import Facts
 from cramhy_runtime.storage.dependencies import holds as dependencies_hold
 from cramhy_runtime.storage.dependency_tracing import current as current_trace
 from cramhy_runtime.storage.dependency_tracing import tracing, untraced
-from cramhy_runtime.ground.function_codes import note_code
-from cramhy_runtime.ground.conditions import CompileError, Condition, FileError, error
-from cramhy_runtime.ground.data import Cons, all_values
-from cramhy_runtime.ground.dynamic import binding, special
+from cramhy_runtime.lisp_core.function_codes import note_code
+from cramhy_runtime.lisp_core.conditions import CompileError, Condition, FileError, error
+from cramhy_runtime.lisp_core.data import Cons, all_values
+from cramhy_runtime.lisp_core.dynamic import binding, special
 from ..compiler.compilation_unit import compilation_unit, current as compilation_unit_of_load
 from ..evaluation.evaluator import PACKAGE, Unit, new_namespace
-from cramhy_runtime.ground.source_places import file_of_text, is_user_file, locate as locate_by_traceback
+from cramhy_runtime.lisp_core.source_places import file_of_text, is_user_file, locate as locate_by_traceback
 from ..files.files import lisp_path
-from cramhy_runtime.ground.packages import symbol_name
+from cramhy_runtime.lisp_core.packages import symbol_name
 from ..reader.readtables import READTABLE
 from ... import answered_texts
 from ...compiler_stamp import stamp

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cramhy_runtime.ground.data import Cons
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import find_package, string_designator
+from cramhy_runtime.lisp_core.data import Cons
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import find_package, string_designator
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.kernel.typing_names import Any
 

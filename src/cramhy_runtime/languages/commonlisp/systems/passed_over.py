@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from cramhy_runtime.ground.conditions import warn
+from cramhy_runtime.lisp_core.conditions import warn
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 from cramhy_runtime.ros.search_folders import crawls

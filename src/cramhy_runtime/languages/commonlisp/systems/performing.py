@@ -10,10 +10,10 @@ from __future__ import annotations
 from contextlib import nullcontext
 from pathlib import Path
 
-from cramhy_runtime.ground.data import one
-from cramhy_runtime.ground.dispatch.generic_functions import EqlSpecializer
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.lisp_core.data import one
+from cramhy_runtime.lisp_core.dispatch.generic_functions import EqlSpecializer
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.packages import keyword, sym
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.storage.dependencies import file_state, unchanged

@@ -16,13 +16,13 @@ from cramhy_runtime.storage import kept_code
 from cramhy_runtime.storage.checksummed_code import Unusable, sealed, unsealed
 from ... import answered_texts
 from ..compiler.constants import NotStorable
-from cramhy_runtime.ground.function_codes import note_code
-from cramhy_runtime.ground.conditions import Error, SimpleFileError, StyleWarning, Warning_, error, handler_bind, type_error
-from cramhy_runtime.ground.data import UNSUPPLIED, Cons, LispString, MultipleValues, Symbol, boolean, lisp_list
-from cramhy_runtime.ground.dynamic import binding, special
+from cramhy_runtime.lisp_core.function_codes import note_code
+from cramhy_runtime.lisp_core.conditions import Error, SimpleFileError, StyleWarning, Warning_, error, handler_bind, type_error
+from cramhy_runtime.lisp_core.data import UNSUPPLIED, Cons, LispString, MultipleValues, Symbol, boolean, lisp_list
+from cramhy_runtime.lisp_core.dynamic import binding, special
 from ..compiler.compilation_unit import REPORTING, compilation_unit
 from ..evaluation.evaluator import EVAL_WHEN, LOCALLY, MACROLET, PACKAGE, PROGN, SYMBOL_MACROLET, Unit, compiler, evaluate, new_namespace
-from cramhy_runtime.ground.packages import keyword, sym
+from cramhy_runtime.lisp_core.packages import keyword, sym
 from ..printer.printer import prin1_to_string
 from ..reader.reader import Reader
 from ..reader.readtables import READTABLE

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 
-from cramhy_runtime.ground.conditions import error, types
-from cramhy_runtime.ground.data import Cons, list_from, truth
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.conditions import error, types
+from cramhy_runtime.lisp_core.data import Cons, list_from, truth
+from cramhy_runtime.lisp_core.dynamic import binding
 from ..evaluation.environment import MODULES, provide
 from ..packages.face_definition import define_face
 from .program_files import load
-from cramhy_runtime.ground.packages import near_names, string_designator, sym
+from cramhy_runtime.lisp_core.packages import near_names, string_designator, sym
 from cramhy_runtime.ros import definition_files
 from cramhy_runtime.ros.search_folders import crawling_once
 from . import systems

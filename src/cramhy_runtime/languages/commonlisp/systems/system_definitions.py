@@ -10,13 +10,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from cramhy_runtime.kernel.images import per_image
-from cramhy_runtime.ground.conditions import CompileError, error, style_warn
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, list_from, lisp_list
+from cramhy_runtime.lisp_core.conditions import CompileError, error, style_warn
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, list_from, lisp_list
 from ..evaluation.evaluator import PACKAGE, evaluate
 from ..objects.class_definition import default_initargs
 from ..objects.classes import find_class
-from cramhy_runtime.ground.dispatch.generic_functions import EqlSpecializer, add_method, generic, remove_method
-from cramhy_runtime.ground.packages import (
+from cramhy_runtime.lisp_core.dispatch.generic_functions import EqlSpecializer, add_method, generic, remove_method
+from cramhy_runtime.lisp_core.packages import (
     COMMON_LISP,
     ensure_package,
     find_package,

@@ -13,18 +13,18 @@ import os
 from pathlib import Path
 
 from cramhy_runtime.kernel.images import per_image
-from cramhy_runtime.ground.conditions import Error, SimpleError, error, handler_bind, handler_case, warn
-from cramhy_runtime.ground.dispatch.generic_errors import FunctionInTheWay
-from cramhy_runtime.ground.restarts import find_restart, invoke_restart
-from cramhy_runtime.ground.data import Cons, Symbol, list_from
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.conditions import Error, SimpleError, error, handler_bind, handler_case, warn
+from cramhy_runtime.lisp_core.dispatch.generic_errors import FunctionInTheWay
+from cramhy_runtime.lisp_core.restarts import find_restart, invoke_restart
+from cramhy_runtime.lisp_core.data import Cons, Symbol, list_from
+from cramhy_runtime.lisp_core.dynamic import binding
 from ..compiler.compilation_unit import compilation_unit
 from ..evaluation.definitions import RedefinitionWarning
 from ..evaluation.evaluator import PACKAGE, evaluate
 from ..files.files import lisp_path
 from ..reader.dispatch_macros import FEATURES
 from ..streams.streams import ERROR_OUTPUT, output_stream
-from cramhy_runtime.ground.packages import Package, find_package, near_names, register, string_designator, sym
+from cramhy_runtime.lisp_core.packages import Package, find_package, near_names, register, string_designator, sym
 from . import loader, missing_messages, package_inferred, passed_over, performing
 from .component_order import files_of
 from .for_sbcl import lacking, read_for_sbcl, speaks_of_sbcl

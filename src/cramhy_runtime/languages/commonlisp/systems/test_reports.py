@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cramhy_runtime import storage
-from cramhy_runtime.ground.conditions import FileError, error
-from cramhy_runtime.ground.source_places import describe, excerpt
+from cramhy_runtime.lisp_core.conditions import FileError, error
+from cramhy_runtime.lisp_core.source_places import describe, excerpt
 
 from ..files.files import lisp_path
 from .unit_tests import LispTest, Outcome

@@ -7,11 +7,11 @@ Values of variables, and every other form, are compiled only.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.python_exceptions import from_python
-from cramhy_runtime.ground.data import Cons
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import is_symbol, symbol_name
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.python_exceptions import from_python
+from cramhy_runtime.lisp_core.data import Cons
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import is_symbol, symbol_name
 
 from ..compiler.compilation_unit import compilation_unit, report_errors_to, report_to
 from ..evaluation.evaluator import PACKAGE, Unit

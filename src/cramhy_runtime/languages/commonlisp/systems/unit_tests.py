@@ -15,12 +15,12 @@ from pathlib import Path
 from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel import signals
-from cramhy_runtime.ground import packages
-from cramhy_runtime.ground.python_exceptions import from_python
-from cramhy_runtime.ground.conditions import SimpleError, error
-from cramhy_runtime.ground.data import list_from
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core import packages
+from cramhy_runtime.lisp_core.python_exceptions import from_python
+from cramhy_runtime.lisp_core.conditions import SimpleError, error
+from cramhy_runtime.lisp_core.data import list_from
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import sym
 from ...which_language import goes_on_in_lisp
 from ..streams.stream_functions import get_output_stream_string, make_string_output_stream
 from ..streams.streams import STANDARD_OUTPUT

@@ -11,18 +11,18 @@ from itertools import islice
 
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground.condition_types import Condition
-from cramhy_runtime.ground.python_exceptions import from_python
-from cramhy_runtime.ground.conditions import SimpleStyleWarning, guarded, types
-from cramhy_runtime.ground.printing import shown
-from cramhy_runtime.ground.data import Symbol, UNBOUND, UndefinedFunction, list_from
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.source_places import describe, describe_frame, excerpt, locate
+from cramhy_runtime.lisp_core.condition_types import Condition
+from cramhy_runtime.lisp_core.python_exceptions import from_python
+from cramhy_runtime.lisp_core.conditions import SimpleStyleWarning, guarded, types
+from cramhy_runtime.lisp_core.printing import shown
+from cramhy_runtime.lisp_core.data import Symbol, UNBOUND, UndefinedFunction, list_from
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.source_places import describe, describe_frame, excerpt, locate
 from ..printer.clos_printing import specializer_names
-from cramhy_runtime.ground.dispatch.generic_errors import NoApplicableMethodError
+from cramhy_runtime.lisp_core.dispatch.generic_errors import NoApplicableMethodError
 from cramhy_runtime.ros.definition_files import why_no_lisp_package
-from cramhy_runtime.ground.packages import all_packages, is_symbol, near_names, sym, symbol_name
-from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.lisp_core.packages import all_packages, is_symbol, near_names, sym, symbol_name
+from cramhy_runtime.lisp_core.ports import PORTS
 from ..evaluation.forms import special_operator_p
 from ..printer import pprint_dispatch
 from ..printer.print_controls import PACKAGE

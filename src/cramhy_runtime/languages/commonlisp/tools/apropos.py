@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import NO_VALUES, UNBOUND, Symbol, list_from
-from cramhy_runtime.ground.packages import all_packages, find_package_or_error, string_designator, symbol_name, symbol_package
+from cramhy_runtime.lisp_core.data import NO_VALUES, UNBOUND, Symbol, list_from
+from cramhy_runtime.lisp_core.packages import all_packages, find_package_or_error, string_designator, symbol_name, symbol_package
 from ..printer.printer import prin1_to_string
 from ..streams.streams import standard_output
 from ..evaluation.symbols import fboundp

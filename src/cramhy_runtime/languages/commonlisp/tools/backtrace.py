@@ -10,7 +10,7 @@ import os
 import sys
 
 from cramhy_runtime.kernel.images import Cell
-from cramhy_runtime.ground.source_places import circumstance, describe, frame_position, is_user_file
+from cramhy_runtime.lisp_core.source_places import circumstance, describe, frame_position, is_user_file
 
 from .operators_around import TOKEN
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cramhy_runtime.kernel.late_patterns import late_pattern
-from cramhy_runtime.ground.data import Cons, Symbol, UndefinedFunction, list_parts
+from cramhy_runtime.lisp_core.data import Cons, Symbol, UndefinedFunction, list_parts
 from ..evaluation.forms import special_operator_p
 from ..printer.printer import prin1_to_string
 from .operators_around import token_at

@@ -13,10 +13,10 @@ from contextlib import contextmanager
 from ...operators import operator_of
 from ...operators.declaration import hy_shape
 from ..collections import arrays
-from cramhy_runtime.ground import hash_tables
+from cramhy_runtime.lisp_core import hash_tables
 from ..collections.characters import char_name
-from cramhy_runtime.ground.arrays import is_simple
-from cramhy_runtime.ground.data import (
+from cramhy_runtime.lisp_core.arrays import is_simple
+from cramhy_runtime.lisp_core.data import (
     NO_VALUES,
     UNBOUND,
     Character,
@@ -28,24 +28,24 @@ from cramhy_runtime.ground.data import (
     list_end,
     list_from,
 )
-from cramhy_runtime.ground.dynamic import binding
+from cramhy_runtime.lisp_core.dynamic import binding
 from ..evaluation.forms import SPECIAL_OPERATORS
 from ..evaluation.function_facts import lambda_list_of, plain, position_of, shown_name
-from cramhy_runtime.ground.source_places import describe as place_text
+from cramhy_runtime.lisp_core.source_places import describe as place_text
 from ..pathnames.pathnames import pathname_directory, pathname_name, pathname_type
 from ..objects.builtin_classes import CLASSES, BuiltInClass, lisp_mro
 from ..objects.class_objects import direct_slots, effective_slots
 from ..objects.classes import class_name, class_of, metaclass_of, symbol_class
 from ..printer.clos_printing import specializer_names
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
+from cramhy_runtime.lisp_core.dispatch.generic_functions import GenericFunction
 from ..objects.protocol import names_of_slots
-from cramhy_runtime.ground.dispatch.generic_functions import protocol_function
+from cramhy_runtime.lisp_core.dispatch.generic_functions import protocol_function
 from ..objects.slots import slot_boundp, slot_value
 from ..objects.structures import StructureObject
-from cramhy_runtime.ground.packages import KEYWORD, Package, is_symbol, sym, symbol_name
+from cramhy_runtime.lisp_core.packages import KEYWORD, Package, is_symbol, sym, symbol_name
 from ..printer.print_controls import PACKAGE, PRINT_GENSYM, PRINT_LINES, PRINT_RIGHT_MARGIN
 from ..printer.printer import prin1_to_string
-from cramhy_runtime.ground.printing import not_ending
+from cramhy_runtime.lisp_core.printing import not_ending
 from ..streams.streams import Stream, StringOutputStream, output_stream
 from ..types import types
 from .documentation import shown_documentation

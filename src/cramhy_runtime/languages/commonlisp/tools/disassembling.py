@@ -10,13 +10,13 @@ from __future__ import annotations
 import contextlib
 import io
 
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import Cons, MultipleValues, Symbol
 from ..evaluation.control import fdefinition
 from ..evaluation.evaluator import compile_lambda
 from ..evaluation.function_facts import lambda_expression, plain, position_of, shown_name
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.dispatch.generic_functions import GenericFunction
+from cramhy_runtime.lisp_core.packages import sym
 from ..printer.printer import prin1_to_string
 from ..printer.standard_printers import function_name
 from ..streams.streams import output_stream

@@ -7,18 +7,18 @@ standard. Source: ANSI 25.2 (DOCUMENTATION); the texts of the warning and of ``(
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import warn
-from cramhy_runtime.ground.data import Cons, LispString, Symbol, UndefinedFunction
-from cramhy_runtime.ground.printing import attempt_to_print, prin1_to_string, suppressed
+from cramhy_runtime.lisp_core.conditions import warn
+from cramhy_runtime.lisp_core.data import Cons, LispString, Symbol, UndefinedFunction
+from cramhy_runtime.lisp_core.printing import attempt_to_print, prin1_to_string, suppressed
 from ..evaluation.definitions import data
 from ..evaluation.forms import compiler_macro_function
 from ..objects import classes
 from ..objects.class_objects import DirectSlot, Slot
-from cramhy_runtime.ground.dispatch.generic_functions import generic
-from cramhy_runtime.ground.dispatch.method_combination import Combination, known_combination
-from cramhy_runtime.ground.dispatch.methods import Method
-from cramhy_runtime.ground.dispatch.generic_functions import protocol_function
-from cramhy_runtime.ground.packages import Package, is_symbol, symbol_name
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core.dispatch.method_combination import Combination, known_combination
+from cramhy_runtime.lisp_core.dispatch.methods import Method
+from cramhy_runtime.lisp_core.dispatch.generic_functions import protocol_function
+from cramhy_runtime.lisp_core.packages import Package, is_symbol, symbol_name
 from ..types import types
 
 LISP_NAMES = "documentation"

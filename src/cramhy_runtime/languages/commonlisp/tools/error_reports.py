@@ -12,10 +12,10 @@ from __future__ import annotations
 
 import sys
 
-from cramhy_runtime.ground.classes import class_name
-from cramhy_runtime.ground.python_exceptions import from_python
-from cramhy_runtime.ground.packages import COMMON_LISP, printed, symbol_name, symbol_package
-from cramhy_runtime.ground.source_places import locate
+from cramhy_runtime.lisp_core.classes import class_name
+from cramhy_runtime.lisp_core.python_exceptions import from_python
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, printed, symbol_name, symbol_package
+from cramhy_runtime.lisp_core.source_places import locate
 
 from ..streams import streams
 from . import backtrace

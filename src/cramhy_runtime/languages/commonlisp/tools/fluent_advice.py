@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.cpl.fluents.fluents import Fluent
-from cramhy_runtime.ground.condition_types import TypeError_
-from cramhy_runtime.ground.data import Symbol
-from cramhy_runtime.ground.packages import COMMON_LISP, find_package
+from cramhy_runtime.lisp_core.condition_types import TypeError_
+from cramhy_runtime.lisp_core.data import Symbol
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, find_package
 from ..printer.print_controls import PACKAGE
 
 _OPERATOR = late_pattern(r"""\(\s*([^\s()'"`,;]+)""")

@@ -10,20 +10,20 @@ from __future__ import annotations
 import itertools
 
 from ..collections import arrays
-from cramhy_runtime.ground import hash_tables
-from cramhy_runtime.ground.arrays import dimensions
-from cramhy_runtime.ground.conditions import Condition, restart_case
-from cramhy_runtime.ground.data import NO_VALUES, UNBOUND, Cons, Symbol, UndefinedFunction, all_values, list_from
-from cramhy_runtime.ground.dynamic import binding, special
+from cramhy_runtime.lisp_core import hash_tables
+from cramhy_runtime.lisp_core.arrays import dimensions
+from cramhy_runtime.lisp_core.conditions import Condition, restart_case
+from cramhy_runtime.lisp_core.data import NO_VALUES, UNBOUND, Cons, Symbol, UndefinedFunction, all_values, list_from
+from cramhy_runtime.lisp_core.dynamic import binding, special
 from ..evaluation.evaluator import evaluate
 from ..evaluation.function_facts import lambda_list_of, shown_name
 from ..objects.classes import class_name
 from ..objects.protocol import names_of_slots
 from ..objects.slots import slot_boundp, slot_value
 from ..objects.structures import StructureObject
-from cramhy_runtime.ground.packages import Package, ensure_package, is_symbol, sym, symbol_name, symbol_package
+from cramhy_runtime.lisp_core.packages import Package, ensure_package, is_symbol, sym, symbol_name, symbol_package
 from ..printer.printer import prin1_to_string
-from cramhy_runtime.ground.printing import attempt_to_print
+from cramhy_runtime.lisp_core.printing import attempt_to_print
 from ..reader.reader import Reader, incomplete
 from ..streams.streams import QUERY_IO, input_stream, output_stream
 from .describing import public_attributes

@@ -9,8 +9,8 @@ from __future__ import annotations
 import re
 
 from cramhy_runtime.kernel.late_patterns import late_pattern
-from cramhy_runtime.ground.data import Symbol, UndefinedFunction
-from cramhy_runtime.ground.packages import COMMON_LISP, find_package
+from cramhy_runtime.lisp_core.data import Symbol, UndefinedFunction
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, find_package
 from ..printer.print_controls import PACKAGE
 
 TOKEN = late_pattern(r'"(?:\\.|[^"\\])*"|;[^\n]*|#\|.*?\|#|#\\.[\w-]*|\(|\)|[^\s()"]+', re.S)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import ast
 
-from cramhy_runtime.ground.data import Symbol, truth
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.keyword_calls import KeywordCalls
+from cramhy_runtime.lisp_core.data import Symbol, truth
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.keyword_calls import KeywordCalls
 from ..compiler.several_values import ValuesCalls
 from ..evaluation.evaluator import PACKAGE, Unit, compiler
 from ..evaluation.function_facts import defining_forms

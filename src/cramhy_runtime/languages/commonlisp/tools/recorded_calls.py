@@ -7,8 +7,8 @@ plan that it starts, is recorded as a part of it. The values themselves are kept
 from __future__ import annotations
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.data import all_values
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.data import all_values
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from cramhy_runtime.kernel.images import per_image
 
 from . import tracing

@@ -14,16 +14,16 @@ import time as python_time
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground.conditions import CompileError, break_, error, warn
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, UndefinedFunction, all_values, list_from, one, truth
-from cramhy_runtime.ground.dynamic import binding, special
+from cramhy_runtime.lisp_core.conditions import CompileError, break_, error, warn
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, UndefinedFunction, all_values, list_from, one, truth
+from cramhy_runtime.lisp_core.dynamic import binding, special
 from ..evaluation.evaluator import evaluate
 from ..evaluation.process_usage import processor_time
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
-from cramhy_runtime.ground.packages import find_package_or_error, sym
+from cramhy_runtime.lisp_core.dispatch.generic_functions import GenericFunction
+from cramhy_runtime.lisp_core.packages import find_package_or_error, sym
 from ..printer.print_names import symbol_with_prefix
 from ..printer.printer import prin1_to_string
-from cramhy_runtime.ground.printing import not_ending
+from cramhy_runtime.lisp_core.printing import not_ending
 from ..streams.streams import TRACE_OUTPUT, output_stream
 
 SETF = sym("SETF")

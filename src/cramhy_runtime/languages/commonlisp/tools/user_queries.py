@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import StyleWarning
-from cramhy_runtime.ground.data import one
-from cramhy_runtime.ground.printing import with_numbers_as_spoken
+from cramhy_runtime.lisp_core.condition_types import StyleWarning
+from cramhy_runtime.lisp_core.data import one
+from cramhy_runtime.lisp_core.printing import with_numbers_as_spoken
 from ..evaluation.evaluator import evaluate
 from ..format.format import format_
 from ..reader.reader import read_from_stream

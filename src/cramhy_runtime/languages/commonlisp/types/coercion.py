@@ -6,14 +6,14 @@ character become characters, symbols and lambda expressions become functions. So
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import SimpleTypeError, error
-from cramhy_runtime.ground.data import Cons, LispString, Symbol
-from cramhy_runtime.ground.functions import fdefinition, function_named, functionp
+from cramhy_runtime.lisp_core.conditions import SimpleTypeError, error
+from cramhy_runtime.lisp_core.data import Cons, LispString, Symbol
+from cramhy_runtime.lisp_core.functions import fdefinition, function_named, functionp
 from ..numbers.arithmetic import is_real, single_of
 from ..numbers.complex_numbers import parts
 from ..numbers.irrational import complex_, to_double
-from cramhy_runtime.ground.packages import is_symbol, sym
-from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.lisp_core.packages import is_symbol, sym
+from cramhy_runtime.lisp_core.ports import PORTS
 from .types import expand_type, type_predicate
 
 LISP_NAMES = "coerce"

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import re
 
-from cramhy_runtime.ground.data import Cons, boolean
-from cramhy_runtime.ground.packages import COMMON_LISP, ensure_package, is_symbol, sym
+from cramhy_runtime.lisp_core.data import Cons, boolean
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, ensure_package, is_symbol, sym
 
 from ..collections.sequence_types import is_sequence_type
 from ..pathnames.pathname_objects import LogicalHost, UnixHost

@@ -6,11 +6,11 @@ and the pages of the type specifiers.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import SimpleError, SimpleTypeError, error
-from cramhy_runtime.ground.data import Cons, Symbol, lisp_list, list_from
-from cramhy_runtime.ground.floats import SingleFloat
-from cramhy_runtime.ground.functions import check_shape
-from cramhy_runtime.ground.packages import is_symbol, sym
+from cramhy_runtime.lisp_core.conditions import SimpleError, SimpleTypeError, error
+from cramhy_runtime.lisp_core.data import Cons, Symbol, lisp_list, list_from
+from cramhy_runtime.lisp_core.floats import SingleFloat
+from cramhy_runtime.lisp_core.functions import check_shape
+from cramhy_runtime.lisp_core.packages import is_symbol, sym
 from ..numbers.arithmetic import is_integer, is_rational, is_real
 
 _REALS = {

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from cramhy_runtime.ground.data import Cons, Symbol, lisp_list, list_from, python_list
-from cramhy_runtime.ground.floats import SingleFloat
-from cramhy_runtime.ground.numbers import FIXNUM_LIMIT
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import Cons, Symbol, lisp_list, list_from, python_list
+from cramhy_runtime.lisp_core.floats import SingleFloat
+from cramhy_runtime.lisp_core.numbers import FIXNUM_LIMIT
+from cramhy_runtime.lisp_core.packages import sym
 from .types import expand_type
 
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from itertools import product
 
-from cramhy_runtime.ground.conditions import SimpleError, error
-from cramhy_runtime.ground.data import Cons, MultipleValues, Symbol
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import SimpleError, error
+from cramhy_runtime.lisp_core.data import Cons, MultipleValues, Symbol
+from cramhy_runtime.lisp_core.packages import sym
 from ..collections.element_types import upgraded_element_type
 from ..objects.builtin_classes import CLASSES, BuiltInClass, lisp_mro
 from ..objects.classes import class_name, symbol_class

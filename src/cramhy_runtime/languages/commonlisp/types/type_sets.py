@@ -21,10 +21,10 @@ from fractions import Fraction
 from math import copysign, inf
 
 from cramhy_runtime.kernel.typing_names import NamedTuple
-from cramhy_runtime.ground.arrays import dimensions, element_type, is_simple
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import Character, Cons, Keyword, Symbol
-from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.lisp_core.arrays import dimensions, element_type, is_simple
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import Character, Cons, Keyword, Symbol
+from cramhy_runtime.lisp_core.floats import SingleFloat
 from ..numbers.complex_numbers import parts
 from ..objects.builtin_classes import CLASSES, BuiltInClass, lisp_mro
 from ..objects.classes import StructureClass

@@ -15,7 +15,7 @@ from fractions import Fraction
 from pathlib import PurePath
 
 from ..collections.element_types import upgraded_element_type
-from cramhy_runtime.ground.arrays import (
+from cramhy_runtime.lisp_core.arrays import (
     BASE_CHAR,
     STRING_KINDS,
     LispArray,
@@ -27,8 +27,8 @@ from cramhy_runtime.ground.arrays import (
     is_bit_vector,
     is_simple,
 )
-from cramhy_runtime.ground.conditions import SimpleError, error
-from cramhy_runtime.ground.data import (
+from cramhy_runtime.lisp_core.conditions import SimpleError, error
+from cramhy_runtime.lisp_core.data import (
     Character,
     Cons,
     Keyword,
@@ -41,21 +41,21 @@ from cramhy_runtime.ground.data import (
     python_list,
     truth,
 )
-from cramhy_runtime.ground.floats import SingleFloat
-from cramhy_runtime.ground.equality import eql, equal
+from cramhy_runtime.lisp_core.floats import SingleFloat
+from cramhy_runtime.lisp_core.equality import eql, equal
 from ..pathnames.pathname_objects import Pathname
 from ..numbers.arithmetic import is_integer, is_number, is_rational, is_real
 from ..numbers.complex_numbers import parts
 from ..objects.builtin_classes import BuiltInClass, lisp_mro
 from ..objects.class_objects import StandardClass, StandardObject
-from cramhy_runtime.ground.classes import when_classes_change
+from cramhy_runtime.lisp_core.classes import when_classes_change
 from ..objects.classes import class_name, class_of, symbol_class
-from cramhy_runtime.ground.dispatch.generic_functions import GenericFunction
+from cramhy_runtime.lisp_core.dispatch.generic_functions import GenericFunction
 from ..objects.structures import StructureObject
-from cramhy_runtime.ground.numbers import FIXNUM_LIMIT
-from cramhy_runtime.ground.packages import Package, is_symbol, sym
+from cramhy_runtime.lisp_core.numbers import FIXNUM_LIMIT
+from cramhy_runtime.lisp_core.packages import Package, is_symbol, sym
 from cramhy_runtime.storage.dependency_tracing import run
-from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.lisp_core.ports import PORTS
 from ..packages.package_errors import check_symbol
 from ..syntax.declaration_names import check_type_name
 from .specifier_shapes import bad_operator, bad_specifier, check_specifier, is_operator

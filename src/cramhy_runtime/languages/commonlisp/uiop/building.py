@@ -6,12 +6,12 @@ Source: UIOP's documentation strings; texts are UIOP's.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import Condition, Error, SimpleCondition, StyleWarning, Warning_
-from cramhy_runtime.ground.conditions import error, handler_bind, make_condition, warn
-from cramhy_runtime.ground.data import Cons, MultipleValues, lisp_list, list_from, truth
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import keyword, sym
-from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.lisp_core.condition_types import Condition, Error, SimpleCondition, StyleWarning, Warning_
+from cramhy_runtime.lisp_core.conditions import error, handler_bind, make_condition, warn
+from cramhy_runtime.lisp_core.data import Cons, MultipleValues, lisp_list, list_from, truth
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.packages import keyword, sym
+from cramhy_runtime.lisp_core.printing import princ_to_string
 from cramhy_runtime.kernel.typing_names import Any, NoReturn
 
 from ..format.format import format_

@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import subprocess
 
-from cramhy_runtime.ground.conditions import Condition, handler_bind
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, boolean, list_from, python_list
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import find_package_or_error, is_symbol, keyword, sym, symbol_name
-from cramhy_runtime.ground.restarts import find_restart, invoke_restart
+from cramhy_runtime.lisp_core.conditions import Condition, handler_bind
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, boolean, list_from, python_list
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.packages import find_package_or_error, is_symbol, keyword, sym, symbol_name
+from cramhy_runtime.lisp_core.restarts import find_restart, invoke_restart
 from cramhy_runtime.kernel.typing_names import Any
 
 from ..files.files import path_of

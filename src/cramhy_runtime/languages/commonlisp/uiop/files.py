@@ -9,10 +9,10 @@ import socket
 import sys
 import tempfile
 
-from cramhy_runtime.ground.data import FreshString, boolean, list_from, one, truth
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import is_symbol, keyword, sym
+from cramhy_runtime.lisp_core.data import FreshString, boolean, list_from, one, truth
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.packages import is_symbol, keyword, sym
 from cramhy_runtime.kernel.typing_names import Any
 
 from ..files.file_streams import with_open_file

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, lisp_list, list_from
-from cramhy_runtime.ground.packages import keyword, sym, symbol_name
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, lisp_list, list_from
+from cramhy_runtime.lisp_core.packages import keyword, sym, symbol_name
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 from ..sbcl.atomics import stored

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import Condition, handler_bind
-from cramhy_runtime.ground.data import list_from
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.keyword_calls import lispify
-from cramhy_runtime.ground.packages import find_package_or_error, keyword, sym
-from cramhy_runtime.ground.restarts import find_restart, invoke_restart
+from cramhy_runtime.lisp_core.conditions import Condition, handler_bind
+from cramhy_runtime.lisp_core.data import list_from
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.keyword_calls import lispify
+from cramhy_runtime.lisp_core.packages import find_package_or_error, keyword, sym
+from cramhy_runtime.lisp_core.restarts import find_restart, invoke_restart
 from cramhy_runtime.kernel.typing_names import Any
 
 from ..packages.face_definition import define_face

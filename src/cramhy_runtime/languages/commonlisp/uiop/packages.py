@@ -5,9 +5,9 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import handler_bind
-from cramhy_runtime.ground.data import Cons, FreshString, Symbol, boolean, list_from
-from cramhy_runtime.ground.packages import (
+from cramhy_runtime.lisp_core.conditions import handler_bind
+from cramhy_runtime.lisp_core.data import Cons, FreshString, Symbol, boolean, list_from
+from cramhy_runtime.lisp_core.packages import (
     COMMON_LISP,
     Package,
     find_package,
@@ -256,9 +256,9 @@ def _reexported(package: Package, other: Package) -> None:
 
 def _without_warnings(define: Any) -> Package:
     """The value of ``define()``; that the package was another before is what ``define-package`` is for."""
-    from cramhy_runtime.ground.conditions import Warning_
-    from cramhy_runtime.ground.packages import sym
-    from cramhy_runtime.ground.restarts import find_restart, invoke_restart
+    from cramhy_runtime.lisp_core.conditions import Warning_
+    from cramhy_runtime.lisp_core.packages import sym
+    from cramhy_runtime.lisp_core.restarts import find_restart, invoke_restart
 
     def muffle(condition: Any) -> None:
         found = find_restart(sym("MUFFLE-WARNING"))

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 
-from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import FreshString, Keyword, MultipleValues, boolean, list_from, truth
-from cramhy_runtime.ground.packages import is_symbol, sym, symbol_name
+from cramhy_runtime.lisp_core.condition_types import SimpleError
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import FreshString, Keyword, MultipleValues, boolean, list_from, truth
+from cramhy_runtime.lisp_core.packages import is_symbol, sym, symbol_name
 from cramhy_runtime.kernel.typing_names import Any
 
 from ..files.files import lisp_path, path_of, truename
@@ -313,7 +313,7 @@ def directory_separator_for_host(path: Any = None) -> Any:
 
 def sym_character(char: str) -> Any:
     """The Lisp character of a text of one."""
-    from cramhy_runtime.ground.data import Character
+    from cramhy_runtime.lisp_core.data import Character
 
     return Character(char)
 

@@ -9,10 +9,10 @@ import os
 import subprocess
 
 from cramhy_runtime import kernel
-from cramhy_runtime.ground.condition_types import Error, SimpleFileError
-from cramhy_runtime.ground.conditions import error, restart_case
-from cramhy_runtime.ground.data import Cons, FreshString, MultipleValues, boolean, list_from, truth
-from cramhy_runtime.ground.packages import keyword, sym, symbol_name
+from cramhy_runtime.lisp_core.condition_types import Error, SimpleFileError
+from cramhy_runtime.lisp_core.conditions import error, restart_case
+from cramhy_runtime.lisp_core.data import Cons, FreshString, MultipleValues, boolean, list_from, truth
+from cramhy_runtime.lisp_core.packages import keyword, sym, symbol_name
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 from ..files.files import path_of

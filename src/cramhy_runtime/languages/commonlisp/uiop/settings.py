@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 
-from cramhy_runtime.ground.condition_types import Condition, SimpleError
-from cramhy_runtime.ground.conditions import error, make_condition, type_error
-from cramhy_runtime.ground.data import Cons, FreshString, Keyword, boolean, lisp_list, list_from, python_list, truth
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import Package, find_package, find_package_or_error, is_symbol, keyword, string_designator, sym
+from cramhy_runtime.lisp_core.condition_types import Condition, SimpleError
+from cramhy_runtime.lisp_core.conditions import error, make_condition, type_error
+from cramhy_runtime.lisp_core.data import Cons, FreshString, Keyword, boolean, lisp_list, list_from, python_list, truth
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.packages import Package, find_package, find_package_or_error, is_symbol, keyword, string_designator, sym
 from cramhy_runtime.kernel.typing_names import Any
 
 from ..format.format import format_

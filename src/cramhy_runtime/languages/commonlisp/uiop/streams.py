@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons, FreshString, MultipleValues, list_from, truth
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import find_package_or_error, is_symbol, keyword, sym, symbol_name
+from cramhy_runtime.lisp_core.data import Cons, FreshString, MultipleValues, list_from, truth
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.packages import find_package_or_error, is_symbol, keyword, sym, symbol_name
 from cramhy_runtime.kernel.typing_names import Any
 
 from ..evaluation.evaluator import PACKAGE, evaluate

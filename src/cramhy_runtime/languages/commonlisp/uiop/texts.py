@@ -5,14 +5,14 @@ from __future__ import annotations
 import os
 import sys
 
-from cramhy_runtime.ground import packages
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, FreshString, MultipleValues, list_from, one, truth
+from cramhy_runtime.lisp_core import packages
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import Cons, FreshString, MultipleValues, list_from, one, truth
 from ..evaluation.evaluator import PACKAGE
 from ..pathnames.pathname_objects import Pathname
 from ..packages.face_definition import define_face
 from ..files.files import absolute, lisp_path, path_of, physical
-from cramhy_runtime.ground.packages import find_package, is_symbol, keyword, string_designator, sym
+from cramhy_runtime.lisp_core.packages import find_package, is_symbol, keyword, string_designator, sym
 
 
 def find_package_(designator, errorp=True):

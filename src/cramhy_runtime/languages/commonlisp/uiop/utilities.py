@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import functools
 
-from cramhy_runtime.ground.condition_types import Condition, Error, SeriousCondition, SimpleCondition
-from cramhy_runtime.ground.conditions import error, style_warn as signal_style_warning, warn
-from cramhy_runtime.ground.data import Cons, FreshString, Keyword, LispString, MultipleValues, boolean, list_from, one, truth
-from cramhy_runtime.ground.functions import function_of, key_of
-from cramhy_runtime.ground.hash_tables import gethash, make_hash_table, set_gethash
-from cramhy_runtime.ground.packages import find_package_or_error, is_symbol, string_designator, sym
+from cramhy_runtime.lisp_core.condition_types import Condition, Error, SeriousCondition, SimpleCondition
+from cramhy_runtime.lisp_core.conditions import error, style_warn as signal_style_warning, warn
+from cramhy_runtime.lisp_core.data import Cons, FreshString, Keyword, LispString, MultipleValues, boolean, list_from, one, truth
+from cramhy_runtime.lisp_core.functions import function_of, key_of
+from cramhy_runtime.lisp_core.hash_tables import gethash, make_hash_table, set_gethash
+from cramhy_runtime.lisp_core.packages import find_package_or_error, is_symbol, string_designator, sym
 from cramhy_runtime.kernel.typing_names import Any
 
 from ..collections.list_search import getf
@@ -122,7 +122,7 @@ def ensure_function(fun: Any, *, package: Any = "CL") -> Any:
 
 def evaluate_text(text: Any, package: Any = "CL") -> Any:
     """The value of the form that ``text`` is in ``package``."""
-    from cramhy_runtime.ground.dynamic import binding
+    from cramhy_runtime.lisp_core.dynamic import binding
 
     from ..evaluation.evaluator import PACKAGE
 

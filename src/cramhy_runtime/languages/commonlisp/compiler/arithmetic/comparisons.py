@@ -6,7 +6,7 @@ Rows of ``make bench`` without it, as times of the row with it: Collatz 5.6, fib
 from __future__ import annotations
 
 from ..core import Symbol
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.packages import sym
 
 from ..core import NONE, expression, word
 from ..kinds import INT, MACHINE, NUMBER, THING, exactly

@@ -10,7 +10,7 @@ aref 17.5, the sieve 7.7.
 from __future__ import annotations
 
 from ..core import Symbol
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.packages import sym
 
 from .. import nodes
 from ..core import TRUE, expression, word

@@ -9,7 +9,7 @@ a pendulum, by sin 7.4.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.packages import sym
 
 from .. import nodes
 from ..core import expression, word

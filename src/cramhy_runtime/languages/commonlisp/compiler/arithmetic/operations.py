@@ -17,8 +17,8 @@ from ..words import AND, CLASSES, FLOAT_CLASS, IF, INT_CLASS, IS, OR, SETX, SING
 import sys
 
 from ..core import Symbol
-from cramhy_runtime.ground.floats import SingleFloat
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.floats import SingleFloat
+from cramhy_runtime.lisp_core.packages import sym
 
 from .. import nodes
 from ..core import TRUE, expression, word

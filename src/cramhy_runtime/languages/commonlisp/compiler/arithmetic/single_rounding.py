@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from cramhy_runtime.ground.floats import LARGEST_SINGLE, SPLITTER
+from cramhy_runtime.lisp_core.floats import LARGEST_SINGLE, SPLITTER
 
 from .. import nodes
 from ..core import expression, word

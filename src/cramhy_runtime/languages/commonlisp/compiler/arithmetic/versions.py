@@ -13,8 +13,8 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 
-from cramhy_runtime.ground.data import Symbol
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import Symbol
+from cramhy_runtime.lisp_core.packages import sym
 
 from .. import nodes
 from ..core import expression, word

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Symbol
-from cramhy_runtime.ground.packages import CRAMHY, is_symbol, sym
+from cramhy_runtime.lisp_core.data import Symbol
+from cramhy_runtime.lisp_core.packages import CRAMHY, is_symbol, sym
 
 from .. import core, nodes
 from ..core import expression, word

@@ -6,10 +6,10 @@ use keywords. A variable that must be caught anew in each turn of a loop comes a
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons
-from cramhy_runtime.ground.keyword_calls import GIVEN, name_of_key
-from cramhy_runtime.ground.packages import symbol_name
-from cramhy_runtime.ground.python_names import python_name
+from cramhy_runtime.lisp_core.data import Cons
+from cramhy_runtime.lisp_core.keyword_calls import GIVEN, name_of_key
+from cramhy_runtime.lisp_core.packages import symbol_name
+from cramhy_runtime.lisp_core.python_names import python_name
 
 from .. import nodes
 from ..frame_exits import DEBUGGED

@@ -10,9 +10,9 @@ Python test, one entered with `makes_test`. They are plain: shorter code is what
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Symbol, UndefinedFunction
-from cramhy_runtime.ground.floats import SingleFloat
-from cramhy_runtime.ground.packages import COMMON_LISP
+from cramhy_runtime.lisp_core.data import Symbol, UndefinedFunction
+from cramhy_runtime.lisp_core.floats import SingleFloat
+from cramhy_runtime.lisp_core.packages import COMMON_LISP
 
 from .. import core, nodes
 from ..constants import Constants, float_model

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Symbol
-from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.lisp_core.data import Symbol
+from cramhy_runtime.lisp_core.floats import SingleFloat
 
 from .. import nodes
 from ..constants import float_model

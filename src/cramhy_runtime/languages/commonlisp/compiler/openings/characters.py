@@ -5,8 +5,8 @@ Rows of ``make bench`` without it, as times of the row with it: characters of a 
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Character
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import Character
+from cramhy_runtime.lisp_core.packages import sym
 
 from .. import nodes
 from ..arithmetic.operations import known_function, named_value

@@ -6,9 +6,9 @@ double-floats 1.07.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Symbol as LispSymbol
-from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.ports import PORTS
+from cramhy_runtime.lisp_core.data import Symbol as LispSymbol
+from cramhy_runtime.lisp_core.packages import sym
+from cramhy_runtime.lisp_core.ports import PORTS
 
 from .. import nodes
 from ..arithmetic.operations import Operand, generic_call, noted_class, operands_of, settle

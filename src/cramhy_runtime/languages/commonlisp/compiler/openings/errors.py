@@ -5,7 +5,7 @@ Rows of ``make bench`` without it, as times of the row with it: handler-case 1.8
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.packages import sym
 
 from ..core import NONE, word
 from ..generator.exits import jump

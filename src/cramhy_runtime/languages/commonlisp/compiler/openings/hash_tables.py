@@ -6,7 +6,7 @@ read 7.6.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.packages import sym
 
 from .. import nodes
 from ..arithmetic.elements import GET, as_argument, as_arguments

@@ -1,7 +1,7 @@
 """Calls with keywords that the code names: they are sorted when they are compiled, not when they run.
 
 A standard function with keywords is a Python function with keyword-only parameters behind one that sorts keyword objects
-(`ground.keyword_calls`). A call that names its keywords is sorted here, once, and calls the Python function itself.
+(`lisp_core.keyword_calls`). A call that names its keywords is sorted here, once, and calls the Python function itself.
 
 Rows of ``make bench`` without a pass, as times of the row with it. ``keywords``: structures 3.4, calls with &key 1.6.
 ``standard-keywords``: no row has such a call in its loop; a loop of ``find``, ``position`` and ``member`` with keywords 1.6.
@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from types import FunctionType
 
-from cramhy_runtime.ground.data import Keyword, Symbol
-from cramhy_runtime.ground.keyword_calls import keyword_calls, name_of_key, takes_keywords
-from cramhy_runtime.ground.packages import CRAMHY
+from cramhy_runtime.lisp_core.data import Keyword, Symbol
+from cramhy_runtime.lisp_core.keyword_calls import keyword_calls, name_of_key, takes_keywords
+from cramhy_runtime.lisp_core.packages import CRAMHY
 
 from .. import core, nodes
 from ..core import expression, word

@@ -6,7 +6,7 @@ call-next-method 1.33. ``growth``: mapcar 1.54, loop collect when 1.42.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.packages import sym
 
 from .. import nodes
 from ..arithmetic.operations import named_value

@@ -6,9 +6,9 @@ Rows of ``make bench`` without a pass, as times of the row with it. ``slots``: a
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Keyword, Symbol
-from cramhy_runtime.ground.dispatch.reached_slots import read_attribute, written_attribute
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import Keyword, Symbol
+from cramhy_runtime.lisp_core.dispatch.reached_slots import read_attribute, written_attribute
+from cramhy_runtime.lisp_core.packages import sym
 
 from ...objects.makers import maker
 from ...objects.slots import named_slot
@@ -74,7 +74,7 @@ def slot_read(generator, node, models):
 
 
 def among_classes(target, classes):
-    """A test whether the class of ``target`` is one of ``classes`` (`ground.data.Classes`)."""
+    """A test whether the class of ``target`` is one of ``classes`` (`lisp_core.data.Classes`)."""
     last = expression(IS, expression(SETX, word("Lo"), class_of(target)), expression(DOT, classes, word("last")))
     return expression(word("or"), last, expression(IN, word("Lo"), classes))
 

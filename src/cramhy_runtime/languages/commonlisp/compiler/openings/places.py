@@ -6,7 +6,7 @@ Rows of ``make bench`` without a pass, as times of the row with it. ``places``: 
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.lisp_core.data import Symbol
 
 from .. import nodes
 from ..facts import walk

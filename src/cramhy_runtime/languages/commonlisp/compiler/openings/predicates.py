@@ -6,7 +6,7 @@ when 2.0, destructuring-bind 2.0.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.packages import sym
 
 from .. import nodes
 from ..arithmetic.comparisons import COMPARISONS, real_test

@@ -5,8 +5,8 @@ Rows of ``make bench`` without it, as times of the row with it: format in a loop
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Keyword
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.data import Keyword
+from cramhy_runtime.lisp_core.packages import sym
 
 from ...format.format_templates import SMALL, Piece, template, with_known
 from ...printer.print_controls import PRINT_BASE, PRINT_CASE, UPCASE

@@ -12,9 +12,9 @@ from ...packages.face_definition import define_face
 from ...syntax.operator_macros import export
 from ....operators import ACTIONLIB
 from ...objects.classes import alias_class
-from cramhy_runtime.ground.floats import literal_float
-from cramhy_runtime.ground.classes import register_class
-from cramhy_runtime.ground.packages import ensure_package, on_demand, sym
+from cramhy_runtime.lisp_core.floats import literal_float
+from cramhy_runtime.lisp_core.classes import register_class
+from cramhy_runtime.lisp_core.packages import ensure_package, on_demand, sym
 
 NAMES = ("ACTIONLIB-LISP", "ACTIONLIB")
 

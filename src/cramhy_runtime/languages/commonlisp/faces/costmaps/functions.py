@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from cramhy_runtime.ground.classes import make_instance
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, lisp_list, list_from, one, python_list, truth
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.packages import intern, keyword, sym
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.classes import make_instance
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import Cons, lisp_list, list_from, one, python_list, truth
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.numbers import is_real
+from cramhy_runtime.lisp_core.packages import intern, keyword, sym
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from cramhy_runtime.robot_world import remarks
 from cramhy_runtime.robot_world.costmaps import costmap, costs, generators, grids, spread
 from cramhy_runtime.robot_world.costmaps.arrays import np

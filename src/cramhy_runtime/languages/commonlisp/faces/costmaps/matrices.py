@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from cramhy_runtime.ground.arrays import LispArray, SimpleArray
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Cons, python_list
-from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.arrays import LispArray, SimpleArray
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import Cons, python_list
+from cramhy_runtime.lisp_core.numbers import is_real
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.robot_world.costmaps.arrays import np
 from cramhy_runtime.transforms.vectors import Vector3
 

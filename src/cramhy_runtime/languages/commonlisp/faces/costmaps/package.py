@@ -5,11 +5,11 @@ The package itself, with what it uses and exports, is defined in the library.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.classes import register_class
-from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
-from cramhy_runtime.ground.keyword_calls import lispify
-from cramhy_runtime.ground.packages import find_package_or_error
-from cramhy_runtime.ground.python_names import python_name
+from cramhy_runtime.lisp_core.classes import register_class
+from cramhy_runtime.lisp_core.dispatch.open_functions import open_to_methods
+from cramhy_runtime.lisp_core.keyword_calls import lispify
+from cramhy_runtime.lisp_core.packages import find_package_or_error
+from cramhy_runtime.lisp_core.python_names import python_name
 from cramhy_runtime.robot_world.costmaps import costmap, costs, grids
 
 from . import functions

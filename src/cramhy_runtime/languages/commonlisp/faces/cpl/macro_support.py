@@ -6,7 +6,7 @@ what the functions of this room take. Nothing else happens here.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Symbol, python_list
+from cramhy_runtime.lisp_core.data import Symbol, python_list
 from ...packages.face_definition import define_face
 from ...objects.classes import find_class
 from cramhy_runtime.cpl.failures import handling as failures, retry_counters

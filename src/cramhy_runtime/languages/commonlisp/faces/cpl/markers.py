@@ -7,9 +7,9 @@ not evaluate them first.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import UndefinedFunction, lisp_list
+from cramhy_runtime.lisp_core.data import UndefinedFunction, lisp_list
 from ...packages.face_definition import define_face
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.cpl.symbols import CPL_IMPL
 
 _COUNTERS = "belongs inside (with-retry-counters ((name count)...) ...), for the name of one of its counters."

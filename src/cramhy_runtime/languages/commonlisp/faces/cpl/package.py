@@ -7,7 +7,7 @@ defined in ``hy_src/cramhy/cpl.hy`` and ``hy_src/cramhy/plans.hy``.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Cons
+from cramhy_runtime.lisp_core.data import Cons
 from ...compiler.net_tests import make_nets, wait_for_nets
 from ...packages.face_definition import define_face
 from ...syntax.operator_macros import export

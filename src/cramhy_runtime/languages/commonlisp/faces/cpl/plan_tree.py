@@ -10,10 +10,10 @@ Repaired: the original looks the properties of plans up under a symbol of the wr
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import Cons, MultipleValues, lisp_list, list_from, python_list
-from cramhy_runtime.ground.equality import equal
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import Cons, MultipleValues, lisp_list, list_from, python_list
+from cramhy_runtime.lisp_core.equality import equal
+from cramhy_runtime.lisp_core.packages import keyword
 from cramhy_runtime.cpl.forms.plans import TOP_LEVEL, plan_property
 from cramhy_runtime.cpl.tree.tags import TAGGED
 from cramhy_runtime.cpl.type_checks import parts_of

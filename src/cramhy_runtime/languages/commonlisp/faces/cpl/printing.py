@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Symbol, list_from, truth
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.data import Symbol, list_from, truth
+from cramhy_runtime.lisp_core.packages import keyword
 from ...printer.pretty import logical_block, pprint_newline
 from ...printer.printer import print_as_symbols, write
-from cramhy_runtime.ground.printing import address, define_printer, print_unreadable
-from cramhy_runtime.ground.printing import prin1_to_string, princ_to_string
+from cramhy_runtime.lisp_core.printing import address, define_printer, print_unreadable
+from cramhy_runtime.lisp_core.printing import prin1_to_string, princ_to_string
 from ...tools.describing import describe_facts, describe_object
 from cramhy_runtime.cpl.fluents.fluents import Fluent, ValueFluent
 from .plan_tree import PlanTreeNode

@@ -6,7 +6,7 @@ functions that ``defstruct`` would have made stand in this module. `WRITERS` are
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import type_error
+from cramhy_runtime.lisp_core.conditions import type_error
 from cramhy_runtime.cpl.failures.failure_types import PolicyFailure
 from .plan_tree import PlanTreeNode
 from cramhy_runtime.cpl.forms.policies import Policy

@@ -5,7 +5,7 @@ In the original these are generic functions, and a class of fluents of one's own
     (defclass doubled (value-fluent) ())
     (defmethod value ((fluent doubled)) (* 2 (call-next-method)))
 
-Here they are plain functions as long as nobody does so (``ground/dispatch/open_functions.py``), and a fluent is read and assigned
+Here they are plain functions as long as nobody does so (``lisp_core/dispatch/open_functions.py``), and a fluent is read and assigned
 by its Python methods: nets, waits and callbacks do that everywhere. So when a method is defined, the Python methods of the
 classes that it may apply to are replaced by calls of the generic function, whose first method calls what was there before. Users
 who define no methods pay nothing. Methods for the built-in classes and for single fluents count for fluents that exist already,
@@ -18,10 +18,10 @@ from __future__ import annotations
 
 from cramhy_runtime import kernel
 
-from cramhy_runtime.ground.data import one
-from cramhy_runtime.ground.dispatch.generic_functions import when_methods_change
-from cramhy_runtime.ground.dispatch.methods import EqlSpecializer
-from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
+from cramhy_runtime.lisp_core.data import one
+from cramhy_runtime.lisp_core.dispatch.generic_functions import when_methods_change
+from cramhy_runtime.lisp_core.dispatch.methods import EqlSpecializer
+from cramhy_runtime.lisp_core.dispatch.open_functions import open_to_methods
 from cramhy_runtime.cpl.failures import handling
 from cramhy_runtime.cpl.fluents import fluents, nets
 from cramhy_runtime.cpl.tasks import waiting

@@ -10,14 +10,14 @@ meets is told to `Walk.tag` and `Walk.call`, which a kind of walk overrides. ``w
 
 from __future__ import annotations
 
-from cramhy_runtime.ground import condition_types as types
+from cramhy_runtime.lisp_core import condition_types as types
 from ...compiler.environment import Env, FunctionScope, LocalFunction, LocalMacro, SpecialVariable, SymbolMacro
-from cramhy_runtime.ground.conditions import error, handler_bind, handler_case, muffle_warning
-from cramhy_runtime.ground.data import Cons, Keyword, Symbol, lisp_list, list_from
+from cramhy_runtime.lisp_core.conditions import error, handler_bind, handler_case, muffle_warning
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, lisp_list, list_from
 from ...evaluation.evaluator import macro_expander
-from cramhy_runtime.ground.functions import function_of
+from cramhy_runtime.lisp_core.functions import function_of
 from ...syntax.macros import expand_fully, macroexpand_1
-from cramhy_runtime.ground.packages import COMMON_LISP, find_package
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, find_package
 from ...syntax.backquote import Comma
 from cramhy_runtime.cpl.symbols import CPL_IMPL, sym
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from cramhy_runtime.kernel.images import per_image
 from cramhy_runtime.cpl.fluents.fluents import make_fluent
 from cramhy_runtime.cpl.tree.task_tree import with_task_tree_node
-from cramhy_runtime.ground.data import lisp_list, one
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.hooks import Hook
+from cramhy_runtime.lisp_core.data import lisp_list, one
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.hooks import Hook
 from cramhy_runtime.designators.classes import make_designator
 from cramhy_runtime.designators.equating import with_equate_callback
 from cramhy_runtime.designators.symbols import sym

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...packages.face_definition import define_face
 from ...objects.classes import find_class
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.packages import keyword
 from cramhy_runtime.designators import classes, locations
 from . import language_support, properties_package
 

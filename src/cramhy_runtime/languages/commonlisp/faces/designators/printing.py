@@ -8,16 +8,16 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from cramhy_runtime.ground.conditions import Error, handler_case, type_error
-from cramhy_runtime.ground.data import FLOATS, UNBOUND, WRITABLE_STRINGS, Character, Cons
-from cramhy_runtime.ground.dynamic import special
-from cramhy_runtime.ground.classes import class_name
-from cramhy_runtime.ground.packages import is_symbol, symbol_name
+from cramhy_runtime.lisp_core.conditions import Error, handler_case, type_error
+from cramhy_runtime.lisp_core.data import FLOATS, UNBOUND, WRITABLE_STRINGS, Character, Cons
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.classes import class_name
+from cramhy_runtime.lisp_core.packages import is_symbol, symbol_name
 from ...printer.pprint_dispatch import PRINT_PPRINT_DISPATCH
 from ...printer.print_controls import PRINT_BASE, PRINT_CASE, PRINT_CIRCLE, PRINT_ESCAPE
 from ...printer.print_names import in_print_case, token
 from ...printer.printer import atom_text, print_unreadable, write
-from cramhy_runtime.ground.printing import define_printer, unprintable
+from cramhy_runtime.lisp_core.printing import define_printer, unprintable
 from ...streams.streams import BroadcastStream
 from ...reader.readtables import READTABLE
 from ...tools.describing import describe_facts, describe_object

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import python_list
-from cramhy_runtime.ground.packages import symbol_name
+from cramhy_runtime.lisp_core.data import python_list
+from cramhy_runtime.lisp_core.packages import symbol_name
 from ...packages.package_definition import define_package
 from cramhy_runtime.designators.symbols import DESIG_PROPS
 

@@ -1,17 +1,17 @@
 """Reader functions of designators, under the Lisp names of their slots.
 
 They are generic in the original. Here they are plain functions until somebody defines a method on one
-(``ground/dispatch/open_functions.py``): a class of one's own with ``:reader cut:timestamp``, say.
+(``lisp_core/dispatch/open_functions.py``): a class of one's own with ``:reader cut:timestamp``, say.
 """
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import UnboundSlot
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import UNBOUND
-from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
-from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
-from cramhy_runtime.ground.hash_tables import HashTable, need_table
+from cramhy_runtime.lisp_core.condition_types import UnboundSlot
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import UNBOUND
+from cramhy_runtime.lisp_core.dispatch.generic_errors import no_applicable_method
+from cramhy_runtime.lisp_core.dispatch.open_functions import open_to_methods
+from cramhy_runtime.lisp_core.hash_tables import HashTable, need_table
 from cramhy_runtime.designators.classes import Designator, DesignatorError, ObjectDesignatorData, keep_living, living
 from cramhy_runtime.designators.symbols import sym
 

@@ -13,15 +13,15 @@ means them: a value that looks like a call, ``(speed (+ 1 2))``, and a property 
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.condition_types import SimpleStyleWarning
-from cramhy_runtime.ground.conditions import error, unbound_variable
-from cramhy_runtime.ground.data import UNBOUND, Cons, Keyword, Symbol, UndefinedFunction, lisp_list, list_from
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.equality import equal
+from cramhy_runtime.lisp_core.condition_types import SimpleStyleWarning
+from cramhy_runtime.lisp_core.conditions import error, unbound_variable
+from cramhy_runtime.lisp_core.data import UNBOUND, Cons, Keyword, Symbol, UndefinedFunction, lisp_list, list_from
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.equality import equal
 from ...compiler.compilation_unit import expansion_place, warn_of
 from ...evaluation.definitions import take_as_keyword
 from cramhy_runtime.storage.dependency_tracing import current as current_trace
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.packages import keyword
 from ...printer.print_controls import PRINT_CASE
 from ...tools.describing import one_line
 from cramhy_runtime.designators.symbols import sym

@@ -9,12 +9,12 @@ from __future__ import annotations
 import os
 
 from cramhy_runtime.kernel.images import Cell
-from cramhy_runtime.ground.conditions import Error, SimpleError, error, handler_case, type_error, warn
-from cramhy_runtime.ground.data import truth
+from cramhy_runtime.lisp_core.conditions import Error, SimpleError, error, handler_case, type_error, warn
+from cramhy_runtime.lisp_core.data import truth
 from ...files.files import ensure_directories_exist, path_of
 from ...pathnames.pathnames import pathname
-from cramhy_runtime.ground.packages import symbol_name
-from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.lisp_core.packages import symbol_name
+from cramhy_runtime.lisp_core.printing import princ_to_string
 from cramhy_runtime.utilities.small_functions import current_string_timestamp, ensure_unused_string, sanitize_filename
 from .files import save_to
 from cramhy_runtime.episodes.symbols import sym

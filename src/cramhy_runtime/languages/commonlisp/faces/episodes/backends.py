@@ -9,10 +9,10 @@ and read bytes; here a file is text. While an object is restored ``*read-eval*``
 from __future__ import annotations
 
 from cramhy_runtime.kernel.images import per_image
-from cramhy_runtime.ground.data import one
-from cramhy_runtime.ground.dynamic import binding
-from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.data import one
+from cramhy_runtime.lisp_core.dynamic import binding
+from cramhy_runtime.lisp_core.packages import sym
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from ...streams.basic_streams import StringInputStream, StringOutputStream
 from ...types.types import typep
 

@@ -16,12 +16,12 @@ from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.cpl.failures.failure_types import PlanFailure, opened
 from cramhy_runtime.cpl.statuses import ALL, FAILED
 from cramhy_runtime.cpl.tree.task_tree import Code, TaskTreeNode
-from cramhy_runtime.ground.conditions import SimpleError, error
-from cramhy_runtime.ground.data import UNSUPPLIED
-from cramhy_runtime.ground.keyword_calls import lispify
+from cramhy_runtime.lisp_core.conditions import SimpleError, error
+from cramhy_runtime.lisp_core.data import UNSUPPLIED
+from cramhy_runtime.lisp_core.keyword_calls import lispify
 from ...pathnames.pathnames import pathname
-from cramhy_runtime.ground.packages import keyword
-from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.lisp_core.packages import keyword
+from cramhy_runtime.lisp_core.printing import princ_to_string
 from ...streams.basic_streams import Stream
 from ...files.file_streams import open_whole, with_open_file, with_open_stream
 from ...streams.streams import input_stream, output_stream

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from cramhy_runtime.cpl.fluents.fluents import ValueFluent
 from cramhy_runtime.cpl.tasks.task_readers import result, status
-from cramhy_runtime.ground.printing import define_printer, print_unreadable
+from cramhy_runtime.lisp_core.printing import define_printer, print_unreadable
 from cramhy_runtime.episodes.knowledge import EpisodeKnowledge
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import lisp_list
+from cramhy_runtime.lisp_core.data import lisp_list
 from ...packages.face_definition import define_face
 from ...syntax.operator_macros import export
 from ....operators import EPISODES
-from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
 from . import auto_tracing, files
 from cramhy_runtime.episodes import knowledge, queries, tracing
 from . import macro_support

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import list_from
-from cramhy_runtime.ground.printing import define_printer, print_unreadable
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.data import list_from
+from cramhy_runtime.lisp_core.printing import define_printer, print_unreadable
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from ...tools.describing import describe_facts, describe_object
 from cramhy_runtime.episodes.knowledge import EpisodeKnowledge
 from cramhy_runtime.episodes.trees import nodes_of

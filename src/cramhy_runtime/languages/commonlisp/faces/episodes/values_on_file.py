@@ -15,20 +15,30 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-from cramhy_runtime.ground.hash_tables import HashTable
-from cramhy_runtime.ground.arrays import LispArray, TypedVector
-from cramhy_runtime.ground.conditions import Condition
-from cramhy_runtime.ground.data import NO_VALUES, UNBOUND, WRITABLE_STRINGS, Character, Cons, MultipleValues, Symbol, lisp_list, list_from
-from cramhy_runtime.ground.floats import SingleFloat
+from cramhy_runtime.lisp_core.hash_tables import HashTable
+from cramhy_runtime.lisp_core.arrays import LispArray, TypedVector
+from cramhy_runtime.lisp_core.conditions import Condition
+from cramhy_runtime.lisp_core.data import (
+    NO_VALUES,
+    UNBOUND,
+    WRITABLE_STRINGS,
+    Character,
+    Cons,
+    MultipleValues,
+    Symbol,
+    lisp_list,
+    list_from,
+)
+from cramhy_runtime.lisp_core.floats import SingleFloat
 from ...numbers.irrational import complex_, imagpart, realpart
 from ...objects.class_objects import StandardObject, effective_slots, may_be_unbound
 from ...objects.classes import find_class
-from cramhy_runtime.ground.classes import make_instance
-from cramhy_runtime.ground.classes import class_name
+from cramhy_runtime.lisp_core.classes import make_instance
+from cramhy_runtime.lisp_core.classes import class_name
 from ...objects.structures import StructureObject
-from cramhy_runtime.ground.packages import named_package, keyword
-from cramhy_runtime.ground.printing import define_printer
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.packages import named_package, keyword
+from cramhy_runtime.lisp_core.printing import define_printer
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from ...printer.standard_printers import function_name
 from cramhy_runtime.utilities.lazy_lists import LazyTail
 from .backends import backend_of, restored, stored

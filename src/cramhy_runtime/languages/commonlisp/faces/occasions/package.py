@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cramhy_runtime.episodes.tracing import TracedFluent
 from ...packages.face_definition import define_face
-from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
 from cramhy_runtime.occasions import fluent_predicates as _fluent_predicates  # noqa: F401  the predicates come along
 from cramhy_runtime.occasions import occasions
 from cramhy_runtime.occasions import task_predicates as _task_predicates  # noqa: F401

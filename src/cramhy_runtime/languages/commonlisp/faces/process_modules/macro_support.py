@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import python_list
+from cramhy_runtime.lisp_core.data import python_list
 from ...packages.face_definition import define_face
 from cramhy_runtime.process_modules.modules import define_process_module
 from cramhy_runtime.process_modules.registry import (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
+from cramhy_runtime.lisp_core.dispatch.open_functions import open_to_methods
 from ...packages.face_definition import define_face
 from ...syntax.operator_macros import export
 from ....operators import PROCESS_MODULES

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import list_from
-from cramhy_runtime.ground.printing import define_printer, print_unreadable
+from cramhy_runtime.lisp_core.data import list_from
+from cramhy_runtime.lisp_core.printing import define_printer, print_unreadable
 from ...tools.describing import describe_facts, describe_object
 from cramhy_runtime.process_modules.modules import AbstractProcessModule, ProcessModule
 

@@ -1,6 +1,6 @@
 """Reader functions of process modules, under the Lisp names of their slots; each gives a fluent."""
 
-from cramhy_runtime.ground.conditions import type_error
+from cramhy_runtime.lisp_core.conditions import type_error
 from cramhy_runtime.process_modules.modules import AbstractProcessModule
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import python_list
+from cramhy_runtime.lisp_core.data import python_list
 from ...packages.face_definition import define_face
 from cramhy_runtime.projection import clocks, environments
 

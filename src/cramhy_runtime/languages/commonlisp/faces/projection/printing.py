@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import list_from
-from cramhy_runtime.ground.packages import keyword
-from cramhy_runtime.ground.printing import define_printer, print_unreadable
-from cramhy_runtime.ground.printing import princ_to_string
+from cramhy_runtime.lisp_core.data import list_from
+from cramhy_runtime.lisp_core.packages import keyword
+from cramhy_runtime.lisp_core.printing import define_printer, print_unreadable
+from cramhy_runtime.lisp_core.printing import princ_to_string
 from ...tools.describing import describe_facts, describe_object
 from cramhy_runtime.projection.clocks import LinearClock, PartiallyOrderedClock
 from cramhy_runtime.projection.environments import ProjectionEnvironment

@@ -9,7 +9,7 @@ from __future__ import annotations
 from ...packages.face_definition import define_face
 from ...syntax.operator_macros import export
 from ....operators import PROLOG
-from cramhy_runtime.ground.dispatch.generic_functions import generic
+from cramhy_runtime.lisp_core.dispatch.generic_functions import generic
 
 from cramhy_runtime.utilities import patterns
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from cramhy_runtime.ground.data import Cons, python_list
+from cramhy_runtime.lisp_core.data import Cons, python_list
 from cramhy_runtime.robot_world.costmaps.surroundings import Boxes, Direction, Slots, Visible
 
 if TYPE_CHECKING:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, FreshString, list_from, lisp_list, python_list
-from cramhy_runtime.ground.packages import symbol_name
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import Cons, FreshString, list_from, lisp_list, python_list
+from cramhy_runtime.lisp_core.packages import symbol_name
 from cramhy_runtime.robot_world import urdf, urdf_parts
 from cramhy_runtime.robot_world.mesh_files import Mesh
 from cramhy_runtime.robot_world.descriptions import Description, DescriptionError, Frame, Shape

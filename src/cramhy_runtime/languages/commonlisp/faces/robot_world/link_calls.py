@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from cramhy_runtime.ground.data import Cons, boolean, lisp_list, list_from
-from cramhy_runtime.ground.conditions import error
+from cramhy_runtime.lisp_core.data import Cons, boolean, lisp_list, list_from
+from cramhy_runtime.lisp_core.conditions import error
 from cramhy_runtime.robot_world import reaching
 from cramhy_runtime.robot_world.descriptions import DescriptionError
 from cramhy_runtime.robot_world.placements import of_pose

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cramhy_runtime.ground.data import Cons, boolean, list_from, lisp_list, python_list
-from cramhy_runtime.ground.packages import keyword
+from cramhy_runtime.lisp_core.data import Cons, boolean, list_from, lisp_list, python_list
+from cramhy_runtime.lisp_core.packages import keyword
 from cramhy_runtime.robot_world.physical.robot import NotReached, NoWay, PhysicalRobot, Slipped
 from cramhy_runtime.robot_world.physical.world import PhysicalWorld
 from cramhy_runtime.robot_world.placements import of_pose
@@ -29,7 +29,7 @@ from cramhy_runtime.robot_world.simulated_robot import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from cramhy_runtime.ground.data import Symbol
+    from cramhy_runtime.lisp_core.data import Symbol
     from cramhy_runtime.robot_world.things import Item, Machine
     from cramhy_runtime.transforms.poses import Pose
     from cramhy_runtime.transforms.vectors import Vector3

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from cramhy_runtime.ground.data import python_list
-from cramhy_runtime.ground.packages import is_symbol
+from cramhy_runtime.lisp_core.data import python_list
+from cramhy_runtime.lisp_core.packages import is_symbol
 
 if TYPE_CHECKING:
-    from cramhy_runtime.ground.data import Symbol
+    from cramhy_runtime.lisp_core.data import Symbol
 
 
 def name_of(designator: Symbol | str) -> Symbol | str:

@@ -8,10 +8,10 @@ from __future__ import annotations
 import functools
 from typing import Any
 
-from cramhy_runtime.ground.classes import register_class
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.dynamic import global_value
-from cramhy_runtime.ground.packages import Package, find_package, on_demand
+from cramhy_runtime.lisp_core.classes import register_class
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.dynamic import global_value
+from cramhy_runtime.lisp_core.packages import Package, find_package, on_demand
 from cramhy_runtime.robot_world import shown
 from cramhy_runtime.robot_world.descriptions import Description, Joint, Link
 from cramhy_runtime.robot_world.mesh_files import Mesh

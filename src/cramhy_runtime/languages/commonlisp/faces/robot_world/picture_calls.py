@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, python_list
-from cramhy_runtime.ground.numbers import is_real
-from cramhy_runtime.ground.packages import is_symbol, symbol_name
+from cramhy_runtime.lisp_core.condition_types import SimpleError
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import Cons, python_list
+from cramhy_runtime.lisp_core.numbers import is_real
+from cramhy_runtime.lisp_core.packages import is_symbol, symbol_name
 from cramhy_runtime.robot_world.pictures import movies, stills, views
 from cramhy_runtime.robot_world.placements import of_pose
 from cramhy_runtime.transforms.poses import Pose

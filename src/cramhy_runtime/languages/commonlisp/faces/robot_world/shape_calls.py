@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, FreshString, list_from, lisp_list, python_list
-from cramhy_runtime.ground.packages import is_symbol, keyword, near_names, symbol_name
+from cramhy_runtime.lisp_core.condition_types import SimpleError
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import Cons, FreshString, list_from, lisp_list, python_list
+from cramhy_runtime.lisp_core.packages import is_symbol, keyword, near_names, symbol_name
 from cramhy_runtime.robot_world import meshes, models
 from cramhy_runtime.robot_world.descriptions import Description, Frame, Shape
 from cramhy_runtime.robot_world.mesh_files import Mesh, MeshError
@@ -17,7 +17,7 @@ from cramhy_runtime.transforms.vectors import make_3d_vector
 from .names import colour_of, name_of
 
 if TYPE_CHECKING:
-    from cramhy_runtime.ground.data import Symbol
+    from cramhy_runtime.lisp_core.data import Symbol
     from cramhy_runtime.robot_world.things import Item
     from cramhy_runtime.robot_world.world import World
     from cramhy_runtime.transforms.poses import Pose

@@ -9,9 +9,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Cons, FreshString, MultipleValues, boolean, lisp_list, list_from, truth
-from cramhy_runtime.ground.packages import is_symbol, keyword, symbol_name
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import Cons, FreshString, MultipleValues, boolean, lisp_list, list_from, truth
+from cramhy_runtime.lisp_core.packages import is_symbol, keyword, symbol_name
 from cramhy_runtime.robot_world import description_files, models, remarks, xacro_files
 from cramhy_runtime.robot_world.descriptions import Description, DescriptionError
 from cramhy_runtime.robot_world.physical.world import PhysicalWorld
@@ -24,7 +24,7 @@ from cramhy_runtime.transforms.vectors import make_3d_vector
 from .names import colour_of, name_of
 
 if TYPE_CHECKING:
-    from cramhy_runtime.ground.data import Symbol
+    from cramhy_runtime.lisp_core.data import Symbol
     from cramhy_runtime.transforms.poses import Pose
     from cramhy_runtime.transforms.quaternions import Quaternion
     from cramhy_runtime.transforms.vectors import Vector3

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Symbol, python_list, truth
+from cramhy_runtime.lisp_core.data import Symbol, python_list, truth
 from ...packages.face_definition import define_face
-from cramhy_runtime.ground.packages import symbol_name
+from cramhy_runtime.lisp_core.packages import symbol_name
 from cramhy_runtime.ros import message_building, messages
 from cramhy_runtime.ros.roslisp import logging, node, services, time, topics, utilities
 from cramhy_runtime.utilities.generated_functions import generated_function

@@ -8,12 +8,12 @@ function does (roslisp.md 5.7). Without ``*print-pretty*``, or with the initial 
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import type_error
-from cramhy_runtime.ground.data import UNSUPPLIED
+from cramhy_runtime.lisp_core.conditions import type_error
+from cramhy_runtime.lisp_core.data import UNSUPPLIED
 from ...printer.pprint_dispatch import INITIAL, PRINT_PPRINT_DISPATCH
 from ...printer.pretty import logical_block, pprint_indent, pprint_newline
 from ...printer.print_controls import PRINT_PRETTY
-from cramhy_runtime.ground.printing import define_printer, output_object, print_unreadable
+from cramhy_runtime.lisp_core.printing import define_printer, output_object, print_unreadable
 from ...streams.streams import output_stream
 from cramhy_runtime.ros.message_building import ros_message_to_list
 from cramhy_runtime.ros.messages import RosMessage, ServiceType

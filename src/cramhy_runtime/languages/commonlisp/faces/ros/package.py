@@ -12,15 +12,15 @@ from . import reading, serializing
 
 from operator import attrgetter
 
-from cramhy_runtime.ground import conditions
+from cramhy_runtime.lisp_core import conditions
 from ...packages.face_definition import define_face
 from ...syntax.operator_macros import export
 from ....operators import ROSLISP as OPERATORS
-from cramhy_runtime.ground.classes import register_class
-from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method_error
-from cramhy_runtime.ground.dispatch.open_functions import Opening
-from cramhy_runtime.ground.packages import keyword
-from cramhy_runtime.ground.printing import define_printer
+from cramhy_runtime.lisp_core.classes import register_class
+from cramhy_runtime.lisp_core.dispatch.generic_errors import no_applicable_method_error
+from cramhy_runtime.lisp_core.dispatch.open_functions import Opening
+from cramhy_runtime.lisp_core.packages import keyword
+from cramhy_runtime.lisp_core.printing import define_printer
 from cramhy_runtime.ros import message_building
 from . import message_printing
 from cramhy_runtime.ros.roslisp import clock, logging, master, node, parameters, services, time, topics, utilities

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import list_from
-from cramhy_runtime.ground.packages import sym
-from cramhy_runtime.ground.printing import define_printer
-from cramhy_runtime.ground.printing import print_slots
+from cramhy_runtime.lisp_core.data import list_from
+from cramhy_runtime.lisp_core.packages import sym
+from cramhy_runtime.lisp_core.printing import define_printer
+from cramhy_runtime.lisp_core.printing import print_slots
 from cramhy_runtime.ros.services import Service
 from cramhy_runtime.ros.topics import Publication
 from cramhy_runtime.ros.roslisp.master import Uri

@@ -5,11 +5,11 @@ Programs keep messages in files so, or compare their sizes. They are generic, as
 
 from __future__ import annotations
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleError
-from cramhy_runtime.ground.data import Symbol, list_from
-from cramhy_runtime.ground.dispatch.generic_errors import no_applicable_method
-from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import SimpleError
+from cramhy_runtime.lisp_core.data import Symbol, list_from
+from cramhy_runtime.lisp_core.dispatch.generic_errors import no_applicable_method
+from cramhy_runtime.lisp_core.dispatch.open_functions import open_to_methods
 from cramhy_runtime.ros import messages, serialization
 from cramhy_runtime.ros.messages import RosMessage
 from cramhy_runtime.ros.received import for_lisp

@@ -12,9 +12,9 @@ from ...syntax.operator_macros import define, export
 from ....operators import FRAMES
 from . import printing
 from ...objects.classes import alias_class
-from cramhy_runtime.ground.classes import register_class
-from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
-from cramhy_runtime.ground.packages import find_package, on_demand
+from cramhy_runtime.lisp_core.classes import register_class
+from cramhy_runtime.lisp_core.dispatch.open_functions import open_to_methods
+from cramhy_runtime.lisp_core.packages import find_package, on_demand
 from cramhy_runtime.tf import broadcasting, buffer_client, errors, frames, stamped, stamped_messages, transformer
 
 STAMPED_GENERICS = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.printing import define_printer, prin1_to_string, princ_to_string, write
+from cramhy_runtime.lisp_core.printing import define_printer, prin1_to_string, princ_to_string, write
 from cramhy_runtime.tf.stamped import PointStamped, PoseStamped, TransformStamped, VectorStamped
 from cramhy_runtime.transforms.poses import Pose
 from ..transforms.package import head

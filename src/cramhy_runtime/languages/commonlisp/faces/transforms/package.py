@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import lisp_list, truth
+from cramhy_runtime.lisp_core.data import lisp_list, truth
 from ...packages.face_definition import define_face
-from cramhy_runtime.ground.classes import class_name
-from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.classes import class_name
+from cramhy_runtime.lisp_core.dispatch.open_functions import open_to_methods
+from cramhy_runtime.lisp_core.packages import sym
 from ...printer.print_controls import PRINT_ESCAPE
 from ...printer.printer import write
-from cramhy_runtime.ground.printing import define_printer
-from cramhy_runtime.ground.printing import prin1_to_string
+from cramhy_runtime.lisp_core.printing import define_printer
+from cramhy_runtime.lisp_core.printing import prin1_to_string
 from ...types.types import define_type
 
 from cramhy_runtime.transforms import matrices, poses, quaternions, vectors

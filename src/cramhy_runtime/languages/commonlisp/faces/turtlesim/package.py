@@ -8,11 +8,11 @@ a second.
 
 from __future__ import annotations
 
-from cramhy_runtime.ground import conditions
-from cramhy_runtime.ground.condition_types import SimpleError, shown
-from cramhy_runtime.ground.data import Symbol
+from cramhy_runtime.lisp_core import conditions
+from cramhy_runtime.lisp_core.condition_types import SimpleError, shown
+from cramhy_runtime.lisp_core.data import Symbol
 from ...packages.face_definition import define_face
-from cramhy_runtime.ground.packages import string_designator
+from cramhy_runtime.lisp_core.packages import string_designator
 from ...streams.streams import STANDARD_OUTPUT
 from cramhy_runtime.ros import graph
 from cramhy_runtime.ros.names import check_graph_name

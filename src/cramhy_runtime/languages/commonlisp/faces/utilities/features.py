@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import Symbol, lisp_list, one
-from cramhy_runtime.ground.packages import find_package, keyword
+from cramhy_runtime.lisp_core.data import Symbol, lisp_list, one
+from cramhy_runtime.lisp_core.packages import find_package, keyword
 from ...printer.print_controls import PACKAGE
 from ...packages.package_functions import find_symbol
 from ...evaluation.symbols import fboundp

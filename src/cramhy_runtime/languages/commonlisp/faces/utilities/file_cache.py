@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 
-from cramhy_runtime.ground.conditions import error, type_error
-from cramhy_runtime.ground.data import LispString, one
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import LispString, one
 
 _values: dict = {}
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.conditions import error
-from cramhy_runtime.ground.data import Character, Cons, FreshString, one, python_list, truth
-from cramhy_runtime.ground.functions import function_of
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.conditions import error
+from cramhy_runtime.lisp_core.data import Character, Cons, FreshString, one, python_list, truth
+from cramhy_runtime.lisp_core.functions import function_of
+from cramhy_runtime.lisp_core.packages import sym
 
 
 def random_with_minimum(value, offset):

@@ -6,12 +6,12 @@ here their names are exported, and at the end stand the functions that they call
 
 from __future__ import annotations
 
-from cramhy_runtime.ground.data import list_from, python_list, truth
-from cramhy_runtime.ground.dispatch.open_functions import open_to_methods
+from cramhy_runtime.lisp_core.data import list_from, python_list, truth
+from cramhy_runtime.lisp_core.dispatch.open_functions import open_to_methods
 from ...packages.face_definition import define_face
 from ...syntax.operator_macros import export
 from ....operators import UTILITIES
-from cramhy_runtime.ground.packages import sym
+from cramhy_runtime.lisp_core.packages import sym
 from ...types.types import define_type
 
 from cramhy_runtime.utilities import barriers, lazy_lists, locks, patterns, quad_trees, queues, semaphores, small_functions, threads

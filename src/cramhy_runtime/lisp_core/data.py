@@ -2,10 +2,10 @@
 
 ``nil`` is ``None``, ``t`` is ``True``, a cons is a `Cons`, a symbol is an interned `Symbol`. Integers, ratios and strings are
 Python's own. A double-float is Python's ``float``, as messages and poses have it; the other floats of Lisp are
-in ``ground/floats.py``. A function that returns several values returns one `MultipleValues`; `one` takes the first.
+in ``lisp_core/floats.py``. A function that returns several values returns one `MultipleValues`; `one` takes the first.
 
 What is equal in Python need not be ``eql`` in Lisp (``True == 1 == 1.0``), so nothing here compares by ``==`` on behalf of
-Lisp: see ``ground/equality.py``.
+Lisp: see ``lisp_core/equality.py``.
 """
 
 from __future__ import annotations
@@ -45,10 +45,10 @@ T = TypeVar("T")
 class Symbol:
     """A name with a value, a function, a property list and a home package.
 
-    ``value`` is the current dynamic value: see ``ground/dynamic.py`` for how tasks keep theirs apart.
+    ``value`` is the current dynamic value: see ``lisp_core/dynamic.py`` for how tasks keep theirs apart.
     ``function`` is always callable; that of an undefined function signals ``undefined-function``.
     ``reads`` and ``writes`` tell from which objects ``function`` and ``setf_function`` just read or write an attribute (`SlotClasses`),
-    ``keyed`` are the ways in which compiled code calls ``function`` with keywords (`ground.keyword_calls`). ``unary`` and ``binary`` are
+    ``keyed`` are the ways in which compiled code calls ``function`` with keywords (`lisp_core.keyword_calls`). ``unary`` and ``binary`` are
     tables for calls with one and two arguments, if ``function`` is generic: the function to call, by the class of the first argument.
     """
 

@@ -1,4 +1,4 @@
-"""Hash tables: Python dictionaries under the keys of ``ground/equality.py``.
+"""Hash tables: Python dictionaries under the keys of ``lisp_core/equality.py``.
 
 A value is found by the hash key of its key under the table's test. Most keys are their own hash keys; of the others the table keeps
 the key itself, as the program sees it. Entries stay in the order in which they were first stored, so that two runs of a program see

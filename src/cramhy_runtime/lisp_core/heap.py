@@ -1,7 +1,7 @@
 """Whether a large object can be made: a machine that has promised more memory than it has ends the whole process, or stands still.
 
 An object that cannot be made is a STORAGE-CONDITION, as in SBCL, and costs nothing (law 8). Where the system refuses the memory itself,
-Python raises a MemoryError, which becomes the same condition (`ground.python_exceptions`).
+Python raises a MemoryError, which becomes the same condition (`lisp_core.python_exceptions`).
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """What compiled code may know of the functions of symbols: from which classes' objects they just take a slot.
 
-`ground.data.Symbol` keeps these tables, and generic functions tell it when they change.
+`lisp_core.data.Symbol` keeps these tables, and generic functions tell it when they change.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""How type checkers see what the ground makes. Nothing imports this module when a program runs."""
+"""How type checkers see what this room makes. Nothing imports this module when a program runs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 class GenericOf(Protocol[P, R]):
-    """A generic function: what it takes and gives, and how methods are added (`cramhy_runtime.ground.dispatch.generic_functions`)."""
+    """A generic function: what it takes and gives, and how methods are added (`cramhy_runtime.lisp_core.dispatch.generic_functions`)."""
 
     advice: str | None
 

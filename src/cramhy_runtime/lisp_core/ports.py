@@ -1,8 +1,8 @@
-"""What the ground wants done by whoever is installed above it: eight typed ports, each with a plain Python answer.
+"""What the room lisp_core wants done by whoever is installed above it: eight typed ports, each with a plain Python answer.
 
-The ground shows objects, names classes, prints warnings, asks the user. How that is done depends on the language in which the session is
+The room shows objects, names classes, prints warnings, asks the user. How that is done depends on the language in which the session is
 held: Common Lisp has its printer, its class world, its streams and its debugger. A language puts its own objects into `PORTS` when it is
-started; until then the plain answers of the ground stand there (``plain_answers.py``), so that plans which are called from Python print
+started; until then its plain answers stand there (``plain_answers.py``), so that plans which are called from Python print
 and fail readably without any language.
 """
 
