@@ -193,9 +193,9 @@ def asked():
 
 def patches():
     sys.path.insert(0, str(ROOT / "tests"))
-    from test_house import FILES, foreign_patches
+    from test_foreign_patches import PATHS, foreign_patches
 
-    return sum(len(foreign_patches(path)) for path in FILES)
+    return sum(len(foreign_patches(path)) for path in PATHS)
 
 
 ROWS = {
