@@ -174,6 +174,14 @@ def test_each_name_is_called_by_a_test():
          " (let ((then (btr:object-attached (robot) (mug)))) (btr:detach-object (robot) (mug)) (list (sort (copy-list links) #'string<) then (btr:object-attached (robot) (mug)) (btr:attached-objects (robot))))))",
          '(("l_wrist_roll_link" "r_wrist_roll_link") ("r_wrist_roll_link") NIL NIL)'),
         ("(progn (btr:attach-object (robot) (mug) \"l_wrist_roll_link\") (btr:detach-all-objects (robot)) (btr:attached-objects (robot)))", "NIL"),
+        *((f"(flet ((touched () (mapcar #'btr:name (btr:robot-attached-objects-in-collision)))) (setf (btr:pose (mug)) (btr:ensure-pose '{where}))"
+           f" (btr-utils:spawn-object 'bowl-1 :bowl :pose '{other}) (let ((before (touched))) {attach} (list before (touched))))", found)
+          for where, other, attach, found in [
+              ("((0 9 2) (0 0 0 1))", "((0 8 2) (0 0 0 1))", '(btr:attach-object (robot) (mug) "l_wrist_roll_link")', "(NIL NIL)"),
+              ("((0 9 2) (0 0 0 1))", "((0 9 2) (0 0 0 1))", '(btr:attach-object (robot) (mug) "l_wrist_roll_link")', "(NIL (BOWL-1))"),
+              ("((0 9 2) (0 0 0 1))", "((0 9 2) (0 0 0 1))", '(dolist (name \'(mug-1 bowl-1)) (btr:attach-object (robot) (named name) "l_wrist_roll_link"))', "(NIL NIL)"),
+              ("((1.5 0.5 0.84) (0 0 0 1))", "((0 8 2) (0 0 0 1))", '(btr:attach-object (robot) (mug) "l_wrist_roll_link")', "(NIL (:KITCHEN))"),
+          ]),
         # seeing
         ("(let ((eye (btr:ensure-pose '((-2 -0.3 0.87) (0.7071 0 0 0.7071))))) (list (btr:object-visible-p *world* eye (mug)) (btr:object-visible-p *world* eye (mug) 2)))", "(T NIL)"),
         ("(let ((eye (btr:ensure-pose '((-2 -0.3 0.87) (0.7071 0 0 0.7071))))) (btr:add-object *world* :box 'screen '((-2 -0.6 0.9) (0 0 0 1)) :size '(0.5 0.02 0.5))"

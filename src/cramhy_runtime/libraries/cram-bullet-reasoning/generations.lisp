@@ -142,15 +142,15 @@
   nil)
 
 (defun robot-attached-objects-in-collision ()
-  "Whether something that the robot holds touches anything but the robot, and what else it holds or holds it."
+  "What something that the robot holds touches: a list of objects, but for the robot, and what else it holds or holds it; nil if none does."
   (let* ((robot (get-robot-object)) (held (mapcar #'first (attached-objects robot))))
     (loop for name in held
           for item = (object *current-bullet-world* name)
-            thereis (find-if-not (lambda (other)
-                                   (or (eq other robot)
-                                       (member (name other) held :test #'equal)
-                                       (and (typep other 'robot-object) (object-attached other item))))
-                                 (find-objects-in-contact *current-bullet-world* item)))))
+            thereis (remove-if (lambda (other)
+                                 (or (eq other robot)
+                                     (member (name other) held :test #'equal)
+                                     (and (typep other 'robot-object) (object-attached other item))))
+                               (find-objects-in-contact *current-bullet-world* item)))))
 
 ;;; Furniture.
 
