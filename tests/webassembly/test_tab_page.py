@@ -352,6 +352,53 @@ def test_a_button_of_another_page_begins_a_session_and_to_look_at_it_costs_nothi
     see(new, 2)
 
 
+def speak(page, language):
+    page.locator("#lesson-languages").get_by_text(language).click()
+
+
+def prompt(page, text):
+    page.locator("#repl-prompt", has_text=re.compile(rf"^{re.escape(text)}\s*$")).wait_for()
+
+
+def test_the_prompt_speaks_the_language_of_the_lesson_and_no_page_owns_a_session_for_that(visit):
+    page = visit()
+    anew = page.get_by_role("button", name="Begin this page anew")
+    prompt(page, "CL-USER>")
+    speak(page, "Hy")
+    prompt(page, "=>")
+    speak(page, "Hy")  # again: nothing is typed
+    page.get_by_role("button", name="The next page").click()
+    assert anew.count() == 0
+    page.reload()
+    prompt(page, "=>")
+    assert transcript(page).count("(in-hy)") == 1 and anew.count() == 0
+    page.get_by_role("button", name="The page before").click()
+    assert anew.count() == 0
+    page.locator("#repl-in").press_sequentially("(by-hand)")
+    page.keyboard.press("Enter")
+    wait_for(page, "#repl-out", "=> (by-hand)\n")
+    speak(page, "Lisp")
+    prompt(page, "TUT>")
+    page.get_by_role("button", name="The next page").click()
+    assert anew.count() == 1
+    speak(page, "Hy")
+    anew.click()
+    prompt(page, "=>")
+    assert anew.count() == 0 and transcript(page).count("This page begins a new session.") == 1
+
+
+def test_the_prompt_keeps_its_language_until_the_debugger_is_left(visit):
+    page = visit()
+    page.locator("#repl-in").press_sequentially("(error)")
+    page.keyboard.press("Enter")
+    prompt(page, "0]")
+    speak(page, "Hy")
+    page.locator("#repl-in").press_sequentially("1")
+    page.keyboard.press("Enter")
+    prompt(page, "=>")
+    assert transcript(page).endswith("0] 1\nCL-USER> (in-hy)\n")
+
+
 @pytest.mark.parametrize(
     ("width", "height", "beside"),
     [

@@ -4,6 +4,8 @@
 // A page is written for a session that begins with it: its turtle stands in the middle, and a package that the user writes on other pages has
 // the name of one that comes with the course. So the session belongs to the page on which something was typed last, and another page's first
 // button begins a new one. Those who only look at another page lose nothing, and neither do those who type there by hand.
+//
+// The prompt speaks the language of the lesson from its first line on. What is typed for that belongs to no page.
 
 import { byId, el, setText } from "./dom.js";
 import { keep, kept } from "./settings.js";
@@ -19,7 +21,11 @@ export class Lesson {
     Object.assign(this, { code, show, pages: [], number: 0, hints: new Map(), tellings: new Map() });
     this.progress = remembered();
     this.owner = this.settled = null; // the page to which the session belongs, and for which page and language its files are there
-    this.seen = tab.prompts; // prompts that there had been when the user turned to this page
+    this.led = 0; // prompts that came since the lesson led to its language
+    this.leads = true; // whether the next prompt is to be that of the language of the lesson
+    this.seen = this.#prompts; // prompts that there had been when the user turned to this page
+    tab.on("prompt", () => this.#prompt());
+    tab.on("anew", () => Object.assign(this, { leads: true, leading: false }));
     byId("lesson-before").addEventListener("click", () => this.turn(this.number - 1));
     byId("lesson-after").addEventListener("click", () => this.turn(this.number + 1));
     byId("lesson-pages").addEventListener("change", ({ target }) => this.turn(target.selectedIndex));
@@ -43,7 +49,7 @@ export class Lesson {
     if (!this.pages[number]) return;
     this.#note();
     this.number = number;
-    this.seen = tab.prompts;
+    this.seen = this.#prompts;
     this.progress.page = this.pages[number].name;
     this.#remember();
     this.render();
@@ -57,6 +63,8 @@ export class Lesson {
       button.setAttribute("aria-pressed", String(button.dataset.language === language));
     }
     this.render();
+    this.leads = true;
+    this.#lead();
   }
 
   render() {
@@ -82,9 +90,27 @@ export class Lesson {
 
   // ------------------------------------------------------------------------------------------------ the session and the pages
 
+  // The prompts that there have been, without those that came of a change of language.
+  get #prompts() {
+    return tab.prompts - this.led;
+  }
+
+  #prompt() {
+    if (this.leading) this.led++;
+    this.leading = false;
+    this.#lead();
+  }
+
+  // Let the prompt be that of the language of the lesson, once it waits for a form. In the debugger it waits for a choice.
+  #lead() {
+    if (!this.leads || !this.pages.length || tab.state !== "waits" || /^\d+\] /.test(tab.prompt.text)) return;
+    this.leads = false;
+    this.leading = tab.lead(this.progress.language);
+  }
+
   // Where something was typed since the user turned to this page, the session belongs to it. The first prompt of all comes by itself.
   #note() {
-    if (tab.prompts > Math.max(this.seen, 1)) this.owner = this.pages[this.number].name;
+    if (this.#prompts > Math.max(this.seen, 1)) this.owner = this.pages[this.number].name;
   }
 
   // A button that begins a session for this page, if that which is there belongs to another one.
@@ -115,7 +141,7 @@ export class Lesson {
       tab.restart(t("This page begins a new session. What was defined is gone; files are kept."));
       this.render();
     }
-    if (other || !before) await this.#prompted(before);
+    if (other || this.leading || !before) await this.#prompted(before);
     if (this.settled === `${name} ${language}`) return;
     this.settled = `${name} ${language}`;
     await tab.ask("page", { page: name, language });

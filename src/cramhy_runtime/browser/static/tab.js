@@ -123,6 +123,20 @@ class Tab {
   // Evaluate TEXT at the prompt, as one, in a language ("lisp" or "hy") and in a package of Lisp. What leads there is typed first. At the
   // prompt a long text is not shown whole. place: {path, line, column} of a file, where the text stands.
   run(text, { language = "lisp", name = null, place = null } = {}) {
+    this.worker.postMessage({ kind: "lines", value: [...this.#way(language, name), text], place });
+  }
+
+  // Let the prompt, which waits, be that of a language. Returns whether something was typed for that: then another prompt comes.
+  lead(language) {
+    const lines = this.#way(language);
+    if (!lines.length) return false;
+    this.#enter("busy");
+    this.worker.postMessage({ kind: "lines", value: lines });
+    return true;
+  }
+
+  // The lines that lead to a language, and to a package of Lisp.
+  #way(language, name = null) {
     const lines = [];
     if (language === "hy") {
       if (this.prompt.language !== "hy") lines.push("(in-hy)");
@@ -135,7 +149,7 @@ class Tab {
       }
     }
     this.prompt = { ...this.prompt, language }; // as it will be, for what is typed before the next prompt comes
-    this.worker.postMessage({ kind: "lines", value: [...lines, text], place });
+    return lines;
   }
 
   interrupt() {
