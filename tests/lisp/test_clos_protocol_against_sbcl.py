@@ -406,3 +406,50 @@ PROTOCOLS = r"""
 
 def test_protocols_answer_as_in_sbcl():
     check(PROTOCOLS)
+
+
+ORDERS = r"""
+(defun specialized (g) (mapcar (lambda (m) (let ((s (first (sb-mop:method-specializers m)))) (if (typep s 'class) (class-name s) (sb-mop:eql-specializer-object s)))) (sb-mop:generic-function-methods g)))
+(defgeneric pick (x) (:method ((x integer)) 1) (:method ((x string)) 2) (:method ((x symbol)) 3))
+(specialized #'pick)
+=> (INTEGER STRING SYMBOL)
+(defmethod pick ((x (eql 7))) 7)
+(defmethod pick :around ((x integer)) (call-next-method))
+(specialized #'pick)
+=> (INTEGER 7 INTEGER STRING SYMBOL)
+(defmethod pick ((x string)) 22)
+(specialized #'pick)
+=> (STRING INTEGER 7 INTEGER SYMBOL)
+(let ((m (find-method #'pick nil (list (find-class 'symbol))))) (remove-method #'pick m) (add-method #'pick m))
+(specialized #'pick)
+=> (SYMBOL STRING INTEGER 7 INTEGER)
+(mapcar #'method-qualifiers (compute-applicable-methods #'pick '(7)))
+=> (NIL (:AROUND) NIL)
+(defgeneric twice (x) (:method ((x integer)) 1) (:method ((x integer)) 2) (:method ((x string)) 3))
+(list (twice 1) (length (sb-mop:generic-function-methods #'twice)))
+=> (1 2)
+(defgeneric again (x) (:method ((x integer)) 1) (:method ((x string)) 3))
+(defmethod again ((x symbol)) 5)
+(defgeneric again (x) (:method ((x float)) 1) (:method ((x list)) 3))
+(specialized #'again)
+=> (FLOAT LIST SYMBOL)
+(define-method-combination gathered () ((all *)) `(list ,@(mapcar (lambda (m) `(call-method ,m)) all)))
+(defgeneric gather (x) (:method-combination gathered) (:method :a ((x integer)) :a) (:method :b ((x integer)) :b))
+(defmethod gather :c ((x integer)) :c)
+(defmethod gather :d ((x number)) :d)
+(defmethod gather :e ((x integer)) :e)
+(gather 1)
+=> (:E :C :A :B :D)
+(defclass first-one () ((s :accessor shared)))
+(defclass second-one (first-one) ((s :accessor shared)))
+(defclass third-one (first-one) ())
+(specialized #'shared)
+=> (SECOND-ONE FIRST-ONE)
+(mapcar #'class-name (sb-mop:class-direct-subclasses (find-class 'first-one)))
+=> (THIRD-ONE SECOND-ONE)
+"""
+
+
+def test_methods_and_subclasses_stand_in_the_order_of_sbcl():
+    """The newest first; CRAM's branch devel takes the grasps of an object in the order of the methods that give them."""
+    check(ORDERS)

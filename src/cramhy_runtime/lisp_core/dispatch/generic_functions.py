@@ -448,7 +448,7 @@ def define_generic(name, lambda_list=None, *, methods=None, generic_function_cla
     function.combination, function.combination_options, function.precedence = STANDARD, (), None
     function.from_defgeneric = []
     ensure_generic_function(name, method_class=method_class, **options)
-    for method in python_list(methods):
+    for method in reversed(python_list(methods)):  # as on SBCL, the first comes first and wins
         qualifiers, specializers, method_lambda_list, code, uses_next = python_list(method)
         function.from_defgeneric.append(
             add_method(function, qualifiers, specializers, code, lambda_list=method_lambda_list, uses_next=uses_next)
@@ -517,7 +517,8 @@ def add_method(
 def enter_method(generic_function, method, *, user=True):
     """Make ``method``, which belongs to no generic function, one of ``generic_function``. Returns the method.
 
-    It replaces one with the same qualifiers and specializers. Errors: `incongruent`, where its lambda list does not fit.
+    It comes first, as on SBCL, where programs read the order, and replaces one with the same qualifiers and specializers. Errors:
+    `incongruent`, where its lambda list does not fit.
     """
     shape, specializers, function = method.shape, method.specializers, method.function
     if not generic_function.shape.agrees_with(shape) or len(specializers) != generic_function.shape.required:
@@ -531,8 +532,8 @@ def enter_method(generic_function, method, *, user=True):
     elif user:
         generic_function.user_methods += 1
     if not user:
-        generic_function.own_methods = [own for own in generic_function.own_methods if own is not old] + [method]
-    generic_function.methods.append(method)
+        generic_function.own_methods = [method] + [own for own in generic_function.own_methods if own is not old]
+    generic_function.methods.insert(0, method)
     method.generic_function = generic_function
     generic_function.combination.check(generic_function, method)
     if hasattr(function, "__dict__"):
