@@ -64,26 +64,46 @@ def filled(line: str, style: Style) -> str:
 
 def code(block: str, style: Style) -> str:
     """A block of code, indented. A line that is too long goes on below, further in."""
-    return "\n".join(
-        f"    {style.code(part)}" if part else "" for line in block.rstrip("\n").split("\n") for part in _broken(line, style.width - 4)
-    )
+    found, inside = [], False
+    for line in block.rstrip("\n").split("\n"):
+        found += _broken(line, style.width - 4, inside)
+        inside = _ends_in_a_text(line, inside)
+    return "\n".join(f"    {style.code(part)}" if part else "" for part in found)
 
 
 _COMMENT = re.compile(r'((?:[^";\\]|\\.|"(?:[^"\\]|\\.)*"?)*)(;*)(.*)')
 """A line of code: what stands before a comment, its semicolons, its text."""
 
 
-def _broken(line, width):
+_OF_TEXT = re.compile(r'(?:[^"\\]|\\.)*("?)')
+"""What is left of a text that began on a line before, and its end."""
+
+
+def _ends_in_a_text(line, inside):
+    """Whether a text in double quotes is open at the end of ``line``. inside: whether one is at its beginning."""
+    if inside:
+        rest = _OF_TEXT.match(line)
+        if not rest[1]:
+            return True
+        line = line[rest.end() :]
+    code = _COMMENT.fullmatch(line)[1]
+    return re.sub(r'#\\.|"(?:[^"\\]|\\.)*"|\\.', "", code).count('"') % 2 == 1
+
+
+def _broken(line, width, inside=False):
     """A line of code in pieces of at most ``width`` columns. They end between words, so a longer word stays whole.
 
-    A comment goes on as a comment, so that what is typed as it stands is the same code.
+    A comment goes on as a comment, so that what is typed as it stands is the same code. inside: whether the line begins in a text that
+    began on a line before.
     """
     if len(line) <= width:
         return [line]
-    before, mark, comment = _COMMENT.fullmatch(line).groups()
+    text = _OF_TEXT.match(line)[0] if inside else ""
+    before, mark, comment = _COMMENT.fullmatch(line[len(text) :]).groups()
+    before = text + before
     if mark:
         indent = " " * (len(before) - len(before.lstrip()))
-        pieces, begin = ([], before + mark) if len(before) < width * 2 // 3 else (_broken(before.rstrip(), width), indent + mark)
+        pieces, begin = ([], before + mark) if len(before) < width * 2 // 3 else (_broken(before.rstrip(), width, inside), indent + mark)
         lead = f"{begin} " if comment.startswith(" ") else begin
         further = f"{indent}{mark} "
         return pieces + textwrap.wrap(
