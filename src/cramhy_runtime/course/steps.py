@@ -31,6 +31,8 @@ ERROR = ("debugger invoked", "Traceback (most recent", "cramhy: ")
 """In the answer of a form that a page shows to fail."""
 _MARKS = re.compile(r"^ +[\^~]{40,}\n", re.M)
 """A line of a traceback that marks a whole long line above it, which a step shows broken."""
+_MARKS_OF_LONG = re.compile(rf"^(.{{{COLUMNS - 4},}}\n) *[\^~]+\n", re.M)
+"""A line that is broken, and the line of marks below it, which would stand under other words."""
 _OF_DEBUGGER = re.compile(r"\d+\] ")
 _BLOCKS = re.compile(r"^```.*?^```$|(?:^(?!```)[^\n]+\n?)+", re.M | re.S)
 _COMMENT = re.compile(r"^<!--.*?-->\n?", re.M | re.S)
@@ -72,7 +74,7 @@ def steps(page: Page, language: str) -> list[Step]:
 
 def answer_shown(typed: Typed) -> str:
     """The answer of a form as a step shows it: without many lines of the log, and without the middle of a long one."""
-    answer = _MARKS.sub("", _LOG.sub(_SHORT_LOG, typed.answer))
+    answer = _MARKS_OF_LONG.sub(r"\1", _MARKS.sub("", _LOG.sub(_SHORT_LOG, typed.answer)))
     most = min(LONGEST_ANSWER, MOST - _rows(f"{typed.prompt}{typed.form}"))
     if not answer or _rows(answer) <= most:
         return answer
