@@ -11,7 +11,7 @@ import re
 from cramhy_runtime.kernel.typing_names import NamedTuple
 
 from . import checking, contents, files, mistyped, shown, slips
-from .parts import Code, File, Task, Typed, text_in
+from .parts import Code, File, Task, Text, Typed, text_in
 from .progress import Progress
 from .reading import PageError, page, pages
 from .replay import Replay
@@ -37,6 +37,8 @@ _SHORT = {short: name for name, (short, _) in COMMANDS.items() if short}
 WITH_ARGUMENT = ("page",)
 _WITHOUT_PARENTHESES = re.compile(r"\s*[-+*/](?:\s+-?\d[\d.]*)+\s*")
 _OF_DEBUGGER = re.compile(r"\d+\] ")
+_IN_TEXT = re.compile(r"`([^`]+)`")
+_WORD = re.compile(r"(?:[\w-]+[.:]+)*([^\s()\[\]{}'`\",.:;#]+)")
 OVER = "; To see the next step, type :next"
 
 
@@ -103,6 +105,7 @@ class Guide:
         self.over = False
         self._hints: dict[int, int] = {}  # how many hints of a step were shown, by its place
         self._checked = False  # whether the task of this step was checked since the step is shown
+        self._begins_anew = False  # whether :type may type the start of a solved task
         self._waiting: list[Typed] = []  # what is still to be typed of this step
         self._read: Typed | None = None  # which of them is being answered
         self._cue: str | None = None
@@ -127,7 +130,7 @@ class Guide:
         part = self.step.part
         self._waiting = list(getattr(part, self.language)) if isinstance(part, Code) else []
         self._read = self._cue = None
-        self._checked = False
+        self._checked = self._begins_anew = False
         self.progress.page = self.page.name
         self.progress.steps[self.page.name] = self.place
         self.progress.keep()
@@ -223,6 +226,17 @@ class Guide:
         forms = [slips.Form(text, step) for text, step in self._forms().items() if _squeezed(text) not in self._typed]
         return forms, self.place + 1, contents.NAMES.index(self.page.name) + 1
 
+    def _words(self):
+        """The names that stand in the code of the page, also in that of its texts."""
+        found = []
+        for part in self.page.parts:
+            if isinstance(part, Code):
+                found += [typed.form for typed in getattr(part, self.language)]
+            elif isinstance(part, (Task, Text)):
+                found += _IN_TEXT.findall(text_in(part.markdown, self.language))
+                found += [part.start.get(self.language, "")] if isinstance(part, Task) else []
+        return _WORD.findall(" ".join(found))
+
     def of_debugger(self) -> str:
         """What to say when the debugger has opened."""
         more = " You need not read the choices." if self.page.name in contents.NAMES[:3] else ""
@@ -234,7 +248,8 @@ class Guide:
         self._cue = self._cue or slips.of_failed_form(self._text, self.language)
         self._cue = self._cue or mistyped.of_failed_form(self._text, self.language, self.replay.texts)
         if missing is not None:
-            self._cue = self._cue or mistyped.of_name(missing, self.language) or slips.of_missing(missing, *self._untyped())
+            self._cue = self._cue or mistyped.of_name(missing, self.language)
+            self._cue = self._cue or slips.of_missing(missing, *self._untyped(), known=self._words())
         elif error is not None:
             self._cue = self._cue or slips.of_error(error.told, self._text, self.language)
             self._cue = self._cue or slips.of_unready(*self._untyped(), told=error.told)
@@ -318,6 +333,9 @@ class Guide:
         if isinstance(part, Task):
             if self.language not in part.start:
                 return "; A task is for you to type. :hint gives a hint."
+            if part.name in self.progress.solved and not self._begins_anew:
+                self._begins_anew = True
+                return "; This task is solved, and your solution counts. To begin anew, with the form above in its place, type :type again."
             self.replay.type(part.start[self.language].rstrip("\n"))
             return ""
         return "; This step has nothing more to type. :next goes on."

@@ -30,7 +30,7 @@ from cramhy_runtime.repl.listener import Listener, at_the_prompt
 from cramhy_runtime.session import Image
 from cramhy_runtime.session.session import Interruption
 
-from . import contents, files, guide
+from . import contents, files, guide, slips
 from .checking import hy_evaluator, lisp_evaluator
 from .guide import Failure, Guide
 from .progress import Progress
@@ -132,6 +132,13 @@ class Guided(Listener):
         self.tell(self.guide.of_debugger())
         self._answered_there = None
 
+    def choices(self, restarts: list[Any]) -> list[str]:
+        """Those of the innermost error. The choices of errors before it were shown with them; they keep their numbers of now."""
+        own = next((number for number, restart in enumerate(restarts, 1) if symbol_name(restart.name) == "ABORT"), len(restarts))
+        if not self.level or own == len(restarts):
+            return super().choices(restarts)
+        return [*super().choices(restarts[:own]), f"  {own} and more: the choices of the errors before"]
+
     def forget_interrupt(self) -> None:
         self.guide.failed()
         super().forget_interrupt()
@@ -158,6 +165,9 @@ class LispPrompt(Guided, Console):
 
     def over(self) -> bool:
         return self.guide.over
+
+    def explained(self, condition):
+        return slips.in_words_of_lisp(super().explained(condition))
 
     def evaluator(self):
         return lisp_evaluator(self.session)

@@ -141,6 +141,15 @@ def of_error(told: str, text: str, language: str) -> str | None:
     return None
 
 
+_OF_HY = re.compile(r"(\S+) is Hy\. In Common Lisp it is (?:written )?(.+)\. In a \.hy file .*")
+_BRACKET = re.compile(r"(\S) is a bracket of Hy\. Common Lisp writes (.+)\. In a \.hy file .*")
+
+
+def in_words_of_lisp(told: str) -> str:
+    """The text of an error for those who learn Lisp: where it speaks of Hy, it says only how Lisp writes the same."""
+    return _BRACKET.sub(r"Lisp has no \1 here. It writes \2.", _OF_HY.sub(r"In Lisp, \1 is written \2.", told))
+
+
 # ---------------------------------------------------------------------------------------------------------- what was passed over
 
 _DEFINES = re.compile(
@@ -171,17 +180,18 @@ def names(form: str) -> set[str]:
     return {name.lower().replace("_", "-") for name in found}
 
 
-def of_missing(name: str, forms: Iterable[Form], here: int, page: int) -> str | None:
+def of_missing(name: str, forms: Iterable[Form], here: int, page: int, known: Iterable[str]) -> str | None:
     """What to say when ``name`` is not defined, and ``forms`` of the page were not typed; ``None`` if they have nothing to do with it.
 
-    here: the number of the step that is shown. page: the number of the page.
+    here: the number of the step that is shown. page: the number of the page. known: the names that the page uses; what it loads may have
+    one of these, but none that the student has made up.
     """
     forms = list(forms)
     wanted = name.lower().replace("_", "-")
     for form in forms:
         if wanted in names(form.text):
             return _lack(form, here, page, f"{wanted} is defined by")
-    for form in forms:
+    for form in forms if wanted in {word.lower().replace("_", "-") for word in known} else ():
         if _LOADS.match(form.text):
             return _lack(form, here, page, "What this page needs is loaded by")
     return None
@@ -217,4 +227,4 @@ def _lack(form, here, page, what):
     return f"; {what} a form that you have not typed: {shown} :page {page} {form.step} leads back to it."
 
 
-__all__ = ["Form", "names", "of_error", "of_failed_form", "of_line", "of_missing", "of_unprepared", "of_unready"]
+__all__ = ["Form", "in_words_of_lisp", "names", "of_error", "of_failed_form", "of_line", "of_missing", "of_unprepared", "of_unready"]

@@ -335,18 +335,25 @@ class Listener:
     def announce(self, condition, restarts):
         output = streams.CONSOLE_OUTPUT
         output.fresh_line()
-        width = max(len(symbol_name(restart.name)) for restart in restarts)
         lines = [
             "",
             f"debugger invoked on a {condition_type(condition)}:",
-            explanation(condition),
+            self.explained(condition),
             *backtrace.lines(condition),
             "",
             "restarts (type a number to choose one, or a form to evaluate):",
         ]
-        lines += [f"  {index}: [{symbol_name(restart.name):{width}}] {report_of(restart)}" for index, restart in enumerate(restarts)]
-        output.write("\n".join(lines) + "\n")
+        output.write("\n".join([*lines, *self.choices(restarts)]) + "\n")
         output.flush()
+
+    def explained(self, condition):
+        """What the debugger tells of ``condition``, below its type."""
+        return explanation(condition)
+
+    def choices(self, restarts):
+        """The lines that offer ``restarts`` by number."""
+        width = max(len(symbol_name(restart.name)) for restart in restarts)
+        return [f"  {index}: [{symbol_name(restart.name):{width}}] {report_of(restart)}" for index, restart in enumerate(restarts)]
 
     @typed_meanwhile()
     @circumstance.begins_with
