@@ -11,6 +11,7 @@ from pathlib import Path
 import hy
 import pytest
 
+from cramhy_runtime.languages.hy.malformed import ProgramForm
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp_core.data import Cons, Symbol
 from cramhy_runtime.repl.session import Session
@@ -36,7 +37,7 @@ def in_hy(text, where):
     """The value of the last form of ``text``; each is compiled as in a file."""
     value = None
     for form in hy.read_many(text):
-        value = hy.eval(hy.models.Expression([hy.read("hy.R.cramhy._form"), form]), module=where)
+        value = hy.eval(ProgramForm(form), module=where)
     return value
 
 

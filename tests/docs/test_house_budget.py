@@ -18,7 +18,9 @@ def test_a_figure_is_within_its_budget(key):
     pytest.importorskip("greenlet", reason="the calls are counted on greenlets: pip install greenlet")
     what, _, count = house.ROWS[key]
     room = 1.05 if key in RUNNING else 1  # what a session calls depends a little on the version of Python
-    assert count() <= KNOWN["budget"][key] * room, f"{what}: delete something, or raise the budget in tests/docs/house.json and say what it buys"
+    assert count() <= KNOWN["budget"][key] * room, (
+        f"{what}: delete something, or raise the budget in tests/docs/house.json and say what it buys"
+    )
 
 
 def test_the_page_has_the_budgets():

@@ -7,7 +7,6 @@ innermost frame of a ``.lisp`` or ``.hy`` file or of a REPL line, and shows that
 from __future__ import annotations
 
 import os
-import re
 import sys
 from itertools import islice
 
@@ -281,6 +280,8 @@ def calling_form(frame, passed_over=()):
         if filename == places[0][0]:
             return None
         text = linecache.getline(filename, line)[max(0, (column or 0) - 1) :]
+        import re  # only an error needs it
+
         operator = re.match(r"\(([^\s()\[\]]+)", text)
         if operator is not None and operator[1].lower() not in passed_over:
             form = _balanced(text)
@@ -294,6 +295,8 @@ _LONGEST_FORM = 60
 def _balanced(line):
     """The form at the beginning of ``line``, or ``None`` if it does not end in it."""
     depth = 0
+    import re
+
     for token in re.finditer(r'"(?:[^"\\]|\\.)*"|[()]', line):
         depth += {"(": 1, ")": -1}.get(token[0], 0)
         if depth == 0:
