@@ -12,7 +12,7 @@ import _ast as trees  # what `ast` is made of; that one takes 4 ms to import
 import math
 from types import FunctionType
 
-from cramhy_runtime.lisp_core.data import Cons, Symbol
+from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol
 from cramhy_runtime.lisp_core.packages import COMMON_LISP, CRAMHY, sym
 from ..compiler.frame_exits import DEBUGGED
 
@@ -44,7 +44,7 @@ def code_of_plain_call(form, unit):
             if value.car is not QUOTE or value.cdr.__class__ is not Cons or value.cdr.cdr is not None:
                 return None
             value = value.cdr.car
-        elif value.__class__ is Symbol:
+        elif value.__class__ is not Keyword and isinstance(value, Symbol):  # some variables are of classes of their own
             return None
         if value.__class__ is float and not math.isfinite(value):
             return None
