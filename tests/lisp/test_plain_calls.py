@@ -88,6 +88,29 @@ def test_any_other_call_is_compiled(compared, text):
     assert True not in compared(text.replace("_", " "))
 
 
+@pytest.mark.parametrize(
+    "variable",
+    [
+        "*seen*",
+        "written",
+        "+most+",
+        "pi",
+        "cpl:*of-task*",
+        "cpl:*of-parameter*",
+        "cram-execution-trace:*last-episode-knowledge*",
+        "*",
+        "drive",
+    ],
+)
+def test_a_variable_of_any_kind_is_not_a_constant(session, compared, variable):
+    session.evaluate_text(
+        """(defvar *seen* 1) (define-symbol-macro written *seen*) (defconstant +most+ 3) (cpl:define-task-variable cpl::*of-task* 4)
+        (cpl:def-cpl-parameter cpl::*of-parameter* 5)""",
+        "<t>",
+    )
+    assert compared(f"(drive {variable.replace(':*of', '::*of')} 2)") == [False]
+
+
 def test_a_traced_function_is_called_as_it_is(session, compared):
     session.evaluate_text("(trace drive)", "<t>")
     try:
