@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import re
 import sys
-from contextlib import contextmanager
 
-from cramhy_runtime import kernel
 from cramhy_runtime.grading import in_session
 from cramhy_runtime.lisp_core import restarts
+from cramhy_runtime.lisp_core.conditions import handler_bind
 from cramhy_runtime.lisp_core.condition_types import SimpleStyleWarning
 from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.lisp_core.packages import near_names, sym
@@ -20,7 +19,7 @@ from .reading import PageError, pages
 from .typed_forms import TypedForms
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from types import FrameType
 
@@ -66,25 +65,21 @@ def check(
     if (name_of := typed.refused()) is not None:
         return {"passed": False, "told": [NOT_TAKEN.format(name_of)]}
     tables = [in_language(table, language) for table in wanted.checks]
-    with _quiet():
-        wrong = in_session.faults(wanted.title, tables, evaluate, language, typed.form)
+    wrong = _quietly(lambda: in_session.faults(wanted.title, tables, evaluate, language, typed.form))
     if wrong and (match := _NO_ANSWER.match(wrong[0])) is not None and _PRINTS.search(typed.definition(match["function"]) or ""):
         wrong.append(PRINTED)
     return {"passed": not wrong, "told": wrong or [PASSED]}
 
 
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Let no log of the robot and no style warning be shown in the block: a check calls what is the student's many times."""
-    task, levels = kernel.current(), graph.active().debug_levels
-    handlers, before = task.handlers, dict(levels)
-    task.handlers = [(SimpleStyleWarning, restarts.muffle_warning)], handlers
+def _quietly(look: Callable[[], list[str]]) -> list[str]:
+    """What ``look`` returns. Meanwhile no log of the robot and no style warning is shown: a check calls the student's functions often."""
+    levels = graph.active().debug_levels
+    before = dict(levels)
     levels.clear()
     levels[()] = rosout.WARN
     try:
-        yield
+        return handler_bind([(SimpleStyleWarning, restarts.muffle_warning)], look)
     finally:
-        task.handlers = handlers
         levels.clear()
         levels.update(before)
 

@@ -11,7 +11,7 @@ import platform
 from pathlib import Path
 
 from cramhy_runtime.lisp_core.conditions import Error, SimpleError, Warning_, error
-from cramhy_runtime.lisp_core.data import Cons, all_values, list_from, lisp_list, one
+from cramhy_runtime.lisp_core.data import Cons, Keyword, all_values, list_from, lisp_list, one
 from cramhy_runtime.lisp_core.functions import function_of
 from cramhy_runtime.lisp_core.packages import is_symbol, keyword, string_designator, sym, symbol_name
 from cramhy_runtime.kernel.images import per_image
@@ -297,9 +297,8 @@ def bundle_pathname_type(bundle: Any) -> Any:
         return bundle
     if bundle is keyword("PROGRAM"):
         return None
-    for name, ending in _ENDINGS.items():
-        if bundle is keyword(name):
-            return ending
+    if isinstance(bundle, Keyword) and bundle.name in _ENDINGS:
+        return _ENDINGS[bundle.name]
     return error("~S is not a kind of bundle. ASDF knows :program~{, :~(~A~)~}.", bundle, list_from([*_ENDINGS]))
 
 
