@@ -1,11 +1,15 @@
 """Regular expressions that are compiled when they are used first.
 
 Python compiles one in a fifth of a millisecond. A session needs few of those that its modules have, and none of them before its prompt.
+Until then a program that only runs plans does without the module ``re``, too.
 """
 
 from __future__ import annotations
 
-import re
+from .typing_names import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import re
 
 
 class _LatePattern:
@@ -13,6 +17,8 @@ class _LatePattern:
         self._text, self._flags = text, flags
 
     def __getattr__(self, name: str) -> object:
+        import re
+
         value = getattr(re.compile(self._text, self._flags), name)
         setattr(self, name, value)  # so the next use takes no call
         return value

@@ -10,6 +10,7 @@ import os
 import sys
 from itertools import islice
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from .data import list_from
 from .conditions import guarded
 
@@ -280,9 +281,7 @@ def calling_form(frame, passed_over=()):
         if filename == places[0][0]:
             return None
         text = linecache.getline(filename, line)[max(0, (column or 0) - 1) :]
-        import re  # only an error needs it
-
-        operator = re.match(r"\(([^\s()\[\]]+)", text)
+        operator = _OPERATOR.match(text)
         if operator is not None and operator[1].lower() not in passed_over:
             form = _balanced(text)
             return form if form is not None and len(form) <= _LONGEST_FORM else f"({operator[1]} ...)"
@@ -290,14 +289,14 @@ def calling_form(frame, passed_over=()):
 
 
 _LONGEST_FORM = 60
+_OPERATOR = late_pattern(r"\(([^\s()\[\]]+)")
+_MARK = late_pattern(r'"(?:[^"\\]|\\.)*"|[()]')
 
 
 def _balanced(line):
     """The form at the beginning of ``line``, or ``None`` if it does not end in it."""
     depth = 0
-    import re
-
-    for token in re.finditer(r'"(?:[^"\\]|\\.)*"|[()]', line):
+    for token in _MARK.finditer(line):
         depth += {"(": 1, ")": -1}.get(token[0], 0)
         if depth == 0:
             return line[: token.end()]
