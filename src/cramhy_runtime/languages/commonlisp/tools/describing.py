@@ -354,7 +354,7 @@ def describe_function(function, out):
         out.line(f"Method-combination: {symbol_name(generic.combination.name)}")
         out.line("Methods:" if generic.methods else "No methods.")
         with out.indented():
-            for method in reversed(generic.methods):
+            for method in generic.methods:
                 out.line(one_line(list_from([generic.__lisp_name__, *method.qualifiers, specializer_names(method)])))
                 with out.indented():
                     out.documentation(method.documentation)
