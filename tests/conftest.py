@@ -24,10 +24,13 @@ except ImportError:  # a part of it is compiled, and not for WebAssembly
 
 TESTS = Path(__file__).parent
 LEFT_OUT = [
-    (re.compile(fnmatch.translate(pattern)), int(share or 0))
-    for pattern, share in re.findall(r"^(?!#)(.+?)(?: 1/(\d+))?$", (TESTS / "long_tests.txt").read_text(encoding="utf-8"), re.M)
+    (re.compile(fnmatch.translate(pattern)), int(share or 0), pattern if together else None)
+    for pattern, share, together in re.findall(
+        r"^(?!#)(.+?)(?: 1/(\d+)( together)?)?$", (TESTS / "long_tests.txt").read_text(encoding="utf-8"), re.M
+    )
 ]
-"""Which tests `make soak` alone runs: patterns of their names, and of how many siblings one runs everywhere (0: none does)."""
+"""Which tests `make soak` alone runs: patterns of their names, and of how many siblings one runs everywhere (0: none does). The third is the
+name of the family if all that the pattern fits are siblings; otherwise the cases of one test are."""
 
 A_FEW_ROOMS = 8000
 """So many cases or fewer run whole: who works on a room wants every case of it."""
@@ -36,6 +39,12 @@ SHARED = REPOSITORY.parent / "shared"
 
 
 LONG = (
+    "webassembly",
+    "robot_world",
+    "course",
+    "docs",
+    "libraries",
+    "grading",
     "session",
     "test_standard_page.py",
     "newcomer",
@@ -77,11 +86,11 @@ def pytest_collection_modifyitems(config, items):
     families: dict[str, list] = collections.defaultdict(list)
     for item in items:
         name = f"{path_of(item.path)}::{item.name}"
-        share = next(share for pattern, share in LEFT_OUT if pattern.match(name))
+        share, family = next((share, family) for pattern, share, family in LEFT_OUT if pattern.match(name))
         if not share:
             item.add_marker(takes_long)
         elif len(items) > A_FEW_ROOMS and not SOAK:
-            families[f"{share} {name.partition('[')[0]}"].append(item)
+            families[f"{share} {family or name.partition('[')[0]}"].append(item)
     left_out = set()
     for name, siblings in families.items():
         share = min(int(name.partition(" ")[0]), len(siblings))

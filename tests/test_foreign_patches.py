@@ -15,7 +15,7 @@ import sys
 
 import pytest
 
-from test_house import FILES, ROOT, SOURCE, tree_of
+from test_house import FILES, ROOT, SOURCE, nodes_of, tree_of
 
 OURS = ("cramhy_runtime", "cramhy")
 PATHS = (*FILES, *sorted((ROOT / "hy_src").rglob("*.py")))
@@ -32,17 +32,18 @@ LIBRARIES = ("hy", "code", "codeop", "mcap", "asyncio", "importlib", "greenlet",
 """The libraries with objects that live longer than one call of ours: an attribute that hides a method of theirs is a patch."""
 
 
+@functools.cache
 def foreign_names(tree):
     """For each local name of a file that stands for a module of others, or for something in one: its dotted name. Aliases count, too."""
     names = {}
-    for node in ast.walk(tree):
+    for node in nodes_of(tree):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 names[alias.asname or alias.name.split(".")[0]] = alias.name if alias.asname else alias.name.split(".")[0]
         elif isinstance(node, ast.ImportFrom) and not node.level:
             names |= {alias.asname or alias.name: f"{node.module}.{alias.name}" for alias in node.names}
     names = {name: dotted for name, dotted in names.items() if dotted.split(".")[0] not in (*OURS, "__future__")}
-    for node in ast.walk(tree):  # _loader = importlib.machinery.SourceFileLoader
+    for node in nodes_of(tree):  # _loader = importlib.machinery.SourceFileLoader
         if isinstance(node, ast.Assign) and len(node.targets) == 1 and isinstance(node.targets[0], ast.Name):
             dotted = dotted_name(node.value, names)
             if dotted is not None and isinstance(node.value, ast.Attribute):
@@ -64,7 +65,7 @@ def constants(tree):
     """Local names that stand for one string, for ``setattr(writer, name, value)``."""
     return {
         node.targets[0].id: node.value.value
-        for node in ast.walk(tree)
+        for node in nodes_of(tree)
         if isinstance(node, ast.Assign)
         and len(node.targets) == 1
         and isinstance(node.targets[0], ast.Name)
@@ -76,7 +77,7 @@ def constants(tree):
 def targets(tree):
     """The attributes that a file sets or deletes: (object, name of the attribute, value or ``None``)."""
     known = constants(tree)
-    for node in ast.walk(tree):
+    for node in nodes_of(tree):
         if isinstance(node, (ast.Assign, ast.Delete)):
             for target in node.targets:
                 for part in target.elts if isinstance(target, (ast.Tuple, ast.List)) else [target]:
@@ -84,7 +85,7 @@ def targets(tree):
                         yield part.value, part.attr, getattr(node, "value", None)
         elif isinstance(node, (ast.AnnAssign, ast.AugAssign)) and isinstance(node.target, ast.Attribute):
             yield node.target.value, node.target.attr, node.value
-        elif isinstance(node, ast.Call) and ast.unparse(node.func) in ("setattr", "delattr") and len(node.args) > 1:
+        elif isinstance(node, ast.Call) and getattr(node.func, "id", None) in ("setattr", "delattr") and len(node.args) > 1:
             name = node.args[1]
             text = name.value if isinstance(name, ast.Constant) else known.get(getattr(name, "id", ""), "?")
             yield node.args[0], str(text), node.args[2] if len(node.args) > 2 else None
@@ -96,7 +97,7 @@ def our_classes():
     return {
         node.name: [dotted_name(base, foreign_names(tree_of(path))) or ast.unparse(base) for base in node.bases]
         for path in PATHS
-        for node in ast.walk(tree_of(path))
+        for node in nodes_of(tree_of(path))
         if isinstance(node, ast.ClassDef)
     }
 
@@ -129,13 +130,13 @@ def foreign_patches(path):
     tree = tree_of(path)
     names, found = foreign_names(tree), set()
     hy_file = any(dotted.split(".")[0] in ("hy", "code") for dotted in names.values())
-    classes = {node.name.lstrip("_") for node in ast.walk(tree) if isinstance(node, ast.ClassDef)}
+    classes = {node.name.lstrip("_") for node in nodes_of(tree) if isinstance(node, ast.ClassDef)}
     arguments = {
-        node.arg for node in ast.walk(tree) if isinstance(node, ast.arg) and node.annotation and "hy." in ast.unparse(node.annotation)
+        node.arg for node in nodes_of(tree) if isinstance(node, ast.arg) and node.annotation and "hy." in ast.unparse(node.annotation)
     }
     modules = {
         node.arg
-        for node in ast.walk(tree)
+        for node in nodes_of(tree)
         if isinstance(node, ast.arg) and node.annotation and "ModuleType" in ast.unparse(node.annotation)
     }
     for holder, attribute, value in targets(tree):
@@ -159,7 +160,7 @@ def foreign_patches(path):
             found.add(f"{holder.id}.{attribute}, a method of streams")
         elif hy_file and attribute in methods_of_libraries() and ast.unparse(holder) != "self":
             found.add(f"{ast.unparse(holder)}.{attribute}, a method of {methods_of_libraries()[attribute]}")
-    for node in ast.walk(tree):  # models that are not what they look like
+    for node in nodes_of(tree):  # models that are not what they look like
         if isinstance(node, ast.ClassDef) and any((dotted_name(base, names) or "").startswith("hy.models") for base in node.bases):
             for method in node.body:
                 if isinstance(method, ast.FunctionDef) and method.name in ("__copy__", "__getattribute__", "__iter__", "__eq__"):

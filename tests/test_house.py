@@ -60,16 +60,22 @@ def tree_of(path):
 
 
 @functools.cache
+def nodes_of(tree):
+    """All nodes of a tree, in the order of `ast.walk`: a tree is asked many times."""
+    return list(ast.walk(tree))
+
+
+@functools.cache
 def imports_of(path):
     """The import statements of a file, wherever they stand, and those of them that only type checkers read."""
     unread = {
         inner
-        for node in ast.walk(tree_of(path))
+        for node in nodes_of(tree_of(path))
         if isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"
         for statement in node.body
         for inner in ast.walk(statement)
     }
-    found = [node for node in ast.walk(tree_of(path)) if isinstance(node, (ast.Import, ast.ImportFrom))]
+    found = [node for node in nodes_of(tree_of(path)) if isinstance(node, (ast.Import, ast.ImportFrom))]
     return found, unread
 
 
@@ -228,7 +234,7 @@ def names_in_strings(name):
     """The modules of ours that a module imports by a string, which may stand in a list."""
     computed = False
     text = MODULES[name].read_text()
-    for node in ast.walk(tree_of(MODULES[name])) if "import_module(" in text or "__import__(" in text else ():
+    for node in nodes_of(tree_of(MODULES[name])) if "import_module(" in text or "__import__(" in text else ():
         if isinstance(node, ast.Call) and ast.unparse(node.func) in ("import_module", "importlib.import_module", "__import__"):
             if isinstance(node.args[0], ast.Constant):
                 yield importlib.util.resolve_name(node.args[0].value, name.rpartition(".")[0])
@@ -267,7 +273,7 @@ def installers(holder):
     """For each module: the names that it gives to ``holder.install``."""
     found = {}
     for name, path in MODULES.items():
-        for node in ast.walk(tree_of(path)) if f"{holder}.install(" in path.read_text() else ():
+        for node in nodes_of(tree_of(path)) if f"{holder}.install(" in path.read_text() else ():
             if isinstance(node, ast.Call) and ast.unparse(node.func) == f"{holder}.install":
                 found.setdefault(name.removeprefix("cramhy_runtime."), set()).update(keyword.arg for keyword in node.keywords)
     return found
@@ -343,7 +349,7 @@ def test_rooms_beside_the_languages_know_one_kind_of_floats():
         if room_of(path) == "languages":
             return []
         names = (
-            getattr(node, "id", None) or getattr(node, "attr", None) or getattr(node, "name", None) for node in ast.walk(tree_of(path))
+            getattr(node, "id", None) or getattr(node, "attr", None) or getattr(node, "name", None) for node in nodes_of(tree_of(path))
         )
         return sorted({name for name in names if isinstance(name, str) and "single" in name.lower() and "float" in name.lower()})
 
@@ -380,7 +386,7 @@ RUN_CODE = {
 def test_text_that_the_library_writes_is_run_in_one_place():
     running = set()
     for path in FILES:
-        for node in ast.walk(tree_of(path)):
+        for node in nodes_of(tree_of(path)):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("exec", "eval"):
                 running.add(str(path.relative_to(SOURCE)))
     assert running == set(RUN_CODE)
