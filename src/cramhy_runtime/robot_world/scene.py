@@ -156,7 +156,10 @@ class Scene:
         standing = [part.body for part in self.parts if isinstance(part.thing, Machine) and part.thing.fixed]
         self._fixed = np.isin(model.geom_bodyid, standing) | self.is_plane
         machines = [part.body for part in self.parts if isinstance(part.thing, Machine)]
-        self._of_machine = np.isin(model.geom_bodyid, machines)
+        of_machine = np.isin(model.geom_bodyid, machines)
+        self._may_touch = self._thing_of_geom[:, None] != self._thing_of_geom
+        self._may_touch &= ~(self._fixed[:, None] & self._fixed)
+        self._may_touch &= ~((self.is_plane[:, None] & of_machine) | (of_machine[:, None] & self.is_plane))
         self._machines, self._items = [], []
         parts_of = {id(thing): [] for thing in self.things}
         for part in self.parts:
@@ -279,9 +282,7 @@ class Scene:
         lowest, highest = self.boxes()
         mine = np.flatnonzero(self._part_of_geom >= 0) if of is None else self._geoms_of(of)
         near = self._near(lowest, highest, mine, TOUCHING)
-        near &= self._thing_of_geom[mine, None] != self._thing_of_geom
-        near &= ~(self._fixed[mine, None] & self._fixed)
-        near &= ~((self.is_plane[mine, None] & self._of_machine) | (self._of_machine[mine, None] & self.is_plane))
+        near &= self._may_touch[mine]
         found: dict[tuple[int, int], None] = {}
         for row, other in zip(*map(np.ndarray.tolist, np.nonzero(near)), strict=True):
             geom = mine[row]

@@ -6,7 +6,7 @@ furniture: both have a description. Items that a machine holds go with the link 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +15,7 @@ from .placements import Placement
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Mapping
+    from typing import Self
 
     from .descriptions import Description, Shape
     from .skeleton import Skeleton
@@ -31,6 +32,13 @@ class Thing:
     name: Hashable
     placement: Placement
     world: World | None = None
+
+    def copy(self) -> Self:
+        """The same thing at the same place, in no world."""
+        new = self.__class__.__new__(self.__class__)
+        new.__dict__.update(self.__dict__)
+        new.world = None
+        return new
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.name}>"
@@ -53,9 +61,6 @@ class Item(Thing):
     types: tuple[Hashable, ...] = ()
     drawn: bool = False
     stays: bool = False
-
-    def copy(self) -> Item:
-        return replace(self)
 
     def all_shapes(self) -> list[Shape]:
         """What it is made of."""
@@ -95,8 +100,11 @@ class Machine(Thing):
     def description(self) -> Description:
         return self.skeleton.description
 
-    def copy(self) -> Machine:
-        return replace(self, holds={item: list(grips) for item, grips in self.holds.items()})
+    def copy(self) -> Self:
+        """The same machine with the same joints, and with the same grips of what it holds."""
+        new = super().copy()
+        new.holds = {item: list(grips) for item, grips in self.holds.items()}
+        return new
 
     def all_shapes(self) -> list[Shape]:
         """What all its links are made of."""

@@ -51,7 +51,7 @@ class World:
         self.stuck: list[tuple[Item, Thing | None]] = []  # items that the last `simulate` could not free, and what they are in
         self.let_go: list[tuple[Hashable, Hashable]] = []  # names of robots, and of items that they may still have between their fingers
         self._scene: Scene | None = None
-        self._pattern: tuple[Scene, list[Thing]] | None = None  # the scene of the world that this one was copied from; copies of its things
+        self._pattern: tuple[Scene, list[Thing], list[Thing]] | None = None  # see `_pattern_for`
         self._placed = False
         self._trials = 0
 
@@ -244,8 +244,12 @@ class World:
         """A scene of the things of now, with the model of the world that this one is a copy of, if it still has the same things."""
         solids, held, pattern = self.solids(), self._held(), self._pattern
         self._pattern = None
-        if pattern is not None and pattern[0].held == held and pattern[1] == solids:
-            return pattern[0].of_copies(solids)
+        if pattern is not None:
+            scene, theirs, mine = pattern
+            if scene.held == held and mine == list(self.things.values()) and len(scene.things) == len(solids):
+                copies = dict(zip(map(id, theirs), mine, strict=True))
+                if all(copies.get(id(thing)) is solid for thing, solid in zip(scene.things, solids, strict=True)):
+                    return scene.of_copies(solids)
         return Scene(solids, held)
 
     def contacts(self, name: Hashable | None = None) -> list[tuple[Part, Part | None]]:
@@ -325,8 +329,15 @@ class World:
         for name, thing in self.things.items():
             new.things[name] = copied = thing.copy()
             copied.world = new
-        pattern = (self._scene, self._scene.things) if self._scene is not None else self._pattern
-        new._pattern = (pattern[0], new.solids()) if pattern is not None and pattern[1] == self.solids() else None
+        new._pattern = self._pattern_for(new)
         if into is not None:
             into._tell()
         return new
+
+    def _pattern_for(self, copied: World) -> tuple[Scene, list[Thing], list[Thing]] | None:
+        """A scene, the things of its world, and their copies in the same order, which are in ``copied``; ``None`` without a scene."""
+        if self._scene is not None:
+            return self._scene, list(self.things.values()), list(copied.things.values())
+        if self._pattern is None or self._pattern[2] != list(self.things.values()):
+            return None
+        return *self._pattern[:2], list(copied.things.values())

@@ -231,13 +231,10 @@ class LocationCostmap(GridMetadata):
         """The column and row of a cell; greater values are more probable. chance: gives numbers from 0 to below 1."""
         if self.computed is None:
             self.ready()
-        drawn = None if self._sieve is None else self._sieve.draw(chance)
-        return drawn or self._fallen_on(chance())
-
-    def _fallen_on(self, chance: float) -> tuple[int, int]:
-        """The column and row of the cell that a number from 0 to below 1 falls on."""
-        cells, sums = self._kept("sums", self._sums)
-        row, column = divmod(cells[min(bisect.bisect_right(sums, chance * sums[-1]), len(cells) - 1)], self.columns)
+        if self._sieve is not None and (drawn := self._sieve.draw(chance)):
+            return drawn
+        cells, sums = self.views.get("sums") or self._kept("sums", self._sums)
+        row, column = divmod(cells[min(bisect.bisect_right(sums, chance() * sums[-1]), len(cells) - 1)], self.columns)
         return column, row
 
     def _sums(self) -> tuple[list[int], list[float]]:
