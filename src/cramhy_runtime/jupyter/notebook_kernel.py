@@ -96,7 +96,7 @@ class CramhyKernel(Guarded):
             pace = self.plans.clock.pace
             if pace is not None and pace.virtual and pace.paused:
                 pace.resume()
-                self._follow()
+                self.follow()
             self.cell.interrupt()
 
         self.plans.post(stop)
@@ -218,7 +218,7 @@ class CramhyKernel(Guarded):
 
     def _evaluated(self, code, silent, looked_at):
         displays = Displays(self.say if not silent else lambda kind, content: None, f"cell-{self.ident}-{self.execution_count}")
-        with Live(displays, self.watcher, self.watched, self.tasks, self._follow).during(looked_at):
+        with Live(displays, self.watcher, self.watched, self.tasks, self.follow).during(looked_at):
             try:
                 values = self.notebook.evaluate(code)
             except kernel.Terminated:
@@ -232,7 +232,7 @@ class CramhyKernel(Guarded):
             if shown is not None:
                 self.say("execute_result", {"execution_count": self.execution_count, "data": shown, "metadata": {}})
 
-    def _follow(self):
+    def follow(self):
         if self.controls is not None:
             self.controls.follow()
 
@@ -269,44 +269,20 @@ class CramhyKernel(Guarded):
         """A cell that sets something: ``%name rest``."""
         try:
             settings.check(name, rest)
-            data = await getattr(self, f"_set_{name}")(rest)
+            data = await _SETTERS[name](self, rest)
         except settings.Refused as problem:
             return self._error("WrongSetting", str(problem), [str(problem)], silent)
         if data is not None and not silent:
             self._say("display_data", {"data": data, "metadata": {}, "transient": {}}, self.parent_of_cell)
         return self._ok({})
 
-    async def _done(self, work):
+    async def done(self, work):
         """The result of ``work()``, done in a task of the session. What goes wrong is a `settings.Refused`."""
         request = await self.ask(work, "a setting", cell=True)
         if request.outcome == requests.DONE:
             return request.result
         problem = request.failure or Aborted("The setting was interrupted.")
         raise settings.Refused(str(problem) if isinstance(problem, (ValueError, Aborted)) else (await self._told(problem)).text)
-
-    async def _set_debugger(self, word):
-        self.asks = word == "on"
-
-    async def _set_live(self, word):
-        self.live = word == "on"
-
-    async def _set_time(self, word):
-        await self._done(lambda: (kernel.set_clock(word), self._follow()))
-
-    async def _set_watch(self, forms):
-        if forms == "off":
-            return await self._done(self.watched.end)
-        await self._done(lambda: self.watched.watch(self.notebook.values_of(forms)))
-        return None
-
-    async def _set_pace(self, _):
-        try:
-            if self.controls is None:
-                self.controls = controls.Controls(self.plans.post, self.loop.call_soon_threadsafe)
-        except ImportError:
-            raise settings.Refused(settings.NO_WIDGETS) from None
-        await self._done(self.controls.follow)
-        return self.controls.bundle()
 
     # ------------------------------------------------------------------------------------------------------------- the keys
 
@@ -380,3 +356,39 @@ class CramhyKernel(Guarded):
         """``shutdown_request``: the plans end through their cleanup when the loop has stopped."""
         self.stop_cell()
         return {"status": "ok", "restart": restart}
+
+
+# ----------------------------------------------------------------------------------------------------------------- settings
+
+
+async def _set_debugger(notebook_kernel, word):
+    notebook_kernel.asks = word == "on"
+
+
+async def _set_live(notebook_kernel, word):
+    notebook_kernel.live = word == "on"
+
+
+async def _set_time(notebook_kernel, word):
+    await notebook_kernel.done(lambda: (kernel.set_clock(word), notebook_kernel.follow()))
+
+
+async def _set_watch(notebook_kernel, forms):
+    if forms == "off":
+        return await notebook_kernel.done(notebook_kernel.watched.end)
+    await notebook_kernel.done(lambda: notebook_kernel.watched.watch(notebook_kernel.notebook.values_of(forms)))
+    return None
+
+
+async def _set_pace(notebook_kernel, _):
+    try:
+        if notebook_kernel.controls is None:
+            notebook_kernel.controls = controls.Controls(notebook_kernel.plans.post, notebook_kernel.loop.call_soon_threadsafe)
+    except ImportError:
+        raise settings.Refused(settings.NO_WIDGETS) from None
+    await notebook_kernel.done(notebook_kernel.controls.follow)
+    return notebook_kernel.controls.bundle()
+
+
+_SETTERS = {"debugger": _set_debugger, "live": _set_live, "time": _set_time, "watch": _set_watch, "pace": _set_pace}
+"""What each setting does: a function of the kernel and of what stands behind the name of the setting."""

@@ -119,6 +119,45 @@ def _terminal_lines(repl, in_lisp):
     return HyLines(repl, in_lisp)
 
 
+def _show_prompt(repl, prompt):
+    repl.ps1 = prompt
+    if hasattr(sys, "ps1"):  # the REPL runs
+        sys.ps1 = prompt
+
+
+def _answer_in_hy(repl, text):
+    """Let ``repl`` answer ``text``, to which nothing will be added: where it ends inside of a form, that is an error."""
+    compiler = repl.compile
+    compiler.allow_incomplete, before = False, compiler.allow_incomplete
+    try:
+        repl.runsource(text, repl.filename)
+    finally:
+        compiler.allow_incomplete = before
+
+
+def _forms(repl, source, filename):
+    """The texts of the forms of ``source`` that are answered one by one, and whether the REPL then has to refuse ``source``.
+
+    Hy reads ``source`` as a whole where it is one form, where a form says how the next ones are read, and where it has something to
+    say about them. What begins with a form that leads to Lisp is one text. Forms before a bracket too many are answered, too.
+    """
+    found = []
+    try:
+        for model in hy.read_many(source, filename, repl.compile.compiler.reader):
+            if isinstance(model, Expression) and model and model[0] == _IN_PACKAGE:
+                lines = source.split("\n")[model.start_line - 1 :]
+                found.append("\n".join([lines[0][model.start_column - 1 :], *lines[1:]]))
+                if incomplete(found[-1]):
+                    return [], True
+                break
+            found.append(source_of(model, source))
+    except LexException as problem:
+        return (found, True) if malformed.BRACKET_TOO_MANY.match(problem.msg) else ([], True)
+    except Exception:  # of a reader macro of the user's
+        return [], True
+    return (found, False) if len(found) > 1 else ([], True)
+
+
 class HyPrompt(Listener):
     """The Lisp of ``repl``, a `hy.REPL`. ``in_lisp``: whether what is typed there is Lisp now. lines: where its lines come from; by default
     the terminal."""
@@ -144,7 +183,7 @@ class HyPrompt(Listener):
             self._hy = compiler.reader, self.repl.ps1, self.repl.output_fn
             compiler.reader = TypedReader(hy.read("(. _hy_repl lisp hear)"))
             self.repl.output_fn = shown_by_lisp
-        self._show_prompt(self.session.prompt())
+        _show_prompt(self.repl, self.session.prompt())
 
     def change_back(self):
         """Let the REPL read Hy from its next text on."""
@@ -152,7 +191,7 @@ class HyPrompt(Listener):
             self.in_lisp = False
             self.repl.compile.compiler.reader, prompt, self.repl.output_fn = self._hy
             self._listen_no_more()
-            self._show_prompt(prompt)
+            _show_prompt(self.repl, prompt)
 
     def write(self, text):
         """What Python's console says by itself; from Python 3.13 on also its goodbye, when a signal ends it and the terminal has gone."""
@@ -170,11 +209,6 @@ class HyPrompt(Listener):
         speak(lisp=False)
         conditions.install_debugger(None)
         streams.ERROR_OUTPUT.value = self._warnings
-
-    def _show_prompt(self, prompt):
-        self.repl.ps1 = prompt
-        if hasattr(sys, "ps1"):  # the REPL runs
-            sys.ps1 = prompt
 
     def leads_away(self, form, reader):
         self._form = form
@@ -206,7 +240,7 @@ class HyPrompt(Listener):
             rest, self._rest = self._rest, None
             self.change_back()
             if rest.strip():
-                self._answer_in_hy(rest.strip())
+                _answer_in_hy(self.repl, rest.strip())
         elif self.in_lisp:
             self.change_over()  # the package may be another one
 
@@ -219,15 +253,6 @@ class HyPrompt(Listener):
                 raise
             except (KeyboardInterrupt, kernel.Abandoned, Interruption):
                 interrupted = True
-
-    def _answer_in_hy(self, text):
-        """Let the REPL answer ``text``, to which nothing will be added: where it ends inside of a form, that is an error."""
-        compiler = self.repl.compile
-        compiler.allow_incomplete, before = False, compiler.allow_incomplete
-        try:
-            self.repl.runsource(text, self.repl.filename)
-        finally:
-            compiler.allow_incomplete = before
 
     def raw_input(self, prompt=""):
         """The next text for the REPL, in which nothing is open; plans go on while it waits. Ctrl-C forgets the form that is being typed.
@@ -252,7 +277,7 @@ class HyPrompt(Listener):
                 if not unfinished.strip():
                     self.change_back()  # the program may go on after its REPL
                     raise EOFError
-                self.hear(unfinished) if self.in_lisp else self._answer_in_hy(unfinished)
+                self.hear(unfinished) if self.in_lisp else _answer_in_hy(self.repl, unfinished)
                 lines, prompt = [], sys.ps1
             else:
                 if self.in_lisp:
@@ -276,7 +301,7 @@ class HyPrompt(Listener):
         Hy shows the value of the last form alone, and many forms come at once when a terminal marks what is pasted.
         """
         with self._goes_on():
-            forms, refused = self._forms(source, filename)
+            forms, refused = ([], True) if self.in_lisp else _forms(self.repl, source, filename)
             while forms and not self.in_lisp:
                 if not self._answered(forms.pop(0), filename, symbol)[0]:
                     self.tell_not_evaluated(" ".join(" ".join(forms).split()))
@@ -300,30 +325,6 @@ class HyPrompt(Listener):
             if noted is not None:
                 noted.end(good)
         return good, more
-
-    def _forms(self, source, filename):
-        """The texts of the forms of ``source`` that are answered one by one, and whether the REPL then has to refuse ``source``.
-
-        Hy reads ``source`` as a whole where it is one form, where a form says how the next ones are read, and where it has something to
-        say about them. What begins with a form that leads to Lisp is one text. Forms before a bracket too many are answered, too.
-        """
-        found = []
-        if self.in_lisp:
-            return [], True
-        try:
-            for model in hy.read_many(source, filename, self.repl.compile.compiler.reader):
-                if isinstance(model, Expression) and model and model[0] == _IN_PACKAGE:
-                    lines = source.split("\n")[model.start_line - 1 :]
-                    found.append("\n".join([lines[0][model.start_column - 1 :], *lines[1:]]))
-                    if incomplete(found[-1]):
-                        return [], True
-                    break
-                found.append(source_of(model, source))
-        except LexException as problem:
-            return (found, True) if malformed.BRACKET_TOO_MANY.match(problem.msg) else ([], True)
-        except Exception:  # of a reader macro of the user's
-            return [], True
-        return (found, False) if len(found) > 1 else ([], True)
 
     def runcode(self, code):
         """As the REPL's own, and the errors that Hy does not count among them are shown, too."""

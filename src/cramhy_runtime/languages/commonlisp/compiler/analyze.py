@@ -42,7 +42,7 @@ from .nodes import (
 )
 from .open_coding import call_of_next, open_coded
 from .passes import WRITTEN_OUT
-from .style_checks import CRAMHY, Scrutiny, tuple_of
+from .style_checks import CRAMHY, Scrutiny, note_declarations, tuple_of
 
 SPECIAL_FORMS: dict = {}
 """Symbol → method (analyzer, form, env) → node; filled by ``special_forms.py``."""
@@ -321,7 +321,7 @@ class Analyzer(Scrutiny):
         for symbol in [*(symbol for symbol, _ in dynamic), *(() if parsed.aux else specials)]:  # the LET* of &AUX declares them again
             inner.variables[symbol] = SpecialVariable(symbol)
         around = self.muffled, self.notinline
-        self.declare(specifiers, [*own, *(symbol for symbol, _ in parsed.aux)], inner)
+        note_declarations(self, specifiers, [*own, *(symbol for symbol, _ in parsed.aux)], inner)
         if parsed.aux:
             aux = lisp_list(*(lisp_list(symbol, form) for symbol, form in parsed.aux))
             declared = [Cons(DECLARE, lisp_list(*specifiers))] if specifiers else []

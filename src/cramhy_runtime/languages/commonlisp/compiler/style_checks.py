@@ -52,15 +52,20 @@ class Scrutiny:
         place = None if form is None else self.positions.of_symbol(symbol, form)
         return place and (*place, place[0], place[1] + len(symbol.name) - 1)
 
-    def _at_symbol(self, symbol, form=None):
+    def at_symbol(self, symbol, form=None):
         """(file, line, column) of ``symbol`` in the user's text around here, or else that of the form that is analysed."""
         form = self.source if form is None else form
         return self.place() if form is None else _place_in(self.positions, self.filename, symbol, form, self.place())
 
-    def _at_symbol_when_asked(self, symbol, form=None):
-        """A function that returns what `_at_symbol` returns now: the text is searched for the symbol when a warning shows the place."""
+    def at_symbol_when_asked(self, symbol, form=None):
+        """A function that returns what `at_symbol` returns now: the text is searched for the symbol when a warning shows the place."""
         form = self.source if form is None else form
         return self.place() if form is None else partial(_place_in, self.positions, self.filename, symbol, form, self.place())
+
+    def at_list(self, form):
+        """(file, line, column) of a list that was read, or ``None``."""
+        place = self.positions.get(id(form))
+        return (self.filename, *place[:2]) if place else None
 
     def warn(self, kind, control, *arguments, position=None, **notes):
         self.unit.tell(kind, control, *arguments, position=position or self.place(), muffled=self.muffled, **notes)
@@ -76,16 +81,16 @@ class Scrutiny:
         if not assigned and self.at_once and env.scope.parent is None:
             return  # the form itself runs into it, and the error tells
         text = shown_with(symbol, "KEYWORD")
-        self.warn(SimpleWarning, "undefined variable: ~A", text, position=self._at_symbol(symbol), name=symbol, undefined="variable")
+        self.warn(SimpleWarning, "undefined variable: ~A", text, position=self.at_symbol(symbol), name=symbol, undefined="variable")
 
     def _refuse(self, symbol):
         """Fail when ``symbol`` is one of Common Lisp that is not there."""
         if missing(symbol) is not None:  # its place is looked for only then, which takes a while
-            error(missing(symbol, self._at_symbol(symbol)))
+            error(missing(symbol, self.at_symbol(symbol)))
 
     def read_variable(self, variable):
         if variable.ignored and self.unit is not None:
-            self.warn(SimpleStyleWarning, "reading an ignored variable: ~S", variable.symbol, position=self._at_symbol(variable.symbol))
+            self.warn(SimpleStyleWarning, "reading an ignored variable: ~S", variable.symbol, position=self.at_symbol(variable.symbol))
 
     def set_ignored(self, variable):
         if variable.ignored and self.unit is not None:
@@ -93,7 +98,7 @@ class Scrutiny:
                 SimpleStyleWarning,
                 "~S is being set even though it was declared to be ignored.",
                 variable.symbol,
-                position=self._at_symbol(variable.symbol),
+                position=self.at_symbol(variable.symbol),
             )
 
     def unused(self, variables, form=None):
@@ -117,82 +122,11 @@ class Scrutiny:
     def scope(self, variables, specifiers, forms, env):
         """The node of the body ``forms`` of a form that binds ``variables`` and begins with declarations."""
         around = self.muffled, self.notinline
-        self.declare(specifiers, variables, env)
+        note_declarations(self, specifiers, variables, env)
         node = self.body(forms, env)
         self.unused(variables)
         self.muffled, self.notinline = around
         return node
-
-    # ------------------------------------------------------------------------------------------------------- declarations
-
-    def declare(self, specifiers, variables, env):
-        """Take note of the declarations at the head of a body that binds ``variables`` (`Variable` objects and symbols) in ``env``."""
-        by_symbol = {variable.symbol: variable for variable in variables if isinstance(variable, Variable)}
-        for specifier in specifiers:
-            if not isinstance(specifier, Cons):
-                self._unrecognized(specifier)
-                continue
-            head, rest = specifier.car, list(_elements(specifier.cdr))
-            if head is IGNORE or head is IGNORABLE:
-                for name in rest:
-                    if not isinstance(name, Symbol) or name not in variables:  # else the LET* of &AUX will know it
-                        self._ignore(head, name, by_symbol, env, specifier)
-            elif head is NOTINLINE:
-                self.notinline |= {name for name in rest if isinstance(name, Symbol)}
-            elif is_extension(head, "MUFFLE-CONDITIONS"):
-                self.muffled = (*self.muffled, *rest)
-            elif is_extension(head, "UNMUFFLE-CONDITIONS"):
-                self.muffled = tuple(item for item in self.muffled if item not in rest)
-            elif self.unit is None or head is SPECIAL or head in WITHOUT_MEANING or is_extension(head, *EXTENSIONS) or is_declared(head):
-                continue
-            elif head is OPTIMIZE:
-                self._optimize(specifier, rest)
-            elif head is TYPE:
-                self._type(rest[0] if rest else None, [name for name in rest[1:] if name not in variables], env, specifier)
-            elif (isinstance(head, (Symbol, Cons)) or head is True) and PORTS.types.known(head):
-                self._type(head, [name for name in rest if name not in variables], env, specifier)
-            else:
-                self._unrecognized(specifier)
-
-    def _ignore(self, head, name, by_symbol, env, specifier):
-        if isinstance(name, Cons):  # (function f)
-            return
-        variable = by_symbol.get(name)
-        if variable is not None:
-            if head is IGNORE:
-                variable.ignored = True
-            else:
-                variable.ignorable = True
-        elif self.unit is not None and env.variable(name) is None:
-            self.warn(
-                SimpleStyleWarning,
-                "~S declaration for an unknown variable: ~S",
-                head,
-                name,
-                position=self._at_symbol(name, specifier) if isinstance(name, Symbol) else None,
-            )
-
-    def _optimize(self, specifier, qualities):
-        for quality in qualities:
-            name = quality.car if isinstance(quality, Cons) else quality
-            if getattr(name, "name", None) not in QUALITIES:
-                self.warn(
-                    SimpleWarning, "Ignoring unknown optimization quality ~S in: ~S", name, specifier, position=self._of_list(specifier)
-                )
-
-    def _type(self, specifier, names, env, form):
-        self.mention_type(specifier, form)
-        for name in names:
-            if isinstance(name, Symbol) and env.variable(name) is None:
-                self.free_variable(name, env, assigned=True)
-
-    def _unrecognized(self, specifier):
-        if self.unit is not None:
-            self.warn(SimpleWarning, "unrecognized declaration ~S", specifier, position=self._of_list(specifier))
-
-    def _of_list(self, form):
-        place = self.positions.get(id(form))
-        return (self.filename, *place[:2]) if place else None
 
     def mention_type(self, specifier, form=None):
         """Note that a type is named by a constant; one that nobody knows yet is undefined."""
@@ -200,7 +134,7 @@ class Scrutiny:
             return
         head = specifier.car if isinstance(specifier, Cons) else specifier
         if isinstance(head, Symbol) and not isinstance(head, Keyword) and not PORTS.types.known(head):
-            self.unit.types.append(Mention(head, None, self._at_symbol_when_asked(head, form), self.muffled))
+            self.unit.types.append(Mention(head, None, self.at_symbol_when_asked(head, form), self.muffled))
 
     # --------------------------------------------------------------------------------------------------------------- calls
 
@@ -216,7 +150,7 @@ class Scrutiny:
         if self.at_once and env.scope.parent is None:
             return  # the form itself makes the call, and the error tells
         if arguments is None or form is None or id(form) not in self.positions:
-            position, call = self._at_symbol_when_asked(name[1] if isinstance(name, tuple) else name), None
+            position, call = self.at_symbol_when_asked(name[1] if isinstance(name, tuple) else name), None
         else:
             position, call = self.place(), (self.filename, *self._at)
         unit.mentions.append(Mention(name, arguments, position, self.muffled, call))
@@ -249,6 +183,76 @@ class Scrutiny:
         if self.unit is not None and isinstance(expression.cdr, Cons) and not (self.at_once and env.scope.parent is None):
             for control, *rest in wrong_call_of_lambda(Shape(expression.cdr.car), arguments):
                 self.warn(SimpleWarning, control, *rest)
+
+
+def note_declarations(analyzer, specifiers, variables, env):
+    """Take note of the declarations at the head of a body that binds ``variables`` (`Variable` objects and symbols) in ``env``."""
+    by_symbol = {variable.symbol: variable for variable in variables if isinstance(variable, Variable)}
+    for specifier in specifiers:
+        if not isinstance(specifier, Cons):
+            _tell_unrecognized(analyzer, specifier)
+            continue
+        head, rest = specifier.car, list(_elements(specifier.cdr))
+        if head is IGNORE or head is IGNORABLE:
+            for name in rest:
+                if not isinstance(name, Symbol) or name not in variables:  # else the LET* of &AUX will know it
+                    _note_ignore(analyzer, head, name, by_symbol, env, specifier)
+        elif head is NOTINLINE:
+            analyzer.notinline |= {name for name in rest if isinstance(name, Symbol)}
+        elif is_extension(head, "MUFFLE-CONDITIONS"):
+            analyzer.muffled = (*analyzer.muffled, *rest)
+        elif is_extension(head, "UNMUFFLE-CONDITIONS"):
+            analyzer.muffled = tuple(item for item in analyzer.muffled if item not in rest)
+        elif analyzer.unit is None or head is SPECIAL or head in WITHOUT_MEANING or is_extension(head, *EXTENSIONS) or is_declared(head):
+            continue
+        elif head is OPTIMIZE:
+            _note_optimize(analyzer, specifier, rest)
+        elif head is TYPE:
+            _note_type(analyzer, rest[0] if rest else None, [name for name in rest[1:] if name not in variables], env, specifier)
+        elif (isinstance(head, (Symbol, Cons)) or head is True) and PORTS.types.known(head):
+            _note_type(analyzer, head, [name for name in rest if name not in variables], env, specifier)
+        else:
+            _tell_unrecognized(analyzer, specifier)
+
+
+def _note_ignore(analyzer, head, name, by_symbol, env, specifier):
+    if isinstance(name, Cons):  # (function f)
+        return
+    variable = by_symbol.get(name)
+    if variable is not None:
+        if head is IGNORE:
+            variable.ignored = True
+        else:
+            variable.ignorable = True
+    elif analyzer.unit is not None and env.variable(name) is None:
+        analyzer.warn(
+            SimpleStyleWarning,
+            "~S declaration for an unknown variable: ~S",
+            head,
+            name,
+            position=analyzer.at_symbol(name, specifier) if isinstance(name, Symbol) else None,
+        )
+
+
+def _note_optimize(analyzer, specifier, qualities):
+    for quality in qualities:
+        name = quality.car if isinstance(quality, Cons) else quality
+        if getattr(name, "name", None) not in QUALITIES:
+            analyzer.warn(
+                SimpleWarning, "Ignoring unknown optimization quality ~S in: ~S", name, specifier, position=analyzer.at_list(specifier)
+            )
+
+
+def _note_type(analyzer, specifier, names, env, form):
+    analyzer.mention_type(specifier, form)
+    for name in names:
+        if isinstance(name, Symbol) and env.variable(name) is None:
+            analyzer.free_variable(name, env, assigned=True)
+
+
+def _tell_unrecognized(analyzer, specifier):
+    if analyzer.unit is not None:
+        analyzer.warn(SimpleWarning, "unrecognized declaration ~S", specifier, position=analyzer.at_list(specifier))
 
 
 def _place_in(positions, filename, symbol, form, otherwise):

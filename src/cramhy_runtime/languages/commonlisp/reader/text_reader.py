@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from cramhy_runtime.lisp_core.data import NO_VALUES, Character, Cons, MultipleValues, Symbol, list_from, one
 from cramhy_runtime.lisp_core.dynamic import special
-from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER, KEYWORD, named_package, sym
+from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER, sym
 from ..streams.streams import EchoStream, FdStream, InputStream, input_stream
 from . import reader_errors, tokens
 from ..syntax.backquote import QUASIQUOTE, Comma
@@ -58,7 +58,7 @@ class Reader(InputStream, FdStream):
         self.backquotes = 0
         self.labels = {}
         self._kept = []
-        self._frames = []
+        self.frames = []
         self.is_reading = False
         self._start = (line, column)
         self._lines = None
@@ -173,13 +173,13 @@ class Reader(InputStream, FdStream):
 
         frame: a list or prefix that has begun already.
         """
-        base = len(self._frames)
+        base = len(self.frames)
         try:
             if frame is not None:
-                self._frames.append(frame)
+                self.frames.append(frame)
             return self._next(base)
         except BaseException:
-            del self._frames[base:]
+            del self.frames[base:]
             raise
 
     def required(self):
@@ -189,10 +189,10 @@ class Reader(InputStream, FdStream):
 
     def ended(self, context=None):
         """Signal that the text ends inside what is being read."""
-        return reader_errors.end_of_file(self, [(frame[1], frame[3]) for frame in self._frames], context)
+        return reader_errors.end_of_file(self, [(frame[1], frame[3]) for frame in self.frames], context)
 
     def _next(self, base):
-        frames = self._frames
+        frames = self.frames
         while True:
             if len(frames) > MOST_NESTED:
                 return fail(self, self.offset, "The text is nested too deeply to be read.", hint=f"{MOST_NESTED} levels are the most.")
@@ -208,7 +208,7 @@ class Reader(InputStream, FdStream):
                 self.offset = end
                 word = match[1]
                 if word == "." and SUPPRESS.value is None:
-                    self._dot(start, base)
+                    _see_dot(self, start, base)
                     continue
                 found = self._token(word, start, table)
             elif end == len(text):
@@ -229,13 +229,13 @@ class Reader(InputStream, FdStream):
                     continue
                 if handler is read_close:
                     if len(frames) > base and frames[-1][0] is not None:
-                        found = self._closed_list(frames.pop(), end)
+                        found = _closed_list(self, frames.pop(), end)
                     elif not frames and not self.strict and unmatched_closes(self, end):
                         continue
                     else:
-                        return self.misplaced_close(end)
+                        return _misplaced_close(self, end)
                 elif handler in _PREFIXES:
-                    frames.append(self.prefix_frame(handler, end))
+                    frames.append(_prefix_frame(self, handler, end))
                     continue
                 elif text.startswith("'", end + 1) and _is_sharp_quote(handler):
                     self.offset = end + 2
@@ -261,102 +261,23 @@ class Reader(InputStream, FdStream):
                         return fail(self, start if end > start else end, "More than one object follows . in list.", hint=hint)
                     break
                 frames.pop()
-                found = self._prefixed(frame, found, at)
+                found = _prefixed(self, frame, found, at)
 
-    # --------------------------------------------------------------------------------------------------- lists and prefixes
-
-    def _dot(self, start, base):
-        frame = self._frames[-1] if len(self._frames) > base else None
-        if frame is None or frame[0] is None:
-            fail(self, start, "dot context error", hint="A dot alone has a meaning only in a list: (a . b).")
-        elif not frame[0]:
-            fail(self, start, "Nothing appears before . in list.", hint="A dotted pair is (a . b).")
-        elif frame[2] is not _OPEN:
-            fail(self, start, "dot context error", hint="A list has at most one dot: (a b . c).")
-        frame[2] = _DOT
-
-    def _closed_list(self, frame, close):
-        items, start, tail, _, symbols = frame
-        if tail is _OPEN:
-            tail = None
-        elif tail is _DOT:
-            return fail(self, close, "Nothing appears after . in list.", hint="A dotted pair is (a . b).")
-        elif isinstance(tail, Comma) and tail.splicing:
-            for item in reversed(items):
-                tail = Cons(item, tail)
-            return fail(self, start, "~S contains a splicing comma after a dot", tail, hint="After a dot write , instead of ,@.")
-        if SUPPRESS.value is not None:
-            return None
-        made = list_from(items, tail)
-        if made is not None:
-            self.remember(made, start, symbols)
-        return made
-
-    def misplaced_close(self, offset):
-        opener = self._frames[-1][3] if self._frames else None
-        if opener in _COMMAS:
-            return fail(
-                self,
-                offset,
-                f"Trailing {_COMMAS[opener]} in backquoted expression.",
-                hint=f"Something must follow the {opener} before the ).",
-            )
-        hint = f"Something must follow the {opener} before the )." if opener else "There is one ) too many, or a ( is missing before it."
-        return fail(self, offset, "unmatched close parenthesis", hint=hint)
-
-    def prefix_frame(self, handler, start):
-        """The frame for the quote, backquote or comma at ``start``."""
-        symbol, opener = _PREFIXES[handler]
-        if symbol is QUASIQUOTE:
-            self.backquotes += 1
-        elif symbol is Comma:
-            if not self.backquotes and SUPPRESS.value is None:
-                fail(self, start, "Comma not inside a backquote.", hint=reader_errors.comma_hint(self.text, start))
-            following = self.peek_char()
-            if following and following in "@.":
-                self.offset += 1
-                opener += following
-            self.backquotes -= 1
-        return [None, start, symbol, opener]
-
-    def _prefixed(self, frame, found, at):
-        _, start, symbol, opener = frame
-        if SUPPRESS.value is not None:
-            self.backquotes += (symbol is Comma) - (symbol is QUASIQUOTE)
-            return None
-        if symbol is Comma:
-            self.backquotes += 1
-            comma = Comma(opener, found)
-            if found.__class__ is Symbol:
-                self.positions.symbols[id(comma)] = [(0, at)]
-            return comma
-        if symbol is QUASIQUOTE:
-            self.backquotes -= 1
-            if isinstance(found, Comma) and found.splicing:
-                return fail(
-                    self,
-                    start,
-                    "~S is not a well-formed backquote expression",
-                    Cons(symbol, Cons(found)),
-                    hint=f"{found.kind} splices into a list, so it must stand in one: `({found.kind}x).",
-                )
-        form = Cons(symbol, Cons(found))
-        self.remember(form, start)
-        return form
+    # ------------------------------------------------------------------------------------------------------ macro functions
 
     def call_macro(self, handler, char, start):
         """What a macro function reads; NOTHING when it returns no value, as comments do."""
-        self._frames.append([None, start, None, char])
+        self.frames.append([None, start, None, char])
         backquotes = self.backquotes
         result = call(handler, self, Character(char))
         self.backquotes = backquotes
-        self._frames.pop()
+        self.frames.pop()
         return NOTHING if result is NO_VALUES or result == () and result.__class__ is MultipleValues else one(result)
 
     def objects_until(self, close):
         """The objects up to the character ``close``, which is consumed."""
-        base = len(self._frames)
-        self._frames.append([None, max(0, self.offset - 1), None, self.text[max(0, self.offset - 1) : self.offset] or close])
+        base = len(self.frames)
+        self.frames.append([None, max(0, self.offset - 1), None, self.text[max(0, self.offset - 1) : self.offset] or close])
         found = []
         try:
             while True:
@@ -378,16 +299,16 @@ class Reader(InputStream, FdStream):
                 if item is not NOTHING:
                     found.append(item)
         finally:
-            del self._frames[base:]
+            del self.frames[base:]
 
     def frame_start(self):
         """The offset at which what is being read by the innermost macro function begins."""
-        return self._frames[-1][1] if self._frames else self.offset
+        return self.frames[-1][1] if self.frames else self.offset
 
     def describe_frame(self, opener, start=None):
         """Name what the macro function being called reads, for the report that the text ended in it."""
-        if self._frames:
-            frame = self._frames[-1]
+        if self.frames:
+            frame = self.frames[-1]
             frame[3] = opener
             if start is not None:
                 frame[1] = start
@@ -415,7 +336,7 @@ class Reader(InputStream, FdStream):
             package = PACKAGE.value
             found, status = package.lookup(name)
             return found if status else package.intern(name)
-        return self._qualified(word.split(":"), convert, word, start)
+        return tokens.qualified_symbol(self, word.split(":"), convert, word, start)
 
     def _escaped_token(self, start, table):
         """The symbol of a token with ``\\`` or ``|``; those characters are taken as they are, and it is never a number."""
@@ -425,7 +346,7 @@ class Reader(InputStream, FdStream):
             return None
         if len(parts) == 1:
             return PACKAGE.value.intern(parts[0])
-        return self._qualified(parts, str, word, start)
+        return tokens.qualified_symbol(self, parts, str, word, start)
 
     def token_parts(self):
         """Take a token: (the texts between its colons, whether it has escapes, the token as written)."""
@@ -475,48 +396,99 @@ class Reader(InputStream, FdStream):
         if index < len(self.text) or self.grow():
             return self.text[index]
         self.offset = index
-        self._frames.append([None, start, None, opener])
+        self.frames.append([None, start, None, opener])
         return self.ended(context)
-
-    def _qualified(self, parts, convert, word, start):
-        """The symbol of a token with package markers; ``parts`` are the texts between its colons."""
-        name = convert(parts[-1])
-        count = len(parts) - 1
-        if not name and "|" not in word:
-            if self.offset == len(self.text):
-                self._frames.append([None, start, None, word])
-                return self.ended("after reading a colon")
-            return fail(
-                self,
-                self.offset,
-                "illegal terminating character after a colon: ~S",
-                Character(self.text[self.offset]),
-                hint=f"After {word} the name of a symbol must follow, without white space.",
-            )
-        if count > 2 or (count == 2 and parts[1]):
-            return fail(
-                self, start, "too many colons in ~S", word, hint="A symbol is written name, package:name, package::name or :keyword."
-            )
-        if not parts[0]:
-            return KEYWORD.intern(name)
-        package_name = convert(parts[0])
-        package = named_package(package_name)
-        if package is None:
-            return reader_errors.no_package(self, start, package_name, name)
-        if count == 2 or package is KEYWORD:
-            if package.locked and not package.lookup(name)[1]:
-                reader_errors.new_in_locked_package(self, start, package, name)
-            return package.intern(name)
-        found, status = package.lookup(name)
-        if status == "external":
-            return found
-        if status == "inherited" and not package.internal:
-            return found
-        return reader_errors.no_external(self, start, package, name, status is not None)
 
 
 def _case_function(table):
     return tokens.upcase if table.case is UPCASE else tokens.CASES[table.case.name]
+
+
+# --------------------------------------------------------------------------------------------------- lists and prefixes
+
+
+def _see_dot(reader, start, base):
+    frame = reader.frames[-1] if len(reader.frames) > base else None
+    if frame is None or frame[0] is None:
+        fail(reader, start, "dot context error", hint="A dot alone has a meaning only in a list: (a . b).")
+    elif not frame[0]:
+        fail(reader, start, "Nothing appears before . in list.", hint="A dotted pair is (a . b).")
+    elif frame[2] is not _OPEN:
+        fail(reader, start, "dot context error", hint="A list has at most one dot: (a b . c).")
+    frame[2] = _DOT
+
+
+def _closed_list(reader, frame, close):
+    items, start, tail, _, symbols = frame
+    if tail is _OPEN:
+        tail = None
+    elif tail is _DOT:
+        return fail(reader, close, "Nothing appears after . in list.", hint="A dotted pair is (a . b).")
+    elif isinstance(tail, Comma) and tail.splicing:
+        for item in reversed(items):
+            tail = Cons(item, tail)
+        return fail(reader, start, "~S contains a splicing comma after a dot", tail, hint="After a dot write , instead of ,@.")
+    if SUPPRESS.value is not None:
+        return None
+    made = list_from(items, tail)
+    if made is not None:
+        reader.remember(made, start, symbols)
+    return made
+
+
+def _misplaced_close(reader, offset):
+    opener = reader.frames[-1][3] if reader.frames else None
+    if opener in _COMMAS:
+        return fail(
+            reader,
+            offset,
+            f"Trailing {_COMMAS[opener]} in backquoted expression.",
+            hint=f"Something must follow the {opener} before the ).",
+        )
+    hint = f"Something must follow the {opener} before the )." if opener else "There is one ) too many, or a ( is missing before it."
+    return fail(reader, offset, "unmatched close parenthesis", hint=hint)
+
+
+def _prefix_frame(reader, handler, start):
+    """The frame for the quote, backquote or comma at ``start``."""
+    symbol, opener = _PREFIXES[handler]
+    if symbol is QUASIQUOTE:
+        reader.backquotes += 1
+    elif symbol is Comma:
+        if not reader.backquotes and SUPPRESS.value is None:
+            fail(reader, start, "Comma not inside a backquote.", hint=reader_errors.comma_hint(reader.text, start))
+        following = reader.peek_char()
+        if following and following in "@.":
+            reader.offset += 1
+            opener += following
+        reader.backquotes -= 1
+    return [None, start, symbol, opener]
+
+
+def _prefixed(reader, frame, found, at):
+    _, start, symbol, opener = frame
+    if SUPPRESS.value is not None:
+        reader.backquotes += (symbol is Comma) - (symbol is QUASIQUOTE)
+        return None
+    if symbol is Comma:
+        reader.backquotes += 1
+        comma = Comma(opener, found)
+        if found.__class__ is Symbol:
+            reader.positions.symbols[id(comma)] = [(0, at)]
+        return comma
+    if symbol is QUASIQUOTE:
+        reader.backquotes -= 1
+        if isinstance(found, Comma) and found.splicing:
+            return fail(
+                reader,
+                start,
+                "~S is not a well-formed backquote expression",
+                Cons(symbol, Cons(found)),
+                hint=f"{found.kind} splices into a list, so it must stand in one: `({found.kind}x).",
+            )
+    form = Cons(symbol, Cons(found))
+    reader.remember(form, start)
+    return form
 
 
 # ------------------------------------------------------------------- lists and prefixes as reader macro functions
@@ -531,13 +503,13 @@ def read_list(stream, character):
 def read_close(stream, character):
     """``)`` where no list is open."""
     reader = as_reader(stream)
-    return reader.misplaced_close(reader.offset - 1)
+    return _misplaced_close(reader, reader.offset - 1)
 
 
 def _prefix_reader(name, documentation):
     def function(stream, character):
         reader = as_reader(stream)
-        return reader.next_object(reader.prefix_frame(function, reader.offset - 1))
+        return reader.next_object(_prefix_frame(reader, function, reader.offset - 1))
 
     function.__name__ = function.__qualname__ = name
     function.__doc__ = documentation

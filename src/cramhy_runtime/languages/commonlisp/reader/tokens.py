@@ -8,21 +8,22 @@ rounded once from their digits.
 
 from __future__ import annotations
 
-from cramhy_runtime.kernel.late_patterns import late_pattern
-from ..collections.sequence_types import TURN, BoundingIndicesBad, in_turns
-from cramhy_runtime.lisp_core.condition_types import SimpleParseError
-from cramhy_runtime.lisp_core.conditions import error
-from cramhy_runtime.lisp_core.conditions import type_error
 import math
 import re
 import unicodedata
 from fractions import Fraction
 
-from cramhy_runtime.lisp_core.data import LispString, MultipleValues
-from cramhy_runtime.lisp_core.floats import SingleFloat, to_float32
-from cramhy_runtime.lisp_core.dynamic import special
-from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.kernel.active import checkpoint
+from cramhy_runtime.kernel.late_patterns import late_pattern
+from cramhy_runtime.lisp_core.condition_types import SimpleParseError
+from cramhy_runtime.lisp_core.conditions import error, type_error
+from cramhy_runtime.lisp_core.data import Character, LispString, MultipleValues
+from cramhy_runtime.lisp_core.dynamic import special
+from cramhy_runtime.lisp_core.floats import SingleFloat, to_float32
+from cramhy_runtime.lisp_core.packages import KEYWORD, named_package, sym
+from ..collections.sequence_types import TURN, BoundingIndicesBad, in_turns
+from . import reader_errors
+from .reader_errors import fail
 
 _DECIMAL = late_pattern(
     r"([+-]?[0-9]+)(?:(\.)|/([0-9]+))?"
@@ -246,3 +247,41 @@ def bounds(text, start, end):
 
 
 LISP_NAMES = "parse-integer"
+
+
+# -------------------------------------------------------------------------------------------------- names with packages
+
+
+def qualified_symbol(reader, parts, convert, word, start):
+    """The symbol of a token with package markers; ``parts`` are the texts between its colons."""
+    name = convert(parts[-1])
+    count = len(parts) - 1
+    if not name and "|" not in word:
+        if reader.offset == len(reader.text):
+            reader.frames.append([None, start, None, word])
+            return reader.ended("after reading a colon")
+        return fail(
+            reader,
+            reader.offset,
+            "illegal terminating character after a colon: ~S",
+            Character(reader.text[reader.offset]),
+            hint=f"After {word} the name of a symbol must follow, without white space.",
+        )
+    if count > 2 or (count == 2 and parts[1]):
+        return fail(reader, start, "too many colons in ~S", word, hint="A symbol is written name, package:name, package::name or :keyword.")
+    if not parts[0]:
+        return KEYWORD.intern(name)
+    package_name = convert(parts[0])
+    package = named_package(package_name)
+    if package is None:
+        return reader_errors.no_package(reader, start, package_name, name)
+    if count == 2 or package is KEYWORD:
+        if package.locked and not package.lookup(name)[1]:
+            reader_errors.new_in_locked_package(reader, start, package, name)
+        return package.intern(name)
+    found, status = package.lookup(name)
+    if status == "external":
+        return found
+    if status == "inherited" and not package.internal:
+        return found
+    return reader_errors.no_external(reader, start, package, name, status is not None)
