@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from .descriptions import Shape
     from .meshes import Mesh
-    from .things import Colour
+    from .things import Colour, Thing
 
 FLOOR = "floor"
 TOUCHING = 1e-3
@@ -428,3 +428,24 @@ class Scene:
             return 0.0, 0
         deepest = int(np.argmin(distances))
         return -distances[deepest], int(numbers[deepest])
+
+
+@dataclass
+class Pattern:
+    """A scene, and the things of its world beside their copies, in the same order: a copied world needs no model of its own.
+
+    Whether the copies are still the things of their world is found out only when that world needs a scene; most need none.
+    """
+
+    scene: Scene
+    things: list[Thing]
+    copies: list[Thing]
+
+    def scene_of(self, things: Sequence[Thing], solids: Sequence[Item | Machine], held: frozenset[Hashable]) -> Scene | None:
+        """The scene of the copies; ``None`` if these are the ``things`` of their world no more, or others are ``solids`` or ``held``."""
+        scene = self.scene
+        if scene.held != held or self.copies != things or len(scene.things) != len(solids):
+            return None
+        copies = dict(zip(map(id, self.things), self.copies, strict=True))
+        same = all(copies.get(id(thing)) is solid for thing, solid in zip(scene.things, solids, strict=True))
+        return scene.of_copies(solids) if same else None

@@ -21,7 +21,7 @@ from . import shown
 from .mesh_files import MeshError
 from .meshes import mesh_of
 from .placements import Placement, placement
-from .scene import FLOOR, Part, Scene
+from .scene import FLOOR, Part, Pattern, Scene
 from .skeleton import Skeleton, skeleton_of
 from .things import GREY, Colour, Grip, Item, Machine, Thing
 
@@ -51,7 +51,7 @@ class World:
         self.stuck: list[tuple[Item, Thing | None]] = []  # items that the last `simulate` could not free, and what they are in
         self.let_go: list[tuple[Hashable, Hashable]] = []  # names of robots, and of items that they may still have between their fingers
         self._scene: Scene | None = None
-        self._pattern: tuple[Scene, list[Thing], list[Thing]] | None = None  # see `_pattern_for`
+        self._pattern: Pattern | None = None  # for the first scene of a world that is a copy
         self._placed = False
         self._trials = 0
 
@@ -168,7 +168,7 @@ class World:
             thing.placement = at
         else:
             thing.stand(at)
-            self._carry(thing)
+            carry(self, thing)
         self._placed = False
         self._tell()
 
@@ -179,7 +179,7 @@ class World:
             if joint not in machine.skeleton.joint_numbers:
                 error(WorldError("~S has no joint ~A that moves.", name, joint))
         machine.bend(joints)
-        self._carry(machine)
+        carry(self, machine)
         self._placed = False
         self._tell()
 
@@ -189,11 +189,6 @@ class World:
         if link not in machine.skeleton.links:
             error(WorldError("~S has no link ~A.", name, link))
         return machine.link(link)
-
-    def _carry(self, machine: Machine) -> None:
-        for name, grips in machine.holds.items():
-            grip = next((grip for grip in grips if not grip.loose), grips[0])
-            self.item(name).placement = machine.link(grip.link) @ grip.offset
 
     # ------------------------------------------------------------------------------------------------------------------ grips
 
@@ -226,31 +221,17 @@ class World:
         """The things that can be touched: all but drawings."""
         return [thing for thing in self.things.values() if not (isinstance(thing, Item) and thing.drawn)]
 
-    def _held(self) -> frozenset[Hashable]:
-        held = frozenset(item for machine in self.machines() for item in machine.holds)
-        return held | {thing.name for thing in self.things.values() if isinstance(thing, Item) and thing.stays}
-
     @property
     def scene(self) -> Scene:
         """The things as MuJoCo sees them, where they are now."""
         if self._scene is None:
-            self._scene, self._placed = self._made_scene(), False
+            solids, held, pattern = self.solids(), held_in(self), self._pattern
+            copied = pattern and pattern.scene_of(list(self.things.values()), solids, held)
+            self._scene, self._placed, self._pattern = copied or Scene(solids, held), False, None
         if not self._placed:
             self._scene.place()
             self._placed = True
         return self._scene
-
-    def _made_scene(self) -> Scene:
-        """A scene of the things of now, with the model of the world that this one is a copy of, if it still has the same things."""
-        solids, held, pattern = self.solids(), self._held(), self._pattern
-        self._pattern = None
-        if pattern is not None:
-            scene, theirs, mine = pattern
-            if scene.held == held and mine == list(self.things.values()) and len(scene.things) == len(solids):
-                copies = dict(zip(map(id, theirs), mine, strict=True))
-                if all(copies.get(id(thing)) is solid for thing, solid in zip(scene.things, solids, strict=True)):
-                    return scene.of_copies(solids)
-        return Scene(solids, held)
 
     def contacts(self, name: Hashable | None = None) -> list[tuple[Part, Part | None]]:
         """What touches what, or touches the thing ``name``: see `Scene.contacts`."""
@@ -264,20 +245,12 @@ class World:
     def bounds(self, name: Hashable, link: str | None = None) -> tuple[np.ndarray, np.ndarray]:
         """The lowest and the highest corner of the box along the axes around a thing, or around one of its links."""
         thing = self.thing(name)
-        return self._scene_with(thing).bounds(thing, link)
+        return _scene_with(self, thing).bounds(thing, link)
 
     def lengths(self, name: Hashable, link: str | None, rotation: np.ndarray) -> np.ndarray:
         """The lengths of the box along the axes that would be around a thing, or one of its links, if it were turned so: (w, x, y, z)."""
         thing = self.thing(name)
-        return self._scene_with(thing).lengths(thing, link, rotation)
-
-    def _scene_with(self, thing: Thing) -> Scene:
-        """The scene; for a drawing, which is not in it, one of its own."""
-        scene = self.scene
-        if thing not in scene.things:
-            scene = Scene([thing])
-            scene.place()
-        return scene
+        return _scene_with(self, thing).lengths(thing, link, rotation)
 
     def simulate(self, seconds: float, without: Hashable | None = None) -> float:
         """Let free items fall for so long, or until all are at rest; the seconds that it took.
@@ -289,8 +262,8 @@ class World:
 
         without: the name of a machine that touches nothing meanwhile, wherever its hands are.
         """
-        held = self._held()
-        absent = {without, *self._still_around()}
+        held = held_in(self)
+        absent = {without, *_still_around(self)}
         things = [thing for thing in self.solids() if thing.name not in absent]
         scene = self.scene
         if len(things) < len(scene.things):
@@ -306,15 +279,6 @@ class World:
         self._tell()
         return took
 
-    def _still_around(self) -> set[Hashable]:
-        """The names of the robots that touch an item that they let go. Items that they touch no more are forgotten."""
-        self.let_go = [
-            (name, item)
-            for name, item in self.let_go
-            if name in self.things and item in self.things and any(thing.name == name for thing in self.touching(item))
-        ]
-        return {name for name, _ in self.let_go}
-
     def stable(self, name: Hashable, metres: float = 0.005, radians: float = 0.15) -> bool:
         """Whether an item would still be where it is after five seconds."""
         ahead = self.copy()
@@ -325,19 +289,47 @@ class World:
         """A world with the same things at the same places, which goes its own way. ``into``: a kinematic world that becomes it."""
         new = World() if into is None else into
         new.things, new.ignored, new.stuck, new._scene, new._placed = {}, list(self.ignored), [], None, False
-        new.let_go = list(self.let_go)
+        new.let_go, new._pattern = list(self.let_go), None
         for name, thing in self.things.items():
             new.things[name] = copied = thing.copy()
             copied.world = new
-        new._pattern = self._pattern_for(new)
+        things, pattern = list(self.things.values()), self._pattern
+        if self._scene is not None:
+            new._pattern = Pattern(self._scene, things, list(new.things.values()))
+        elif pattern is not None and pattern.copies == things:
+            new._pattern = Pattern(pattern.scene, pattern.things, list(new.things.values()))
         if into is not None:
             into._tell()
         return new
 
-    def _pattern_for(self, copied: World) -> tuple[Scene, list[Thing], list[Thing]] | None:
-        """A scene, the things of its world, and their copies in the same order, which are in ``copied``; ``None`` without a scene."""
-        if self._scene is not None:
-            return self._scene, list(self.things.values()), list(copied.things.values())
-        if self._pattern is None or self._pattern[2] != list(self.things.values()):
-            return None
-        return *self._pattern[:2], list(copied.things.values())
+
+def carry(world: World, machine: Machine) -> None:
+    """Put what a machine holds to where the links are that hold it."""
+    for name, grips in machine.holds.items():
+        grip = next((grip for grip in grips if not grip.loose), grips[0])
+        world.item(name).placement = machine.link(grip.link) @ grip.offset
+
+
+def held_in(world: World) -> frozenset[Hashable]:
+    """The names of the items that do not fall: a machine holds them, or they stay."""
+    held = frozenset(item for machine in world.machines() for item in machine.holds)
+    return held | {thing.name for thing in world.things.values() if isinstance(thing, Item) and thing.stays}
+
+
+def _scene_with(world: World, thing: Thing) -> Scene:
+    """The scene; for a drawing, which is not in it, one of its own."""
+    scene = world.scene
+    if thing not in scene.things:
+        scene = Scene([thing])
+        scene.place()
+    return scene
+
+
+def _still_around(world: World) -> set[Hashable]:
+    """The names of the robots that touch an item that they let go. Items that they touch no more are forgotten."""
+    world.let_go = [
+        (name, item)
+        for name, item in world.let_go
+        if name in world.things and item in world.things and any(thing.name == name for thing in world.touching(item))
+    ]
+    return {name for name, _ in world.let_go}

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     import mujoco
 
-    from ..placements import Placement
 
 STEP = 0.002
 """Seconds of one step."""
@@ -100,12 +99,9 @@ class Bench(PhysicalWorld):
         wanted[5] /= 2
         goal = np.clip(wanted, self.lowest, self.highest)
         self.servos.goal = goal
-        self._follow()
-        return [name for name, far in zip(model.JOINTS, np.abs(goal - wanted) > (0.05,) * 5 + (0.001,), strict=True) if far]
-
-    def _follow(self) -> None:
         if not self.servos.done and not any(entry[1] is self.servos for entry in self.engine.trajectories):
             self.follow(model.NAME, self.servos)
+        return [name for name, far in zip(model.JOINTS, np.abs(goal - wanted) > (0.05,) * 5 + (0.001,), strict=True) if far]
 
     def _tell(self) -> None:
         self.moment = object()
@@ -117,15 +113,12 @@ class Bench(PhysicalWorld):
         if self.servos.done and self.engine.trajectories:
             self.engine.leave(self.servos)
 
-    def states(self) -> tuple[list[float], list[float], list[float]]:
-        """(positions, velocities, efforts) of `model.JOINTS`."""
-        engine, name, (left, right) = self.engine, model.NAME, model.FINGERS
-        places = [engine.joint(name, joint) for joint in DRIVEN[:5]] + [engine.joint(name, left) + engine.joint(name, right)]
-        moving = not self.at_rest
-        speeds = [engine.speed(name, joint) if moving else 0.0 for joint in DRIVEN]
-        speeds[5] *= 2
-        return places, speeds, [engine.force(name, joint) for joint in DRIVEN]
 
-    def add_brick(self, name: str, colour: str, at: Placement) -> None:
-        """Put a brick there; it falls until it lies."""
-        self.add_item(name, model.brick_shapes(), at, mass=model.BRICK_MASS, colour=model.COLOURS[colour], types=("brick",))
+def states(bench: Bench) -> tuple[list[float], list[float], list[float]]:
+    """(positions, velocities, efforts) of `model.JOINTS`."""
+    engine, name, (left, right) = bench.engine, model.NAME, model.FINGERS
+    places = [engine.joint(name, joint) for joint in DRIVEN[:5]] + [engine.joint(name, left) + engine.joint(name, right)]
+    moving = not bench.at_rest
+    speeds = [engine.speed(name, joint) if moving else 0.0 for joint in DRIVEN]
+    speeds[5] *= 2
+    return places, speeds, [engine.force(name, joint) for joint in DRIVEN]

@@ -11,6 +11,7 @@ from ...ros.wire import as_float
 from ..descriptions import turned
 from ..placements import Placement, placement
 from ..urdf import angles
+from . import model
 from .names import PACKAGE
 from .pulses import Pulse
 
@@ -42,7 +43,8 @@ class Brick:
 
     def __init__(self, simulator: Simulator, name: str, colour: str, at: tuple[float, ...]) -> None:
         self.simulator, self.name, self.colour = simulator, name, colour
-        simulator.bench.add_brick(name, colour, placed(at))
+        shapes, colour = model.brick_shapes(), model.COLOURS[colour]
+        simulator.bench.add_item(name, shapes, placed(at), mass=model.BRICK_MASS, colour=colour, types=("brick",))  # it falls until it lies
         node = simulator.node
         self.pose_type = message_class_exact(f"{PACKAGE}/Pose")
         self.pulse = Pulse(node.advertise(f"~{name}/pose", self.pose_type), PERIOD, self.pose)

@@ -29,7 +29,7 @@ from ...ros.services import Refusal
 from ...ros.wire import as_float
 from .. import shown
 from . import model
-from .bench import Bench
+from .bench import Bench, states
 from .bricks import Brick, numbers
 from .frames import CAMERA_FRAME, camera_info, frames
 from .names import NAME, PACKAGE
@@ -116,11 +116,11 @@ class Simulator(Program):
         return self.header_type(seq=0, stamp=float(self.graph.now()), frame_id=frame)
 
     def _states(self) -> RosMessage:
-        positions, velocities, efforts = (list(map(float, numbers)) for numbers in self.bench.states())
+        positions, velocities, efforts = (list(map(float, numbers)) for numbers in states(self.bench))
         return self.states_type(self._header(), list(model.JOINTS), positions, velocities, efforts)
 
     def _frames(self) -> RosMessage:
-        return frames(self.bench.states()[0], float(self.graph.now()))
+        return frames(states(self.bench)[0], float(self.graph.now()))
 
     def _image(self) -> RosMessage:
         now = self.bench.moment

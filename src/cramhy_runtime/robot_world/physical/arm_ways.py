@@ -16,6 +16,7 @@ from cramhy_runtime.kernel.active import checkpoint
 
 from ..mujoco_parts import mujoco
 from ..things import Item
+from ..world import carry
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Sequence
@@ -69,7 +70,7 @@ class Room:
         """The pairs of geoms that are nearer than that, and how near."""
         scene = self.scene
         self.machine.bend(dict(zip(self.names, map(float, posture), strict=True)))
-        self.world._carry(self.machine)  # noqa: SLF001  nobody watches this copy
+        carry(self.world, self.machine)  # nobody watches this copy
         scene.place()
         lowest, highest = (corner[self.mine] for corner in scene.boxes())
         near = np.ones((len(self.mine), len(self.others)), bool)

@@ -19,7 +19,7 @@ from . import floor_ways
 from .arm_ways import APART, Room
 from .engine import BASE, yaw_of
 from .trajectory import Trajectory
-from .world import TICK, PhysicalWorld
+from .world import TICK, PhysicalWorld, touched_by
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterator, Mapping, Sequence
@@ -116,7 +116,7 @@ class PhysicalRobot(SimulatedRobot):
         for arm in arms:
             parts = self.parts.arms[arm]
             lost = [name for name, grips in self.machine.holds.items() if any(grip.link == parts.tip for grip in grips)]
-            felt = {thing.name for thing in self.world.felt(self.name, set(parts.hand))} if lost else set()
+            felt = {thing.name for thing in touched_by(self.world, self.name, set(parts.hand))} if lost else set()
             for name in lost:
                 if name not in felt:
                     self.world.detach(self.name, name)
@@ -316,7 +316,7 @@ class PhysicalRobot(SimulatedRobot):
         engine.set_force(self.name, parts.fingers[0], newtons or GRIP)
         self._move_fingers(arm, 0.0)
         sides = [set(self.machine.description.below(self.machine.description.joints[finger].child)) for finger in parts.fingers]
-        felt = [self.world.felt(self.name, side) for side in sides]
+        felt = [touched_by(self.world, self.name, side) for side in sides]
         held = [thing for thing in felt[0] if all(any(thing is other for other in side) for side in felt)]
         if not held or float(self._now(parts.fingers[:1])[0]) < _SHUT:
             raise NothingGripped("there was nothing between the fingers")

@@ -89,14 +89,14 @@ class PhysicalWorld(World):
 
     def put(self, name: Hashable, at: Placement) -> None:
         """Put a thing there, as a hand would; a machine takes with it what it holds."""
-        self._refresh_grips(self.thing(name))
+        _refresh_grips(self, self.thing(name))
         super().put(name, at)
         self._take_over(name)
 
     def bend(self, name: Hashable, joints: Mapping[str, float]) -> None:
         """Set joints at once, whatever their limits; servos then hold them there."""
         machine = self.machine(name)
-        self._refresh_grips(machine)
+        _refresh_grips(self, machine)
         super().bend(name, joints)
         used = used_joints(machine, self.parts[name]) if name in self.parts else None
         if used and not set(joints) <= {*used[0], *used[1]}:
@@ -113,12 +113,6 @@ class PhysicalWorld(World):
                 for item in thing.holds:
                     self._engine.write(self.item(item))
         self.wake()
-
-    def _refresh_grips(self, thing: Thing) -> None:
-        if isinstance(thing, Machine):
-            for name, grips in thing.holds.items():
-                for grip in grips:
-                    grip.offset = thing.link(grip.link).inverse() @ self.item(name).placement
 
     # -------------------------------------------------------------------------------------------------------------------- time
 
@@ -199,13 +193,21 @@ class PhysicalWorld(World):
 
     # ------------------------------------------------------------------------------------------------------------------- holds
 
-    def felt(self, name: Hashable, links: set[str]) -> list[Item | Machine]:
-        """What links of a machine touch, by MuJoCo's contacts."""
-        found = [other for link, other, _ in self.engine.touching(self.machine(name)) if link in links and other is not None]
-        return list({id(thing): thing for thing in found}.values())
-
     def copy(self, into: World | None = None) -> World:
         """A kinematic world with the same things at the same places, to look ahead; what the robot holds goes with it there."""
         for machine in self.machines():
-            self._refresh_grips(machine)
+            _refresh_grips(self, machine)
         return super().copy(into)
+
+
+def _refresh_grips(world: PhysicalWorld, thing: Thing) -> None:
+    if isinstance(thing, Machine):
+        for name, grips in thing.holds.items():
+            for grip in grips:
+                grip.offset = thing.link(grip.link).inverse() @ world.item(name).placement
+
+
+def touched_by(world: PhysicalWorld, name: Hashable, links: set[str]) -> list[Item | Machine]:
+    """What links of a machine touch, by MuJoCo's contacts."""
+    found = [other for link, other, _ in world.engine.touching(world.machine(name)) if link in links and other is not None]
+    return list({id(thing): thing for thing in found}.values())
