@@ -31,7 +31,7 @@ from .conses import (
     python_list as python_list,
 )
 from .floats import FLOATS as FLOATS, is_ratio as is_ratio
-from .slot_classes import SlotClasses, effective_functions
+from .known_calls import KnownCalls
 from .ports import PORTS
 
 if TYPE_CHECKING:
@@ -47,9 +47,6 @@ class Symbol:
 
     ``value`` is the current dynamic value: see ``lisp_core/dynamic.py`` for how tasks keep theirs apart.
     ``function`` is always callable; that of an undefined function signals ``undefined-function``.
-    ``reads`` and ``writes`` tell from which objects ``function`` and ``setf_function`` just read or write an attribute (`SlotClasses`),
-    ``keyed`` are the ways in which compiled code calls ``function`` with keywords (`lisp_core.keyword_calls`). ``unary`` and ``binary`` are
-    tables for calls with one and two arguments, if ``function`` is generic: the function to call, by the class of the first argument.
     """
 
     __slots__ = (
@@ -63,11 +60,7 @@ class Symbol:
         "special",
         "constant",
         "compiler_data",
-        "_reads",
-        "_writes",
-        "keyed",
-        "_unary",
-        "_binary",
+        "_calls",
         "__weakref__",
     )
 
@@ -82,49 +75,24 @@ class Symbol:
         self.special = False
         self.constant = False
         self.compiler_data = None
-        self._reads = self._writes = self.keyed = self._unary = self._binary = None
+        self._calls: KnownCalls | None = None
 
     def function_changed(self):
         """To be called after ``function`` or ``setf_function`` got another value."""
-        self.more_known()
-        if self.keyed is not None:
-            for calls in self.keyed.values():
-                calls.refresh()
+        if self._calls is not None:
+            self._calls.function_changed()
 
     def more_known(self):
         """To be called after ``function`` or ``setf_function``, which is generic, found the methods for a call."""
-        if self._reads is not None:
-            self._reads.refresh()
-        if self._writes is not None:
-            self._writes.refresh()
-        for count, table in ((1, self._unary), (2, self._binary)):
-            if table is not None:
-                table.clear()
-                table.update(effective_functions(self.function, count))
+        if self._calls is not None:
+            self._calls.more_known()
 
     @property
-    def reads(self) -> SlotClasses:
-        if self._reads is None:
-            self._reads = SlotClasses(self, "function")
-        return self._reads
-
-    @property
-    def writes(self) -> SlotClasses:
-        if self._writes is None:
-            self._writes = SlotClasses(self, "setf_function")
-        return self._writes
-
-    @property
-    def unary(self) -> dict[type, Callable[..., Any]]:
-        if self._unary is None:
-            self._unary = effective_functions(self.function, 1)
-        return self._unary
-
-    @property
-    def binary(self) -> dict[type, Callable[..., Any]]:
-        if self._binary is None:
-            self._binary = effective_functions(self.function, 2)
-        return self._binary
+    def calls(self) -> KnownCalls:
+        """What compiled code knows of its functions."""
+        if self._calls is None:
+            self._calls = KnownCalls(self)
+        return self._calls
 
     def __repr__(self) -> str:
         return f"{self.package.name}::{self.name}" if self.package else f"#:{self.name}"

@@ -125,12 +125,7 @@ class KeywordCalls:
 
 def keyword_calls(symbol, count, *keys):
     """The `KeywordCalls` of ``symbol`` with so many arguments and then these keywords, one for all calls."""
-    if symbol.keyed is None:
-        symbol.keyed = {}
-    found = symbol.keyed.get((count, keys))
-    if found is None:
-        found = symbol.keyed[count, keys] = KeywordCalls(symbol, count, keys)
-    return found
+    return symbol.calls.kept((count, keys), lambda: KeywordCalls(symbol, count, keys))
 
 
 def keyword_name(name):

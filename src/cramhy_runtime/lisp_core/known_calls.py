@@ -1,6 +1,6 @@
-"""What compiled code may know of the functions of symbols: from which classes' objects they just take a slot.
+"""What compiled code knows of the functions of a symbol, so that it need not call them, or calls their methods at once.
 
-`lisp_core.data.Symbol` keeps these tables, and generic functions tell it when they change.
+A symbol has such tables (`KnownCalls`) from the first time that compiled code asks for them, and tells them when its functions change.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class SlotClasses(dict):
     """For the function of a symbol: attribute → the set of the classes from whose objects compiled code may take the slot itself.
 
     They are the classes of whose objects the function reads, or writes, just that attribute. A set is made when compiled code asks for
-    it, as ``symbol.reads.of_speed``. `Symbol.function_changed` keeps the sets right, and so do generic functions.
+    it, as ``symbol.calls.reads.of_speed``. `Symbol.function_changed` keeps the sets right, and so do generic functions.
     """
 
     __slots__ = ("symbol", "cell")
@@ -59,3 +59,56 @@ def _accesses(function):
         return ((function.slot_of, function.attribute),)
     accesses = getattr(function, "slot_accesses", None)
     return () if accesses is None else accesses()
+
+
+class KnownCalls:
+    """The tables of one symbol.
+
+    reads, writes: from which objects its ``function`` and its ``setf_function`` just read or write an attribute. unary, binary: for calls
+    with one and two arguments, if ``function`` is generic, the function to call by the class of the first argument.
+    """
+
+    __slots__ = ("symbol", "reads", "writes", "_kept", "_tables")
+
+    def __init__(self, symbol):
+        self.symbol, self._kept = symbol, {}
+        self.reads, self.writes = SlotClasses(symbol, "function"), SlotClasses(symbol, "setf_function")
+        self._tables = {}
+
+    @property
+    def unary(self):
+        return self._table(1)
+
+    @property
+    def binary(self):
+        return self._table(2)
+
+    def _table(self, count):
+        if count not in self._tables:
+            self._tables[count] = effective_functions(self.symbol.function, count)
+        return self._tables[count]
+
+    def kept(self, key, make):
+        """What stands for ``key`` among that which wants to know when the functions change, by its ``refresh``; ``make()`` the first time.
+
+        key: for calls with keywords, their number of other arguments and the keywords (`lisp_core.keyword_calls`).
+        """
+        found = self._kept.get(key)
+        if found is None:
+            found = self._kept[key] = make()
+        return found
+
+    def function_changed(self):
+        """Find out anew what the functions do."""
+        self.more_known()
+        for each in self._kept.values():
+            each.refresh()
+
+    def more_known(self):
+        """Find out anew which methods the functions call."""
+        for accesses in (self.reads, self.writes):
+            if accesses:
+                accesses.refresh()
+        for count, table in self._tables.items():
+            table.clear()
+            table.update(effective_functions(self.symbol.function, count))

@@ -1,7 +1,7 @@
 """Accessors: which generic functions just read or write an attribute, and the calls that do so themselves.
 
 Compiled code takes a slot from an object itself where the function that is called would do nothing else. It asks the symbol of the
-function from which classes' objects it may (`slot_classes.SlotClasses`), and the symbol asks the function.
+function from which classes' objects it may (`known_calls.SlotClasses`), and the symbol asks the function.
 """
 
 from __future__ import annotations

@@ -26,7 +26,6 @@ from .net_tests import WAITING, look_at_wait
 from .nodes import (
     Call,
     CallLocal,
-    CallSetf,
     CallValue,
     Checked,
     Constant,
@@ -429,10 +428,6 @@ def progn(forms):
     node.single = forms[-1].single
     node.boolean = forms[-1].boolean
     return node
-
-
-def call_setf(symbol, arguments):
-    return CallSetf(symbol, arguments)
 
 
 __all__ = ["Analyzer", "Env", "SPECIAL_FORMS", "note_traits", "progn", "nodes", "python_name", "SimpleProgramError"]

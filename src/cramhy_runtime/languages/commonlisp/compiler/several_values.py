@@ -52,12 +52,7 @@ class ValuesCalls:
 
 def values_calls(symbol):
     """The `ValuesCalls` of ``symbol``, one for all calls."""
-    if symbol.keyed is None:
-        symbol.keyed = {}
-    found = symbol.keyed.get(VALUES)
-    if found is None:
-        found = symbol.keyed[VALUES] = ValuesCalls(symbol)
-    return found
+    return symbol.calls.kept(VALUES, lambda: ValuesCalls(symbol))
 
 
 def gives_tuple(symbol):

@@ -228,10 +228,7 @@ def constructor_for(cls, keys):
 
 def _hear_of_traces():
     for function in (protocol_functions.initialize_instance, protocol_functions.shared_initialize):
-        symbol = function.__lisp_name__
-        if symbol.keyed is None:
-            symbol.keyed = {}
-        symbol.keyed["constructors"] = _Callers
+        function.__lisp_name__.calls.kept("constructors", lambda: _Callers)
 
 
 def check_finalized(cls):

@@ -54,12 +54,7 @@ _in_use: list[Maker] = []
 
 def maker(name, *keys):
     """The `Maker` for the class that the symbol ``name`` names and the keywords ``keys``, one for all calls."""
-    if MAKE_INSTANCE.keyed is None:
-        MAKE_INSTANCE.keyed = {}  # so it hears when the function changes
-    found = MAKE_INSTANCE.keyed.get((name, keys))
-    if found is None:
-        found = MAKE_INSTANCE.keyed[name, keys] = Maker(name, keys)
-    return found
+    return MAKE_INSTANCE.calls.kept((name, keys), lambda: Maker(name, keys))
 
 
 @when_plans_change

@@ -14,7 +14,7 @@ from operator import attrgetter
 from cramhy_runtime.lisp_core.condition_types import MissingSlot
 from cramhy_runtime.lisp_core.condition_types import shown
 from cramhy_runtime.lisp_core.conditions import Condition, SimpleError, UnboundSlot, ask_value, error, restart_case, type_error
-from cramhy_runtime.lisp_core.slot_classes import Classes
+from cramhy_runtime.lisp_core.known_calls import Classes
 from cramhy_runtime.lisp_core.data import UNBOUND, Symbol, boolean, list_from, one, truth
 from cramhy_runtime.lisp_core.packages import is_symbol, sym
 from cramhy_runtime.lisp_core.python_names import python_name

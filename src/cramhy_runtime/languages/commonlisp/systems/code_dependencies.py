@@ -42,7 +42,7 @@ _CELLS = 500
 _CALLS = frozenset(("function", "setf_function"))
 _ABOUT_USERS = ("documentation", "advice")
 """Parts of the names of a compiler's notes that tell people something, and the compiler nothing."""
-_state = attrgetter("macro", "function", "setf_function", "special", "constant", "reads", "writes")
+_state = attrgetter("macro", "function", "setf_function", "special", "constant")
 
 
 def symbols_in(form: object) -> list[Symbol]:

@@ -67,7 +67,7 @@ def slot_read(generator, node, models):
     if len(models) != 1 or (attribute := read_attribute(symbol)) is None:
         return None
     (target,) = generator.stable_names(models)
-    classes = word(generator.constants.name(f"reads.of_{attribute}", symbol))
+    classes = word(generator.constants.name(f"calls.reads.of_{attribute}", symbol))
     slow = generator.positioned(expression(expression(DOT, generator.constant(symbol), word("function")), target), node)
     model = expression(IF, among_classes(target, classes), expression(DOT, target, word(attribute)), generator.first_value(slow))
     return model, SINGLE_VALUE
@@ -84,7 +84,7 @@ def slot_written(generator, node, models, destination):
     """``(setf (accessor object) new)``, with the new value and the object as ``models``."""
     if len(models) != 2 or (attribute := written_attribute(node.symbol)) is None:
         return None
-    classes = word(generator.constants.name(f"writes.of_{attribute}", node.symbol))
+    classes = word(generator.constants.name(f"calls.writes.of_{attribute}", node.symbol))
     setter = generator.call("setf_function", generator.constant(node.symbol))
     return attribute_set(generator, node, attribute, models, destination, classes, setter)
 
@@ -129,7 +129,7 @@ def through_object(generator, node, models):
     if not isinstance(symbol, Symbol) or not models or getattr(symbol.function, "by_first_of", None) != len(models):
         return None
     models = generator.stable_names(models)
-    table = word(generator.constants.name("unary" if len(models) == 1 else "binary", symbol))
+    table = word(generator.constants.name("calls.unary" if len(models) == 1 else "calls.binary", symbol))
     known = expression(expression(DOT, table, word("get")), expression(DOT, models[0], word("__class__")))
     chosen = expression(word("or"), known, expression(DOT, generator.constant(symbol), word("function")))
     return generator.positioned(expression(chosen, *models), node), node
