@@ -18,7 +18,14 @@ from ..compiler.frame_exits import DEBUGGED
 
 QUOTE = sym("QUOTE")
 _LOAD, _STORE = trees.Load(), trees.Store()
-_NOWHERE = (1, 0, 1, 1)
+
+
+def _place(position):
+    """(line, column, end line, end column) as a node of Python has it."""
+    return dict(zip(("lineno", "col_offset", "end_lineno", "end_col_offset"), position, strict=True))
+
+
+_NOWHERE = _place((1, 0, 1, 1))
 _TAKES_MORE = 0x0C
 """Flags of a code object with rest or keyword arguments."""
 _USUAL = {"__lisp_lambda_list__", "__lisp_name__", "beside"}
@@ -59,32 +66,25 @@ def code_of_plain_call(form, unit):
 
 def _code(symbol, values, unit, position):
     """The code object of a call of the function of ``symbol`` at ``position``, or nowhere."""
-    own = position or _NOWHERE
-    line, column, *_ = own
-    inner = own if position is None else (line, column, line, column + 1)
-
-    def at(node, place):
-        node.lineno, node.col_offset, node.end_lineno, node.end_col_offset = place
-        return node
-
+    own = _NOWHERE if position is None else _place(position)
+    inner = own | {"end_lineno": own["lineno"], "end_col_offset": own["col_offset"] + 1}
     name = unit.constants.name("object", symbol)
-    function = at(trees.Attribute(at(trees.Name(name, _LOAD), inner), "function", _LOAD), inner)
-    named = at(trees.NamedExpr(at(trees.Name("Lf", _STORE), inner), function), inner)
+    function = trees.Attribute(trees.Name(name, _LOAD, **inner), "function", _LOAD, **inner)
     arguments = [
-        at(trees.Constant(None if value is False else value), inner)
+        trees.Constant(None if value is False else value, **inner)
         if value is None or value is True or value is False or value.__class__ in (str, int, float) and _is_short(value)
-        else at(trees.Name(unit.constants.name("object", value), _LOAD), inner)
+        else trees.Name(unit.constants.name("object", value), _LOAD, **inner)
         for value in values
     ]
-    call = at(trees.Call(named, arguments, []), own)
+    call = trees.Call(trees.NamedExpr(trees.Name("Lf", _STORE, **inner), function, **inner), arguments, [], **own)
     parameters = trees.arguments(posonlyargs=[], args=[], vararg=None, kwonlyargs=[], kw_defaults=[], kwarg=None, defaults=[])
-    toplevel = trees.FunctionDef("toplevel", parameters, [at(trees.Return(call), _NOWHERE)], [], None, None)
+    toplevel = trees.FunctionDef("toplevel", parameters, [trees.Return(call, **_NOWHERE)], [], None, None, **_NOWHERE)
     if "type_params" in toplevel._fields:
         toplevel.type_params = []
-    run = at(trees.Call(at(trees.Name("toplevel", _LOAD), _NOWHERE), [], []), _NOWHERE)
-    result = at(trees.Assign([at(trees.Name("Lresult", _STORE), _NOWHERE)], run), _NOWHERE)
+    run = trees.Call(trees.Name("toplevel", _LOAD, **_NOWHERE), [], [], **_NOWHERE)
+    result = trees.Assign([trees.Name("Lresult", _STORE, **_NOWHERE)], run, **_NOWHERE)
     unit.namespace.update(unit.constants.take_objects())
-    return compile(trees.Module([at(toplevel, _NOWHERE), result], []), unit.filename, "exec")
+    return compile(trees.Module([toplevel, result], []), unit.filename, "exec")
 
 
 def _is_short(value):

@@ -41,7 +41,11 @@ class DispatchTable:
 
 
 class Readtable:
-    """Syntax types of characters. ``case`` is one of :upcase, :downcase, :preserve, :invert."""
+    """Syntax types of characters. ``case`` is one of :upcase, :downcase, :preserve, :invert.
+
+    ``scanner``: the pattern of white space and comments, then (1) the plain part of a token, if any, (2) an escape right after it; ``None``
+    until `compiled` makes it.
+    """
 
     lisp_name = "READTABLE"
 
@@ -52,7 +56,7 @@ class Readtable:
         self.single_escapes = {"\\"}
         self.multiple_escapes = {"|"}
         self.case = UPCASE
-        self._scanner = None
+        self.scanner = None
 
     def copy(self):
         other = Readtable()
@@ -66,7 +70,7 @@ class Readtable:
         self.non_terminating = set(other.non_terminating)
         self.single_escapes, self.multiple_escapes = set(other.single_escapes), set(other.multiple_escapes)
         self.case = other.case
-        self._scanner = None
+        self.scanner = None
 
     def reads_as(self, other: Readtable) -> bool:
         """Whether each character means what it means in ``other``; ``case`` does not count."""
@@ -84,12 +88,8 @@ class Readtable:
             )
         )
 
-    @property
-    def scanner(self):
-        """Pattern: white space and comments, then (1) the plain part of a token, if any, (2) an escape right after it."""
-        return self._scanner or self._compile()
-
-    def _compile(self):
+    def compiled(self):
+        """Make the ``scanner``, and return it."""
         from .standard_syntax import read_comment  # first of all: that module fills the tables with the standard syntax
 
         white = _set(self.whitespace)
@@ -102,13 +102,13 @@ class Readtable:
             skip += r"|;[^\n]*"
         within = f"[^{white}{escapes}{ending}]"
         escape = f"[{escapes}]" if escapes else "(?!)"
-        self._scanner = re.compile(f"(?:{skip})*((?:{begin}{within}*)?)({escape}?)")
-        return self._scanner
+        self.scanner = re.compile(f"(?:{skip})*((?:{begin}{within}*)?)({escape}?)")
+        return self.scanner
 
     def end_of_blank(self, text, offset):
         """Where white space and comments that begin at ``offset`` end. If the text ends in a comment, which may go on when more of the text
         arrives, it is where that comment begins."""
-        end = self.scanner.match(text, offset).start(1)
+        end = (self.scanner or self.compiled()).match(text, offset).start(1)
         if end < len(text):
             return end
         comment = text.find(";", max(offset, text.rfind("\n") + 1))
@@ -125,7 +125,7 @@ class Readtable:
         self.macros.pop(char, None)
         for syntax in (self.whitespace, self.non_terminating, self.single_escapes, self.multiple_escapes):
             syntax.discard(char)
-        self._scanner = None
+        self.scanner = None
 
     def terminates(self, char):
         """Whether ``char`` ends a token before it."""

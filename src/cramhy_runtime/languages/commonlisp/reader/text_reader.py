@@ -197,7 +197,7 @@ class Reader(InputStream, FdStream):
             if len(frames) > MOST_NESTED:
                 return fail(self, self.offset, "The text is nested too deeply to be read.", hint=f"{MOST_NESTED} levels are the most.")
             text, table = self.text, READTABLE.value
-            match = table.scanner.match(text, self.offset)
+            match = (table.scanner or table.compiled()).match(text, self.offset)
             start, end = match.span(1)
             at = start
             if match.end(2) > end:

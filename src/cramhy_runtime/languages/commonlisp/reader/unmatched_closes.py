@@ -69,7 +69,8 @@ def left_out(reader, start):
 
 def _next(reader, offset):
     """Where the next character is that is neither white space nor in a comment with ``;``."""
-    return READTABLE.value.scanner.match(reader.text, offset).start(1)
+    table = READTABLE.value
+    return (table.scanner or table.compiled()).match(reader.text, offset).start(1)
 
 
 def _line_start(text, offset):
