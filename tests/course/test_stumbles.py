@@ -150,6 +150,11 @@ def test_a_broken_line_of_an_answer_has_no_marks_below_it():
     assert f"{long}\n{short}\n     ^^^^\n" in shown
 
 
+@pytest.mark.parametrize(("step", "foot"), [("4 4", "; :next shows it."), ("4 2", "; :next goes on.")])
+def test_a_step_whose_text_ends_in_a_colon_says_that_the_next_one_shows_it(typed, step, foot):
+    assert foot in typed([f":page {step}", ":quit"], "lecture-34")
+
+
 @pytest.mark.parametrize("language", ["lisp", "hy"])
 def test_a_name_of_the_students_own_leads_to_no_form_that_loads(typed, language):
     far = step_with(1, language, "first-square")

@@ -171,7 +171,7 @@ class Guide:
             return "; :next writes this file and goes on. Or write it yourself, with an editor."
         if self.place + 1 < len(self.steps):
             if part is None:
-                return "; :next goes on."
+                return "; :next shows it." if self.step.texts[-1].rstrip().endswith(":") else "; :next goes on."
             return "; Type what stands behind the prompts, or :type does. :next goes on."
         after = self._after()
         if after is None:
