@@ -62,7 +62,38 @@ def _of_hy(code, text):
     if found := _GROUP.search(code):
         group = "".join(" " if sign == "," else old for sign, old in zip(found[0], text[found.start() :]))
         return f"; Between values stand spaces, and no commas: {group[0]}{' '.join(group[1:-1].split())}{group[-1]}"
-    return "; Between values stand spaces, and no commas." if _COMMA.search(code) else None
+    if _COMMA.search(code):
+        return "; Between values stand spaces, and no commas."
+    if _EMPTY_LOOP.search(code):
+        return "; This loop repeats nothing: its last parenthesis stands before the forms that it should do."
+    return None
+
+
+_WRITTEN = {
+    "for": "(for [i (range 4)] ...): a name and the values for it stand in brackets, and the forms that are repeated behind them",
+    "defn": "(defn name [arguments] ...): the names of the arguments stand in brackets, which are [] if there are none",
+    "setv": "(setv name value)",
+    "let": "(let [name value] ...)",
+    "while": "(while condition ...)",
+    "if": "(if condition this that)",
+}
+"""How the forms of Hy are written that beginners write otherwise."""
+_MALFORMED = re.compile(r"parse error for pattern macro '(\w+)'")
+_NOT_ITERABLE = re.compile(r"'(?:int|float)' object is not iterable")
+_LOOPS = re.compile(r"\(for\s+\[")
+_EMPTY_LOOP = re.compile(r"\(for\s+\[\s*[^\s()\[\]]+\s+(?:[^\s()\[\]]+|\([^()]*\))\s*\]\s*\)")
+
+
+def of_error(told: str, text: str, language: str) -> str | None:
+    """What to say of an error with the text ``told``, for the form ``text`` of Hy: a form that is written otherwise; else ``None``."""
+    if language != "hy":
+        return None
+    found = _MALFORMED.search(told)
+    if found and found[1] in _WRITTEN:
+        return f"; {found[1]} is written {_WRITTEN[found[1]]}."
+    if _NOT_ITERABLE.search(told) and _LOOPS.search(_code(text)):
+        return "; A loop goes through values, and a number is one: (range 4) stands for four of them, as in (for [i (range 4)] ...)."
+    return None
 
 
 def of_name(name: str, language: str) -> str | None:
@@ -103,4 +134,4 @@ def _calls(code, other):
     return name is not None and re.search(rf"\({re.escape(name[1])}[\s)]", code, re.I) is not None
 
 
-__all__ = ["VALUES", "of_failed_form", "of_form", "of_name"]
+__all__ = ["VALUES", "of_error", "of_failed_form", "of_form", "of_name"]
