@@ -44,6 +44,9 @@ _OF_DEBUGGER = re.compile(r"\d+\] ")
 _ASKED = re.compile(r"Write a function `([^`]+)`")
 _IN_TEXT = re.compile(r"`([^`]+)`")
 _WORD = re.compile(r"(?:[\w-]+[.:]+)*([^\s()\[\]{}'`\",.:;#]+)")
+CHECK_INTERRUPTED = (
+    "; The check has not come to its end. If nothing waits in a loop, the turtle's time stands still there: (sleep 0.1) lets it pass."
+)
 OVER = "; To see the next step, type :next"
 
 
@@ -131,6 +134,7 @@ class Guide:
         self._cue: str | None = None
         self._text = ""  # what was typed last
         self._typed: set[str] = set()  # the forms of this page that were typed in this session, squeezed
+        self._added: set[str] = set()  # those of them that the text has which was typed last, and none before
         self._defined: set[str] = set()  # the names that were defined in this session
         self._coming = self._by_course = False  # whether :type types the next form, and whether it has typed the one that is answered
         self.replay = Replay(self._typed_before())
@@ -227,7 +231,8 @@ class Guide:
         )
         self._by_course, self._coming = self._coming, False
         self._text = text
-        self._typed.update(form for form in map(_squeezed, self._forms(self.steps)) if form in _squeezed(text))
+        self._added = {form for form in map(_squeezed, self._forms(self.steps)) if form in _squeezed(text)} - self._typed
+        self._typed |= self._added
         self._defined.update(slips.names(text))
         self._read = next((typed for typed in self._waiting if _squeezed(typed.form) == _squeezed(text)), None)
 
@@ -261,6 +266,7 @@ class Guide:
     def _of_missing(self, name):
         """What to say of a name without a meaning; ``None`` if nothing is known of it, or if this task asks for it."""
         told = mistyped.of_name(name, self.language) or (other_packages.of_name(name) if self.language == "lisp" else None)
+        told = told or mistyped.of_text(name if self.language == "hy" else name.lower(), self._text, self._forms())
         if told or (self._in_task() and _asks_for(self.step.part, name)):
             return told
         return self._of_task(name) or slips.of_missing(name, *self._untyped(), known=self._words())
@@ -315,6 +321,8 @@ class Guide:
         if self._read is not None and _fails(self._read):  # as it should
             self._cue = None
             self._waiting.remove(self._read)
+        elif missing is not None or error is not None:
+            self._typed -= self._added
         self._read = None
 
     def cue(self) -> str | None:
@@ -356,7 +364,8 @@ class Guide:
             said = [self._provide(over=False)]
         elif isinstance(self.step.part, Task) and self.step.part.name not in self.progress.solved:
             why = "The task is not solved yet" if self._checked else "You have not typed :check for this task"
-            said = [f"; {why}: {self.step.part.title}. :back leads back to it."]
+            title = self.step.part.title
+            said = [f"; {why}: {title}{'' if title.endswith('?') else '.'} :back leads back to it."]
         elif told := self._passed_over():
             said = [told]
         if self.place + 1 < len(self.steps):
@@ -379,7 +388,8 @@ class Guide:
         if not any(slips.is_needed(text) for text in left):
             return f"; Not typed: {told}"
         them = "it" if len(left) == 1 else "them"
-        return f"; Not typed: {told}. What comes later may need {them}: :page {number} {self.place + 1} leads back."
+        told += "" if told.endswith("...") else "."
+        return f"; Not typed: {told} What comes later may need {them}: :page {number} {self.place + 1} leads back."
 
     def _is_left(self, text):
         return _squeezed(text) not in self._typed and not (slips.names(text) and slips.names(text) <= self._defined)
@@ -507,8 +517,16 @@ class Guide:
         hint = "; :hint gives a hint." if more else "; :hint shows the hints again."
         missing = in_session.missing_name(found["told"])
         unprepared = self._of_missing(missing) if missing is not None else None
+        unprepared = unprepared or self._of_error_in_check("\n".join(found["told"][:1]))
         unprepared = unprepared or slips.of_unprepared(*self._untyped())
-        return "\n".join(["Not yet.", *self._filled(found["told"]), *filter(None, [unprepared]), hint])
+        worded = slips.in_words_of_hy if self.language == "hy" else slips.in_words_of_lisp
+        return "\n".join(["Not yet.", *self._filled(map(worded, found["told"])), *filter(None, [unprepared]), hint])
+
+    def _of_error_in_check(self, told):
+        """What to say of an error that a check met, if its place in the student's form shows a slip; else ``None``."""
+        if "ended with an error" not in told:
+            return None
+        return slips.of_failed_form(told, self.language, in_task=True) or mistyped.of_error(told, told, self.language)
 
     def _filled(self, texts):
         return [shown.filled(line, self.style) for text in texts for line in text.split("\n")]

@@ -132,6 +132,8 @@ class Guided(Listener):
             raise
         except (KeyboardInterrupt, kernel.Abandoned, Interruption):
             self.interrupted()
+            if name == "check":
+                self.tell(guide.CHECK_INTERRUPTED)
 
     def remember(self, text: str) -> None:
         super().remember(text)
@@ -209,11 +211,20 @@ class HyPrompt(Guided, hy_prompt.HyPrompt):
     def reads_lisp(self):
         return self.in_lisp
 
+    def runcode(self, code):
+        try:
+            super().runcode(code)
+        except KeyboardInterrupt:
+            self.guide.failed()
+            raise
+
     def showtraceback(self):
-        with contextlib.redirect_stderr(io.StringIO()) as told:
+        with _in_words_of_pages():
             super().showtraceback()
-        sys.stderr.write(slips.in_words_of_hy(told.getvalue()))
-        sys.stderr.flush()
+
+    def showsyntaxerror(self, *places, **texts):
+        with _in_words_of_pages():
+            super().showsyntaxerror(*places, **texts)
 
     def failed(self):
         before, self._error = self._error, self.repl.locals.get(hy_prompt.LAST_ERROR)
@@ -221,6 +232,15 @@ class HyPrompt(Guided, hy_prompt.HyPrompt):
 
     def failure(self):
         return _name_of(self._error), _failure(self._error)
+
+
+@contextlib.contextmanager
+def _in_words_of_pages():
+    """What the block prints of an error of Hy is shown in the words of the pages."""
+    with contextlib.redirect_stderr(io.StringIO()) as told:
+        yield
+    sys.stderr.write(slips.in_words_of_hy(told.getvalue()))
+    sys.stderr.flush()
 
 
 def _name_of(error: Any) -> str | None:

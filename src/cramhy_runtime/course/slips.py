@@ -21,6 +21,7 @@ _OPERATORS = r"[-+*/]"
 _OPERAND = r"[\w.]+"
 _INFIX = re.compile(rf"{_OPERAND}(?:\s*({_OPERATORS})\s*{_OPERAND})(?:\s*\1\s*{_OPERAND})*")
 _INFIX_CALL = re.compile(rf"\(({_OPERAND})\s+({_OPERATORS})\s+({_OPERAND})((?:\s+\2\s+{_OPERAND})*)\)")
+_NUMBER_FIRST = re.compile(rf"\(\d[\d.]*\s+({_OPERATORS})\s")
 _INFIX_INSIDE = re.compile(
     rf"\((?P<head>{_OPERATORS})(?P<before>(?:\s+{_OPERAND})+)\s+(?P<operator>{_OPERATORS})(?P<behind>(?:\s+{_OPERAND})+)\)"
 )
@@ -140,6 +141,8 @@ def of_failed_form(text: str, language: str, in_task: bool = False) -> str | Non
     found = _INFIX_CALL.search(text)
     if found and in_task:
         return _comes_first(found[2])
+    if not found and (other := _NUMBER_FIRST.search(text)):
+        return _comes_first(other[1])
     if found:
         more = "".join(re.findall(rf"\s{_OPERAND}", found[4]))
         return f"; The name of the function comes first: ({found[2]} {found[1]} {found[3]}{more})"
@@ -169,6 +172,8 @@ _BRACKET = re.compile(r"(\S) is a bracket of Hy\. Common Lisp writes (.+)\. In a
 _OF_LISP = re.compile(r"(\S+) is Common Lisp\. In Hy it is written (.+)\. Common Lisp begins after .*")
 _TAKES = re.compile(r"^(\s*)(?:The function )?(?:[A-Z][A-Z0-9-]*::?)?([A-Z][A-Z0-9-]*) takes ", re.M)
 """How a message names a function, as Lisp prints its name."""
+_RUNNING = re.compile(r"\((?:cpm:)?with-process-modules-running \(([^()]*)\) \.\.\.\)")
+_NESTED = "leave TOP-LEVEL away here, or make what is called a plan function with DEF-CRAM-FUNCTION."
 _ARGUMENTS = {
     "The lambda list": "The list of arguments",
     "in the lambda list": "in the list of arguments",
@@ -188,6 +193,8 @@ def in_words_of_lisp(told: str) -> str:
 
 def in_words_of_hy(told: str) -> str:
     """The text of an error for those who learn Hy, as `in_words_of_lisp`."""
+    told = _RUNNING.sub(r"(with-process-modules-running [\1] ...)", told)
+    told = told.replace(_NESTED, "leave top-level away here.")
     told = _TAKES.sub(lambda found: f"{found[1]}{found[2].lower()} takes ", told)
     return _in_words_of_pages(_OF_LISP.sub(r"In Hy, \1 is written \2.", told))
 
@@ -285,7 +292,10 @@ def is_needed(text: str) -> bool:
 
 def first_line(text: str) -> str:
     """The first line of a form, with points if there are more."""
-    return f"{text.splitlines()[0]}{' ...' if chr(10) in text else ''}"
+    first, *others = text.splitlines()
+    if not others:
+        return first
+    return f"{first} ..." if " " in first else f"{first} ...)"
 
 
 def _lack(form, here, page, what):

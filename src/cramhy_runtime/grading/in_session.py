@@ -13,6 +13,8 @@ import secrets
 from contextlib import contextmanager
 from pathlib import Path
 
+import hy
+
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
@@ -38,6 +40,7 @@ _MISSING = re.compile(
     r"(?:The (?P<sort>function|variable) (?P<lisp>\S+) is (?:undefined|unbound)|name '(?P<hy>\S+)' is not defined$)"
 )
 """The report of a form with a name that may not have a meaning yet."""
+_MANGLED = re.compile(r"\bhyx_\w+")
 _MISSING_IN_HY = re.compile(r"name '(\w+)' is not defined")
 _NOT_YET = re.compile(r"There is no (?:function|variable) (\S+) yet\.")
 _SAID = re.compile(rf"^{_NOT_YET.pattern}$|The (?:function|variable) (\S+) is (?:undefined|unbound)|name '([^']+)' is not defined", re.M)
@@ -210,6 +213,7 @@ def _worded(sentence, language):
     """A sentence with true, false, and a name that is missing, as the ``language`` writes them."""
     if language == "lisp":
         return sentence
+    sentence = _MANGLED.sub(lambda found: hy.unmangle(found[0]), sentence)
     if (missing := _MISSING_IN_HY.search(sentence)) is not None and (name := missing[1].replace("_", "-")) in sentence:
         sentence = f"{sentence[: missing.start(1)]}{name}{sentence[missing.end(1) :]}"
     return _LISP_VALUE.sub(lambda match: match[1] + {"NIL": "None", "T": "True"}[match[2]], sentence)

@@ -166,6 +166,10 @@ class HyPrompt(Listener):
         sys.stderr.write(as_written(told.getvalue()))
         sys.stderr.flush()
 
+    def showsyntaxerror(self, *places, **texts):
+        """As the REPL's own. What it is given depends on Python's version."""
+        self.repl.of_hy.showsyntaxerror(*places, **texts)
+
     def _listen_no_more(self):
         speak(lisp=False)
         conditions.install_debugger(None)
