@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 
-from cramhy_runtime.lisp_core.packages import find_package, near_names
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -131,17 +130,12 @@ def of_text(name: str, text: str, forms: Iterable[str]) -> str | None:
 
 
 def of_name(name: str, language: str) -> str | None:
-    """What to say of a name without a value: what other languages call true, false or nothing, or a misspelt name of a package in Hy."""
+    """What to say of a name of Hy without a value: a minus before another one, or what other languages call true, false or nothing."""
     if language != "hy":
         return None
     if re.match(r"-[a-zA-Z]", name):
         return f"; The minus is a function, with parentheses around the call: (- {name[1:]}...)"
-    if name in VALUES:
-        return f"; Hy writes {VALUES[name]}."
-    prefix, colon, word = name.partition(":")
-    package = find_package(prefix.upper()) if colon and prefix else None
-    near = near_names(word.upper(), package.external) if package is not None else None
-    return f"; Did you mean {prefix}:{near[0].lower()}?" if near else None
+    return f"; Hy writes {VALUES[name]}." if name in VALUES else None
 
 
 def of_failed_form(text: str, language: str, earlier: Iterable[str] = ()) -> str | None:

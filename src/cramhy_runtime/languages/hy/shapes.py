@@ -128,7 +128,9 @@ def hint_for_name(name, known, modules=None):
         )
     import difflib
 
-    near = difflib.get_close_matches(written, sorted({hy.unmangle(each) for each in known} - {written}), n=2, cutoff=0.7)
+    names = {hy.unmangle(each) for each in known} - {written}
+    names -= {name for name in names if "::" in name and name.replace("::", ":") in names}
+    near = difflib.get_close_matches(written, sorted(names), n=2, cutoff=0.7)
     return f"Did you mean {' or '.join(near)}?" if near else None
 
 
