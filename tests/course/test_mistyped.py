@@ -137,6 +137,4 @@ def test_a_form_that_answers_rightly_on_the_page_has_no_remark(typed):
 def test_a_misspelt_name_of_a_package_is_guessed_in_hy(typed):
     begin = ["(import cram-my-beginner-tutorial :as tut)"]
     shown = words(typed([*begin, "(cpm:matching-process-modul 1)", "(exe:perfrom 1)", "(cpm:xyzzy 1)", ":quit"], language="hy"))
-    assert (
-        "Did you mean cpm:matching-process-module?" in shown and "Did you mean exe:perform?" in shown and shown.count("Did you mean") == 2
-    )
+    assert "Did you mean cpm:matching-process-module" in shown and "Did you mean exe:perform?" in shown and shown.count("Did you mean") == 2

@@ -87,7 +87,7 @@ def test_an_error_in_hy_speaks_hy(typed, form):
 IN_LISP = {
     "true": "In Lisp, True is written t.",
     "None": "In Lisp, None is written nil.",
-    "(defn f [x] x)": "In Lisp, defn is written (defun name (parameter ...) form...).",
+    "(defn f [x] x)": "In Lisp, defn is written (defun name (argument ...) form...).",
     "(setv x 5)": "In Lisp, setv is written (setf name value).",
     "(len 5)": "In Lisp, len is written (length values).",
     "(list [1 2])": "Lisp has no [ here. It writes '(1 2), or #(1 2) for a vector.",
@@ -148,6 +148,11 @@ def test_a_broken_line_of_an_answer_has_no_marks_below_it():
     long, short = "    " + "(word) " * 12, "    (word)"
     shown = answer_shown(Typed("=> ", "(f)", f"Traceback (most recent\n{long}\n          ^^^^\n{short}\n     ^^^^\nNameError\n"))
     assert f"{long}\n{short}\n     ^^^^\n" in shown
+
+
+@pytest.mark.parametrize(("step", "foot"), [("4 4", "; :next shows it."), ("4 6", "; :next goes on.")])
+def test_a_step_whose_text_ends_in_a_colon_says_that_the_next_one_shows_it(typed, step, foot):
+    assert foot in typed([f":page {step}", ":quit"], "lecture-34")
 
 
 @pytest.mark.parametrize("language", ["lisp", "hy"])

@@ -258,10 +258,11 @@ def test_a_function_of_a_lisp_package_is_named_with_its_module(write, program):
     write("plan.hy", "(require cramhy *)\n(import cramhy)\n(import parts)\n(print (parts.drive-on 5))\n(drive-on 5)\n")
     done = program("hy", "plan.hy")
     assert done.stdout == "5\n"
-    assert done.stderr.splitlines()[-2:] == [
-        "NameError: name 'drive-on' is not defined",
-        "  drive-on is a function of the Lisp package PARTS. In Hy it is called by its module: (import parts), then (parts.drive-on ...).",
-    ]
+    assert done.stderr.splitlines()[-2:] == ["NameError: name 'drive-on' is not defined", "  drive-on is a name of parts: parts.drive-on"]
+    write("other.hy", "(require cramhy *)\n(import parts [drive-on :as go])\n(go 5)\n(drive-on 5)\n")
+    assert program("hy", "other.hy").stderr.splitlines()[-1] == (
+        "  drive-on is a function of the Lisp package PARTS. In Hy it is called by its module: (import parts), then (parts.drive-on ...)."
+    )
 
 
 @pytest.mark.parametrize(

@@ -249,6 +249,7 @@ def _repl(options):
 def _learn(options):
     from . import learn_command
 
+    learn_command.tell_begin()
     return learn_command.learn(options) if _checked(options) else 2
 
 

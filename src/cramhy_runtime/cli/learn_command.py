@@ -6,6 +6,16 @@ import sys
 from pathlib import Path
 
 
+LOADING = "; The course is being loaded. On a busy machine that takes some seconds."
+"""What a terminal shows at once."""
+
+
+def tell_begin():
+    """Tell at a terminal that the course is on its way."""
+    if sys.stdout is not None and sys.stdout.isatty():
+        print(LOADING, flush=True)
+
+
 def learn(options):
     """Go through the course as the options say. Returns the exit status: 2 if there is no such page, or its files cannot be written."""
     from cramhy_runtime import course

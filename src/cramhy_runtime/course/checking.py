@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 import sys
 
@@ -14,8 +15,9 @@ from cramhy_runtime.lisp_core.packages import near_names, sym
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.ros import graph, rosout
 
+from . import contents
 from .parts import Task
-from .reading import PageError, pages
+from .reading import PageError, page, pages
 from .typed_forms import TypedForms
 
 if TYPE_CHECKING:
@@ -32,12 +34,13 @@ NOT_TAKEN = (
 PRINTED = "Printing is not answering: the answer of a function is the value of its last form."
 _NO_ANSWER = re.compile(r"\((?P<function>[^\s()]+)[^\n]* should give [^\n]+, and gave (?:NIL|None)\.")
 _PRINTS = re.compile(r"\((?:print|princ|prin1|format)\s", re.I)
+NOTHING_WAITS = "Nothing waits in {} after send-vel-cmd. The turtle needs a second for what it is told."
 PASSED = "Well done: this task is solved."
 
 
 def task(name: str) -> Task:
     """The task of that name. Raises `PageError`."""
-    tasks = {each.name: each for page in pages() for each in page.tasks}
+    tasks = {each.name: each for one in pages() for each in one.tasks}
     if name not in tasks:
         near = near_names(name, tasks)
         raise PageError(f"There is no task {name}. " + (f"Did you mean {near[0]}?" if near else f"There are {', '.join(tasks)}."))
@@ -68,7 +71,16 @@ def check(
     wrong = _quietly(lambda: in_session.faults(wanted.title, tables, evaluate, language, typed.form))
     if wrong and (match := _NO_ANSWER.match(wrong[0])) is not None and _PRINTS.search(typed.definition(match["function"]) or ""):
         wrong.append(PRINTED)
+    if wrong and wanted.name in _beginners() and in_session.missing_name(wrong) is None:
+        forms = " ".join(table.get("do", "") for table in tables)
+        wrong[:0] = [NOTHING_WAITS.format(function) for function in [typed.driving_without_waiting(forms)] if function is not None]
     return {"passed": not wrong, "told": wrong or [PASSED]}
+
+
+@functools.cache
+def _beginners():
+    """The names of the tasks on the pages on which a student sends the turtle each command by itself."""
+    return {each.name for name in contents.NAMES[:2] for each in page(name).tasks}
 
 
 def _quietly(look: Callable[[], list[str]]) -> list[str]:

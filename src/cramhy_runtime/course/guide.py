@@ -9,8 +9,10 @@ import difflib
 import re
 
 from cramhy_runtime.kernel.typing_names import NamedTuple
+from cramhy_runtime.grading import in_session
+from cramhy_runtime.repl.open_forms import OpenForms
 
-from . import checking, contents, files, mistyped, shown, slips
+from . import checking, contents, files, mistyped, other_packages, shown, slips
 from .parts import Code, File, Task, Text, Typed, text_in
 from .progress import Progress
 from .reading import PageError, page, pages
@@ -35,10 +37,16 @@ COMMANDS = {
 """The commands: the short name of each, and what it does."""
 _SHORT = {short: name for name, (short, _) in COMMANDS.items() if short}
 WITH_ARGUMENT = ("page",)
-_WITHOUT_PARENTHESES = re.compile(r"\s*[-+*/](?:\s+-?\d[\d.]*)+\s*")
+_ATOM = re.compile(r"[^\s()\[\]{}'`\",;:#=]+(?:\s+(?:[^\s()\[\]{}'`\",;:#=]+|\"[^\"]*\"))+")
+"""Words without parentheses."""
+_CALLED = re.compile(r"\(([A-Za-z][^\s()\[\]{}'`\",;:#]*)(?=\s)")
 _OF_DEBUGGER = re.compile(r"\d+\] ")
+_ASKED = re.compile(r"Write a function `([^`]+)`")
 _IN_TEXT = re.compile(r"`([^`]+)`")
 _WORD = re.compile(r"(?:[\w-]+[.:]+)*([^\s()\[\]{}'`\",.:;#]+)")
+CHECK_INTERRUPTED = (
+    "; The check has not come to its end. If nothing waits in a loop, the turtle's time stands still there: (sleep 0.1) lets it pass."
+)
 OVER = "; To see the next step, type :next"
 
 
@@ -66,16 +74,31 @@ def meant(line: str) -> str | None:
     return f"; There is no command {first}. Did you mean :{near[0]}?" if near and not arguments else None
 
 
-def told_of_open_form(lines: list[str]) -> str | None:
-    """What to say when a form is open, and the last of ``lines`` is empty, a command, or was meant for the debugger."""
-    line, text = lines[-1].strip(), "\n".join(lines)
-    found = command(line) if line.startswith(":") else None
+def told_of_open_form(lines: list[str], language: str = "lisp") -> str | None:
+    """What to say when a form is open, and the last of ``lines`` is empty, a command, or was meant for the debugger; else ``None``."""
+    line = lines[-1].strip()
+    found = command_in_form(line)
     if line and found is None and line.lower() not in ("q", "help", "?", "exit"):
         return None
-    taken = f", and {f':{found[0]}' if found else line} is taken for a part of it" if line else ""
-    count = text.count("(") - text.count(")")
-    close = f"Close it by {')' * count}" if 0 < count < 10 else "Close its parentheses"
-    return f"; A form is open{taken}. {close}, or press Ctrl-C to begin anew."
+    opened = OpenForms(hy=language == "hy")
+    opened.read("\n".join([*(lines[:-1] if found else lines), ""]))
+    if opened.within == '"':
+        what, close = "A text is open", 'End it by "'
+    else:
+        ends = "".join(")]}"["([{".index(each[0])] for each in reversed(opened.lists))
+        what, close = "A form is open", f"Close it by {ends}" if 0 < len(ends) < 10 and not opened.within else "Close its parentheses"
+    if found is not None:
+        return (
+            f"; {what}, so :{found} has to wait, and what you have typed stays. {close}, or press Ctrl-C to leave it. Then type :{found}."
+        )
+    taken = f", and {line} is taken for a part of it" if line else ""
+    return f"; {what}{taken}. {close}, or press Ctrl-C to begin anew."
+
+
+def command_in_form(line: str) -> str | None:
+    """The name of the command that a further line of a form is, with its colon. It is not a part of the form."""
+    found = command(line) if line.strip().startswith(":") else None
+    return found[0] if found is not None else None
 
 
 _OUTSIDE = "form not inside a plan."
@@ -111,6 +134,9 @@ class Guide:
         self._cue: str | None = None
         self._text = ""  # what was typed last
         self._typed: set[str] = set()  # the forms of this page that were typed in this session, squeezed
+        self._added: set[str] = set()  # those of them that the text has which was typed last, and none before
+        self._defined: set[str] = set()  # the names that were defined in this session
+        self._coming = self._by_course = False  # whether :type types the next form, and whether it has typed the one that is answered
         self.replay = Replay(self._typed_before())
         self._arrived()
 
@@ -171,7 +197,7 @@ class Guide:
             return "; :next writes this file and goes on. Or write it yourself, with an editor."
         if self.place + 1 < len(self.steps):
             if part is None:
-                return "; :next goes on."
+                return "; :next shows it." if self.step.texts[-1].rstrip().endswith(":") else "; :next goes on."
             return "; Type what stands behind the prompts, or :type does. :next goes on."
         after = self._after()
         if after is None:
@@ -200,40 +226,76 @@ class Guide:
 
     def typed(self, text: str) -> None:
         """The student has typed ``text``, whole forms."""
-        call = _WITHOUT_PARENTHESES.fullmatch(text) if self.language == "lisp" else None
-        if call:
-            self._cue = (
-                f"; Lisp took each of these words for a form of its own. A call has parentheses around it: ({' '.join(text.split())})"
-            )
-        else:
-            self._cue = mistyped.of_form(text, self.language) or slips.of_line(text, self.language)
+        self._cue = (
+            self._of_words(text) or mistyped.of_form(text, self.language) or slips.of_line(text, self.language, in_task=self._in_task())
+        )
+        self._by_course, self._coming = self._coming, False
         self._text = text
-        self._typed.update(form for form in map(_squeezed, self._forms()) if form in _squeezed(text))
+        self._added = {form for form in map(_squeezed, self._forms(self.steps)) if form in _squeezed(text)} - self._typed
+        self._typed |= self._added
+        self._defined.update(slips.names(text))
         self._read = next((typed for typed in self._waiting if _squeezed(typed.form) == _squeezed(text)), None)
 
-    def _forms(self):
-        """The texts of the forms of this page up to the step that is shown, each with the number of its step."""
+    def _in_task(self):
+        return isinstance(self.step.part, Task)
+
+    def _of_words(self, text):
+        """What to say of a call without parentheses: words of which the first one is a function of the page; else ``None``."""
+        if not _ATOM.fullmatch(text.strip()):
+            return None
+        first = text.split()[0]
+        if not (first in "+-*/" or first.lower() in self._functions()):
+            return None
+        written = f", as in {slips.EXAMPLE.format(first)}" if self._in_task() and first in "+-*/" else f": ({' '.join(text.split())})"
+        return f"; {slips.NAMED[self.language]} took each of these words for a form of its own. A call has parentheses around it{written}"
+
+    def _functions(self):
+        """The names, in lower case, that stand behind a parenthesis in the forms of the page up to here."""
+        return {name.lower() for text in self._forms() for name in _CALLED.findall(text)}
+
+    def _forms(self, among=None):
+        """The texts of the forms of this page up to the step that is shown, or of the steps ``among``, each with the number of its step."""
         return {
             typed.text: number
-            for number, step in enumerate(self.steps[: self.place + 1], 1)
+            for number, step in enumerate(self.steps[: self.place + 1] if among is None else among, 1)
             if isinstance(step.part, Code)
             for typed in getattr(step.part, self.language)
             if not _OF_DEBUGGER.match(typed.prompt)
         }
+
+    def _of_missing(self, name):
+        """What to say of a name without a meaning; ``None`` if nothing is known of it, or if this task asks for it."""
+        told = mistyped.of_name(name, self.language) or (other_packages.of_name(name) if self.language == "lisp" else None)
+        told = told or mistyped.of_text(name if self.language == "hy" else name.lower(), self._text, self._forms())
+        if told or (self._in_task() and _asks_for(self.step.part, name)):
+            return told
+        return self._of_task(name) or slips.of_missing(name, *self._untyped(), known=self._words())
+
+    def _of_task(self, name):
+        """What to say of a name that another task of this page asks for; else ``None``."""
+        number = contents.NAMES.index(self.page.name) + 1
+        for place, step in enumerate(self.steps, 1):
+            if isinstance(step.part, Task) and _asks_for(step.part, name):
+                shown = name.lower().replace("_", "-")
+                return f"; {shown} is the function of another task, {step.part.title}: :page {number} {place} leads to it."
+        return None
 
     def _untyped(self):
         """The forms of the page up to here that were not typed, the number of the step, and that of the page."""
         forms = [slips.Form(text, step) for text, step in self._forms().items() if _squeezed(text) not in self._typed]
         return forms, self.place + 1, contents.NAMES.index(self.page.name) + 1
 
+    def _all_typed(self):
+        return [typed for part in self.page.parts if isinstance(part, Code) for lines in (part.lisp, part.hy) for typed in lines]
+
     def _words(self):
-        """The names that stand in the code of the page, also in that of its texts."""
-        found = []
+        """The names that stand in the code of the page, also in that of its texts, but not in what the page shows to fail."""
+        found, wrong = [], {typed.form for typed in self._all_typed() if _fails(typed)}
         for part in self.page.parts:
             if isinstance(part, Code):
-                found += [typed.form for typed in getattr(part, self.language)]
+                found += [typed.form for typed in getattr(part, self.language) if typed.form not in wrong]
             elif isinstance(part, (Task, Text)):
-                found += _IN_TEXT.findall(text_in(part.markdown, self.language))
+                found += [each for each in _IN_TEXT.findall(text_in(part.markdown, self.language)) if each not in wrong]
                 found += [part.start.get(self.language, "")] if isinstance(part, Task) else []
         return _WORD.findall(" ".join(found))
 
@@ -245,20 +307,22 @@ class Guide:
 
     def failed(self, missing: str | None = None, error: Failure | None = None) -> None:
         """What was typed last has failed, or was ended by Ctrl-C. missing: the name that was not defined. error: what is known of it."""
-        self._cue = self._cue or slips.of_failed_form(self._text, self.language)
+        self._cue = self._cue or slips.of_failed_form(self._text, self.language, in_task=self._in_task())
         self._cue = self._cue or mistyped.of_failed_form(self._text, self.language, self.replay.texts)
         if missing is not None:
-            self._cue = self._cue or mistyped.of_name(missing, self.language)
-            self._cue = self._cue or slips.of_missing(missing, *self._untyped(), known=self._words())
+            self._cue = self._cue or self._of_missing(missing)
         elif error is not None:
             self._cue = self._cue or slips.of_error(error.told, self._text, self.language)
+            self._cue = self._cue or mistyped.of_error(error.told, self._text, self.language)
             self._cue = self._cue or slips.of_unready(*self._untyped(), told=error.told)
             if error.in_a_file or _NOT_STARTED.search(error.told):
                 self._cue = self._cue or slips.of_unready(*self._untyped()) or (error.led_there if _OUTSIDE not in error.told else None)
         self.replay.failed()
-        if self._read is not None and any(line.startswith(ERROR) for line in self._read.answer.splitlines()):  # as it should
+        if self._read is not None and _fails(self._read):  # as it should
             self._cue = None
             self._waiting.remove(self._read)
+        elif missing is not None or error is not None:
+            self._typed -= self._added
         self._read = None
 
     def cue(self) -> str | None:
@@ -273,10 +337,22 @@ class Guide:
             self._waiting.pop(0)
         if some and not self._waiting:
             self._cue = OVER
+        elif self._by_course and self._waiting:
+            self._cue = self._cue or self._left()
+        self._by_course = False
         cue, self._cue = self._cue, None
         return cue
 
+    def _left(self):
+        """What to say of the forms of this step that are left when :type has typed one."""
+        count = sum(not _OF_DEBUGGER.match(typed.prompt) for typed in self._waiting)
+        return f"; Left of this step: {count} form{'s' * (count != 1)}. :type types the next one."
+
     # ------------------------------------------------------------------------------------------------------------------ commands
+
+    def types_into_debugger(self) -> bool:
+        """Whether what :type would type now belongs into the debugger, as the page shows."""
+        return bool(self._waiting) and _OF_DEBUGGER.match(self._waiting[0].prompt) is not None
 
     def do(self, name: str, argument: str = "") -> str:
         """Carry out a command, but not ``check``; what to say."""
@@ -288,7 +364,10 @@ class Guide:
             said = [self._provide(over=False)]
         elif isinstance(self.step.part, Task) and self.step.part.name not in self.progress.solved:
             why = "The task is not solved yet" if self._checked else "You have not typed :check for this task"
-            said = [f"; {why}: {self.step.part.title}. :back leads back to it."]
+            title = self.step.part.title
+            said = [f"; {why}: {title}{'' if title.endswith('?') else '.'} :back leads back to it."]
+        elif told := self._passed_over():
+            said = [told]
         if self.place + 1 < len(self.steps):
             self.place += 1
             self._arrived()
@@ -298,6 +377,22 @@ class Guide:
             return "\n".join([*said, self._foot()])
         self._leave(after)
         return "\n".join(said)
+
+    def _passed_over(self):
+        """What to say of the forms of this step that were not typed; ``None`` if all were."""
+        left = [text for text, number in self._forms().items() if number == self.place + 1 and self._is_left(text)]
+        if not left:
+            return None
+        number = contents.NAMES.index(self.page.name) + 1
+        told = ", ".join(slips.first_line(text) for text in left[:2]) + (f" and {len(left) - 2} more" if len(left) > 2 else "")
+        if not any(slips.is_needed(text) for text in left):
+            return f"; Not typed: {told}"
+        them = "it" if len(left) == 1 else "them"
+        told += "" if told.endswith("...") else "."
+        return f"; Not typed: {told} What comes later may need {them}: :page {number} {self.place + 1} leads back."
+
+    def _is_left(self, text):
+        return _squeezed(text) not in self._typed and not (slips.names(text) and slips.names(text) <= self._defined)
 
     def _back(self):
         if self.place:
@@ -329,6 +424,7 @@ class Guide:
         part = self.step.part
         if self._waiting:
             self.replay.type(self._waiting[0].text)
+            self._coming = True
             return ""
         if isinstance(part, Task):
             if self.language not in part.start:
@@ -419,11 +515,32 @@ class Guide:
             return "\n".join([*self._filled(found["told"]), OVER])
         more = self._hints.get(self.place, 0) < len(part.hints)
         hint = "; :hint gives a hint." if more else "; :hint shows the hints again."
-        unprepared = slips.of_unprepared(*self._untyped())
-        return "\n".join(["Not yet.", *self._filled(found["told"]), *filter(None, [unprepared]), hint])
+        missing = in_session.missing_name(found["told"])
+        unprepared = self._of_missing(missing) if missing is not None else None
+        unprepared = unprepared or self._of_error_in_check("\n".join(found["told"][:1]))
+        unprepared = unprepared or slips.of_unprepared(*self._untyped())
+        worded = slips.in_words_of_hy if self.language == "hy" else slips.in_words_of_lisp
+        return "\n".join(["Not yet.", *self._filled(map(worded, found["told"])), *filter(None, [unprepared]), hint])
+
+    def _of_error_in_check(self, told):
+        """What to say of an error that a check met, if its place in the student's form shows a slip; else ``None``."""
+        if "ended with an error" not in told:
+            return None
+        return slips.of_failed_form(told, self.language, in_task=True) or mistyped.of_error(told, told, self.language)
 
     def _filled(self, texts):
         return [shown.filled(line, self.style) for text in texts for line in text.split("\n")]
+
+
+def _asks_for(task, name):
+    """Whether a student is to write the function ``name`` for a task."""
+    asked = _ASKED.search(task.markdown)
+    return asked is not None and asked[1] == name.lower().replace("_", "-")
+
+
+def _fails(typed):
+    """Whether the page shows that a form leads to an error."""
+    return any(line.startswith(ERROR) for line in typed.answer.splitlines())
 
 
 def _squeezed(form):

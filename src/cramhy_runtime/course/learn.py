@@ -7,6 +7,7 @@ commands begin with a colon. The lines that are typed go by `Guided.read_line`, 
 from __future__ import annotations
 
 import contextlib
+import io
 import os
 import re
 import sys
@@ -22,6 +23,7 @@ from cramhy_runtime.lisp_core.packages import is_symbol, symbol_name
 from cramhy_runtime.lisp_core.python_exceptions import from_python
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.languages.commonlisp.streams import streams
+from cramhy_runtime.languages.commonlisp.tools import user_queries
 from cramhy_runtime.languages.commonlisp.tools.advice import explanation
 from cramhy_runtime.repl import hy_prompt, prompt_words
 from cramhy_runtime.repl.console import Console
@@ -60,6 +62,8 @@ class Guided(Listener):
         """The next line that is not a command; ``None`` when the page is left."""
         if not self._greeted:
             self._greeted = True
+            if isinstance(self.input, Lines):
+                self.input.heed = self._heed
             self.tell(self.guide.greeting())
         if self.failed():
             self.guide.failed(*self.failure())
@@ -77,8 +81,11 @@ class Guided(Listener):
             if line is None or line is BROKEN_OFF:
                 return line
             if not self._begins():
-                if told := guide.told_of_open_form([*self.input.before, line]):
-                    self.tell(told)
+                told, forget = self._heed([*self.input.before, line])
+                if told:
+                    self.say(told)
+                if forget:
+                    continue
                 return line
             line = _PROMPT.sub("", line, count=1)  # copied from the page with what stands before it
             found = guide.command(line)
@@ -92,7 +99,15 @@ class Guided(Listener):
 
     def tell(self, text: str) -> None:
         """Say ``text`` of the guide's, with its remarks filled to the width of the terminal."""
-        self.say("\n".join(filled(line, self.guide.style) if line.startswith("; ") else line for line in text.split("\n")))
+        self.say(self._filled(text))
+
+    def _filled(self, text):
+        return "\n".join(filled(line, self.guide.style) if line.startswith("; ") else line for line in text.split("\n"))
+
+    def _heed(self, lines):
+        """What to say of the lines of a form that is open, or ``None``, and whether the last one is a command and no part of it."""
+        told = guide.told_of_open_form(lines, "lisp" if self.reads_lisp() else "hy")
+        return (self._filled(told) if told else None), guide.command_in_form(lines[-1]) is not None
 
     def _begins(self):
         """Whether the line that is read begins a form."""
@@ -104,7 +119,7 @@ class Guided(Listener):
         try:
             if self.ctrl_c_came():
                 kernel.interrupt()
-            if self.level and name in LEADS_AWAY:
+            if self.level and (name in LEADS_AWAY or name == "type" and not self.guide.types_into_debugger()):
                 self.tell(f"; The debugger is open. Type q first, and then :{name}.")
             elif name != "check":
                 if told := self.guide.do(name, argument):
@@ -117,6 +132,8 @@ class Guided(Listener):
             raise
         except (KeyboardInterrupt, kernel.Abandoned, Interruption):
             self.interrupted()
+            if name == "check":
+                self.tell(guide.CHECK_INTERRUPTED)
 
     def remember(self, text: str) -> None:
         super().remember(text)
@@ -159,6 +176,10 @@ class Guided(Listener):
         """Whether the student has given the word a value, so that it is not a command."""
         raise NotImplementedError
 
+    def reads_lisp(self) -> bool:
+        """Whether what is typed is Lisp now."""
+        return True
+
 
 class LispPrompt(Guided, Console):
     """The prompt of Common Lisp."""
@@ -187,12 +208,39 @@ class HyPrompt(Guided, hy_prompt.HyPrompt):
     def is_variable(self, word):
         return word in self.repl.locals
 
+    def reads_lisp(self):
+        return self.in_lisp
+
+    def runcode(self, code):
+        try:
+            super().runcode(code)
+        except KeyboardInterrupt:
+            self.guide.failed()
+            raise
+
+    def showtraceback(self):
+        with _in_words_of_pages():
+            super().showtraceback()
+
+    def showsyntaxerror(self, *places, **texts):
+        with _in_words_of_pages():
+            super().showsyntaxerror(*places, **texts)
+
     def failed(self):
         before, self._error = self._error, self.repl.locals.get(hy_prompt.LAST_ERROR)
         return self._error is not before
 
     def failure(self):
         return _name_of(self._error), _failure(self._error)
+
+
+@contextlib.contextmanager
+def _in_words_of_pages():
+    """What the block prints of an error of Hy is shown in the words of the pages."""
+    with contextlib.redirect_stderr(io.StringIO()) as told:
+        yield
+    sys.stderr.write(slips.in_words_of_hy(told.getvalue()))
+    sys.stderr.flush()
 
 
 def _name_of(error: Any) -> str | None:
@@ -237,6 +285,7 @@ def run(
     while name is not None and not status:
         way = Guide(name, language, progress, style)
         with Image(), contextlib.ExitStack() as closings:
+            user_queries.WIDTH.value = style.width
             closings.enter_context(_in_work_folder(way, top))
             status = _go(way, lambda closings=closings, page=way.page: _session_for(page, make_session(closings)), lines)
         name = way.leaves_for

@@ -7,6 +7,7 @@ of the student: after ``def area(x, y):`` a Hy learner reads ``(defn area [x y] 
 from __future__ import annotations
 
 import re
+import sys
 
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, NamedTuple
 
@@ -14,10 +15,13 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 NAMED = {"lisp": "Lisp", "hy": "Hy"}
+EXAMPLE = "({} 7 9)"
+"""A call of an operator, where the student's own would be the answer of a task."""
 _OPERATORS = r"[-+*/]"
 _OPERAND = r"[\w.]+"
 _INFIX = re.compile(rf"{_OPERAND}(?:\s*({_OPERATORS})\s*{_OPERAND})(?:\s*\1\s*{_OPERAND})*")
 _INFIX_CALL = re.compile(rf"\(({_OPERAND})\s+({_OPERATORS})\s+({_OPERAND})((?:\s+\2\s+{_OPERAND})*)\)")
+_NUMBER_FIRST = re.compile(rf"\(\d[\d.]*\s+({_OPERATORS})\s")
 _INFIX_INSIDE = re.compile(
     rf"\((?P<head>{_OPERATORS})(?P<before>(?:\s+{_OPERAND})+)\s+(?P<operator>{_OPERATORS})(?P<behind>(?:\s+{_OPERAND})+)\)"
 )
@@ -86,10 +90,16 @@ _LIKE_PYTHON = [
 """How a line of Python looks, and what stands for it."""
 
 
-def of_line(text: str, language: str) -> str | None:
-    """What to say of a line that is written as in Python, or lacks parentheses, or has an operator among arguments; else ``None``."""
+def of_line(text: str, language: str, in_task: bool = False) -> str | None:
+    """What to say of a line that is written as in Python, or lacks parentheses, or has an operator among arguments; else ``None``.
+
+    in_task: whether a task is shown. Then the sentence has other numbers and names than the line, which may be all but the answer.
+    """
     line = text.strip()
     found = _INFIX_INSIDE.search(line)
+    if found and in_task:
+        operator = found["operator"]
+        return f"; Each {operator} has parentheses of its own, as in ({found['head']} 5 {EXAMPLE.format(operator)})"
     if found:
         inside = f"({found['operator']}{' '.join(['', *found['behind'].split()])})"
         return f"; Each {found['operator']} has parentheses of its own: ({found['head']} {' '.join(found['before'].split())} {inside})"
@@ -102,11 +112,14 @@ def of_line(text: str, language: str) -> str | None:
         return f"; In {name} the other case stands in the form, too: (if condition this that)"
     infix = _INFIX.fullmatch(line)
     if infix and not re.fullmatch(_OPERAND, line) and not re.fullmatch(r"[A-Za-z][\w.]*(?:-[\w.]+)+", line):
+        if in_task:
+            return _comes_first(infix[1])
         operands = re.split(rf"\s*{re.escape(infix[1])}\s*", line)
         return f"; The name of a function comes first, in parentheses: ({infix[1]} {' '.join(operands)})"
     for pattern, wording in _LIKE_PYTHON:
         found = pattern.fullmatch(line)
         if found:
+            found = pattern.fullmatch("name = 7") if in_task and wording is _assignment else found
             written = wording(found, language)
             return f"; In {name} this is written {written}" if written.startswith("(") else f"; This is not {name}. {written}"
     if _NOT_CLOSED.fullmatch(line):
@@ -114,11 +127,22 @@ def of_line(text: str, language: str) -> str | None:
     return None
 
 
-def of_failed_form(text: str, language: str) -> str | None:
-    """What to say of a form in parentheses that has failed, if it is written as in another language; else ``None``."""
+def _comes_first(operator):
+    return f"; The name of a function comes first, in parentheses: 7 {operator} 9 is written {EXAMPLE.format(operator)}"
+
+
+def of_failed_form(text: str, language: str, in_task: bool = False) -> str | None:
+    """What to say of a form in parentheses that has failed, if it is written as in another language; else ``None``.
+
+    in_task: as of `of_line`.
+    """
     if language != "hy":
         return None
     found = _INFIX_CALL.search(text)
+    if found and in_task:
+        return _comes_first(found[2])
+    if not found and (other := _NUMBER_FIRST.search(text)):
+        return _comes_first(other[1])
     if found:
         more = "".join(re.findall(rf"\s{_OPERAND}", found[4]))
         return f"; The name of the function comes first: ({found[2]} {found[1]} {found[3]}{more})"
@@ -145,9 +169,40 @@ _OF_HY = re.compile(r"(\S+) is Hy\. In Common Lisp it is (?:written )?(.+)\. In 
 _BRACKET = re.compile(r"(\S) is a bracket of Hy\. Common Lisp writes (.+)\. In a \.hy file .*")
 
 
+_OF_LISP = re.compile(r"(\S+) is Common Lisp\. In Hy it is written (.+)\. Common Lisp begins after .*")
+_TAKES = re.compile(r"^(\s*)(?:The function )?(?:[A-Z][A-Z0-9-]*::?)?([A-Z][A-Z0-9-]*) takes ", re.M)
+"""How a message names a function, as Lisp prints its name."""
+_RUNNING = re.compile(r"\((?:cpm:)?with-process-modules-running \(([^()]*)\) \.\.\.\)")
+_NESTED = "leave TOP-LEVEL away here, or make what is called a plan function with DEF-CRAM-FUNCTION."
+_ARGUMENTS = {
+    "The lambda list": "The list of arguments",
+    "in the lambda list": "in the list of arguments",
+    "the parameters stand": "the names of the arguments stand",
+    "a parameter must be": "an argument has to be",
+    "(parameter": "(argument",
+    "[parameter": "[argument",
+}
+"""What messages call arguments, and what the pages do."""
+
+
 def in_words_of_lisp(told: str) -> str:
-    """The text of an error for those who learn Lisp: where it speaks of Hy, it says only how Lisp writes the same."""
-    return _BRACKET.sub(r"Lisp has no \1 here. It writes \2.", _OF_HY.sub(r"In Lisp, \1 is written \2.", told))
+    """The text of an error for those who learn Lisp: in the pages' words, and where it speaks of Hy, only how Lisp writes the same."""
+    told = _BRACKET.sub(r"Lisp has no \1 here. It writes \2.", _OF_HY.sub(r"In Lisp, \1 is written \2.", told))
+    return _in_words_of_pages(told)
+
+
+def in_words_of_hy(told: str) -> str:
+    """The text of an error for those who learn Hy, as `in_words_of_lisp`."""
+    told = _RUNNING.sub(r"(with-process-modules-running [\1] ...)", told)
+    told = told.replace(_NESTED, "leave top-level away here.")
+    told = _TAKES.sub(lambda found: f"{found[1]}{found[2].lower()} takes ", told)
+    return _in_words_of_pages(_OF_LISP.sub(r"In Hy, \1 is written \2.", told))
+
+
+def _in_words_of_pages(told):
+    for word, wanted in _ARGUMENTS.items():
+        told = told.replace(word, wanted)
+    return told
 
 
 # ---------------------------------------------------------------------------------------------------------- what was passed over
@@ -157,7 +212,10 @@ _DEFINES = re.compile(
     r"\s+([^\s()\[\]]+)"
 )
 _LOADS = re.compile(r"\s*\((?:import|require|in-package|lisp-package|ros-load:load-system|load|defpackage)\s")
+_OF_NAMES = re.compile(r"\s*\(import\s[^*]*\)\s*$", re.S)
+"""An import that makes only the names known that stand in it."""
 _STARTS = re.compile(r"\s*\((?:[\w-]+\.)?(?:init|start-ros-node|init-ros-turtle)[\s)]")
+_SETS = re.compile(r"\s*\((?:set[fqv]|def[\w-]*)\s")
 _LEADS_TO = re.compile(r"\s*\((?:lisp-package|in-package)\s+:([^\s()]+)\s*\)")
 
 
@@ -192,9 +250,15 @@ def of_missing(name: str, forms: Iterable[Form], here: int, page: int, known: It
         if wanted in names(form.text):
             return _lack(form, here, page, f"{wanted} is defined by")
     for form in forms if wanted in {word.lower().replace("_", "-") for word in known} else ():
-        if _LOADS.match(form.text):
+        if _LOADS.match(form.text) and not _OF_NAMES.match(form.text):
             return _lack(form, here, page, "What this page needs is loaded by")
     return None
+
+
+def _is_pythons(text):
+    """Whether a form imports a module that comes with Python."""
+    found = re.match(r"\s*\(import\s+([\w-]+)", text)
+    return found is not None and found[1].replace("-", "_") in sys.stdlib_module_names
 
 
 def of_unready(forms: Iterable[Form], here: int, page: int, told: str = "") -> str | None:
@@ -215,16 +279,43 @@ def of_unready(forms: Iterable[Form], here: int, page: int, told: str = "") -> s
 def of_unprepared(forms: Iterable[Form], here: int, page: int) -> str | None:
     """What to say of a task that is not solved, where one of ``forms``, which were not typed, loads or starts something."""
     for form in forms:
-        if _LOADS.match(form.text) or _STARTS.match(form.text) or _LEADS_TO.match(form.text):
+        loads = _LOADS.match(form.text) and not _is_pythons(form.text)
+        if loads or _STARTS.match(form.text) or _LEADS_TO.match(form.text):
             return _lack(form, here, page, "This page begins with")
     return None
 
 
+def is_needed(text: str) -> bool:
+    """Whether a form of a page defines, loads, starts or sets something."""
+    return bool(names(text) or _LOADS.match(text) or _STARTS.match(text) or _LEADS_TO.match(text) or _SETS.match(text))
+
+
+def first_line(text: str) -> str:
+    """The first line of a form, with points if there are more."""
+    first, *others = text.splitlines()
+    if not others:
+        return first
+    return f"{first} ..." if " " in first else f"{first} ...)"
+
+
 def _lack(form, here, page, what):
-    shown = f"{form.text.splitlines()[0]}{' ...' if chr(10) in form.text else ''}"
+    shown = first_line(form.text)
     if form.step == here:
         return f"; {what} a form of this step that you have not typed yet: {shown}"
     return f"; {what} a form that you have not typed: {shown} :page {page} {form.step} leads back to it."
 
 
-__all__ = ["Form", "in_words_of_lisp", "names", "of_error", "of_failed_form", "of_line", "of_missing", "of_unprepared", "of_unready"]
+__all__ = [
+    "Form",
+    "first_line",
+    "in_words_of_hy",
+    "in_words_of_lisp",
+    "is_needed",
+    "names",
+    "of_error",
+    "of_failed_form",
+    "of_line",
+    "of_missing",
+    "of_unprepared",
+    "of_unready",
+]

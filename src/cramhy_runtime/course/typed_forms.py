@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 _DEFINED = re.compile(r"^\((?:def[\w*-]*|register-[\w-]*)\s+(?:\[[^\]]*\]\s+)?([^\s()\[\]]+)", re.M | re.I)
 _SETS = re.compile(r"\((?:def(?:var|parameter|constant|global)|p?setf|p?setq|setv|setx)\s", re.I)
 _TOKEN = re.compile(r"\"(?:\\.|[^\"\\])*\"|;[^\n]*|#\\.[\w-]*|[()\[\]{}]|['`,~@]+|[^\s()\[\]{}\";]+", re.S)
+_CALLED = re.compile(r"\(([^\s()\[\]{}\";'`,]+)")
+_WAITS = re.compile(r"\((?:sleep|wait)", re.I)
 _WITHOUT_ANSWER = re.compile(r"\((?:import|require)\s")
 
 
@@ -58,6 +60,17 @@ class TypedForms:
         """The form that was answered last of those that define ``name``; ``None`` if there is none."""
         found = (form for each in reversed(self.texts) for form in reversed(forms(each.text[: each.upto])))
         return next((form for form in found if (match := _DEFINED.match(form)) is not None and match[1].lower() == name.lower()), None)
+
+    def driving_without_waiting(self, form: str) -> str | None:
+        """The name of a function that ``form`` calls, or one of these, that sends a speed and in which nothing waits; else ``None``."""
+        names = _CALLED.findall(form)
+        for name in names:  # which grows
+            text = self.definition(name) or ""
+            called = _CALLED.findall(text)
+            names += [other for other in called if other not in names]
+            if any(other.lower().endswith("send-vel-cmd") for other in called) and not _WAITS.search(text):
+                return name
+        return None
 
     def form(self, variable: str | None = None) -> str | None:
         """The form that was answered last, or that which gave ``variable`` its value; ``None`` if there is none."""

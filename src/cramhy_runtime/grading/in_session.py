@@ -13,6 +13,8 @@ import secrets
 from contextlib import contextmanager
 from pathlib import Path
 
+import hy
+
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
@@ -38,6 +40,10 @@ _MISSING = re.compile(
     r"(?:The (?P<sort>function|variable) (?P<lisp>\S+) is (?:undefined|unbound)|name '(?P<hy>\S+)' is not defined$)"
 )
 """The report of a form with a name that may not have a meaning yet."""
+_MANGLED = re.compile(r"\bhyx_\w+")
+_MISSING_IN_HY = re.compile(r"name '(\w+)' is not defined")
+_NOT_YET = re.compile(r"There is no (?:function|variable) (\S+) yet\.")
+_SAID = re.compile(rf"^{_NOT_YET.pattern}$|The (?:function|variable) (\S+) is (?:undefined|unbound)|name '([^']+)' is not defined", re.M)
 _TYPED = re.compile(r"\(typed(?:\s+([^\s()]+))?\)")
 """In a form of a check: stands for what the student has typed."""
 _ERROR = "ended with an error:"
@@ -100,7 +106,9 @@ def faults(
                 wrong = _tried(exercise, check, seed, evaluate, language, len(others) > 1 or varies)
             wrong = wrong or said(noticing.faults(), answers=True)
             if wrong:
-                return [table["say"]] if "say" in table else [*wrong, *([table["hint"]] if "hint" in table else [])]
+                if _is_missing(wrong):
+                    return wrong
+                return [table["say"]] if "say" in table else [*wrong, *([table["hint"]] if "hint" in table and not _failed(wrong) else [])]
     return []
 
 
@@ -176,7 +184,7 @@ def _tried(exercise: Exercise, check: Check, seed: int, evaluate, language, tell
     wrong = [_plainer(_worded(sentence, language)) for sentence in said(judge(check, work, values, told), answers=True)]
     if not wrong or check.kind != "do":
         return wrong[: 1 if _ERROR in "".join(wrong[:1]) else MOST_ANSWERS]
-    if tell_call and not any(work["do"] in sentence for sentence in wrong):
+    if tell_call and not _is_missing(wrong) and not any(work["do"] in sentence for sentence in wrong):
         wrong.append(f"The check called {work['do']}, {_place(work['start'])}.")
     return [*wrong, *_other_drivers(language)]
 
@@ -202,9 +210,12 @@ def _other_drivers(language):
 
 
 def _worded(sentence, language):
-    """A sentence with true and false as the ``language`` writes them."""
+    """A sentence with true, false, and a name that is missing, as the ``language`` writes them."""
     if language == "lisp":
         return sentence
+    sentence = _MANGLED.sub(lambda found: hy.unmangle(found[0]), sentence)
+    if (missing := _MISSING_IN_HY.search(sentence)) is not None and (name := missing[1].replace("_", "-")) in sentence:
+        sentence = f"{sentence[: missing.start(1)]}{name}{sentence[missing.end(1) :]}"
     return _LISP_VALUE.sub(lambda match: match[1] + {"NIL": "None", "T": "True"}[match[2]], sentence)
 
 
@@ -223,6 +234,21 @@ def _plainer(sentence):
 
 def _no_function(name):
     return f"There is no function {name} yet."
+
+
+def missing_name(sentences: list[str]) -> str | None:
+    """The name without a meaning that is the cause of a verdict, in a form of the check or in what that calls; else ``None``."""
+    match = _SAID.search("\n".join(sentences[:1]))
+    return next(filter(None, match.groups())).rpartition(":")[2].lower() if match is not None else None
+
+
+def _is_missing(wrong):
+    return bool(wrong) and _NOT_YET.fullmatch(wrong[0]) is not None
+
+
+def _failed(wrong):
+    """Whether a form of the check ended with an error. Then a hint about what the turtle should do is no help."""
+    return bool(wrong) and _ERROR in wrong[0]
 
 
 # ------------------------------------------------------------------------------------------------------------------- as it is

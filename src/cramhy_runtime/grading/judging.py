@@ -270,8 +270,10 @@ def _pen_and_order(paper, target, drawn, replay, values):
 
 LONGER = 0.03
 """The share by which a drawing may be longer than the asked one: turtles overshoot."""
-OTHER_ORDER = "The lines of the drawing are right, but the turtle drew them in another order, or the other way round."
-PEN_LATE = "The turtle was driven first, and its pen was set afterwards: it begins its line with the pen that it had."
+OTHER_ORDER = "The lines of the drawing are right, but the order matters: the turtle drew them in another one, or the other way round."
+PEN_LATE = (
+    "The order matters here: the turtle was driven first, and its pen was set afterwards. So it begins its line with the pen that it had."
+)
 EMPTY = "The paper is empty: the turtle has drawn nothing."
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from prompt_toolkit import PromptSession
-from prompt_toolkit.application import get_app
+from prompt_toolkit.application import get_app, run_in_terminal
 from prompt_toolkit.completion import CompleteEvent, Completer, Completion
 from prompt_toolkit.document import Document
 from prompt_toolkit.enums import DEFAULT_BUFFER
@@ -46,7 +46,7 @@ class EditedLines(Lines):
             completer=Names(),
             complete_while_typing=False,
             multiline=True,
-            key_bindings=_keys(),
+            key_bindings=_keys(self._forgotten),
             prompt_continuation=self._continuation,
             input_processors=[Partners()],
         )
@@ -89,6 +89,18 @@ class EditedLines(Lines):
     def remember(self, text):
         if self._history.add(text):
             self._recalled.add(self._history.forms[-1])
+
+    def _forgotten(self, buffer):
+        """Ask ``heed`` about the lines of an open form, and tell above it what that says. Whether the last line was forgotten."""
+        lines = buffer.text.split("\n")
+        if self.heed is None or len(lines) < 2 or not buffer.document.is_cursor_at_the_end:
+            return False
+        told, forget = self.heed(lines)
+        if told is not None:
+            run_in_terminal(lambda: print(told))
+        if forget:
+            buffer.document = Document("\n".join([*lines[:-1], ""]))
+        return forget
 
     def wake(self):
         self._woken = True
@@ -147,7 +159,8 @@ class Names(Completer):
             yield Completion(name, start_position=-length, display_meta=known)
 
 
-def _keys():
+def _keys(forgotten):
+    """What keys do. forgotten: see `EditedLines._forgotten`."""
     keys = KeyBindings()
 
     @keys.add("enter", filter=has_focus(DEFAULT_BUFFER))
@@ -159,7 +172,7 @@ def _keys():
         if opened is not None:
             opened.read(f"{buffer.text}\n")
             if opened.something:
-                return buffer.insert_text("\n")
+                return None if forgotten(buffer) else buffer.insert_text("\n")
         buffer.validate_and_handle()
 
     return keys

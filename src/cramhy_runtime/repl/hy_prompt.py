@@ -40,7 +40,7 @@ from cramhy_runtime.languages.commonlisp.streams import streams
 from cramhy_runtime.languages.commonlisp.tools.error_reports import condition_of, report
 from cramhy_runtime.session import time_setting
 from cramhy_runtime.languages import answered_texts
-from cramhy_runtime.languages.hy import answer_lists, malformed, module_names, patches, program_texts
+from cramhy_runtime.languages.hy import answer_lists, errors, malformed, module_names, patches, program_texts
 from cramhy_runtime.languages.hy.lisp_data import package_of
 from cramhy_runtime.languages.hy.reader import TypedReader, is_way_back, more_wanted, rest_of_text, source_of
 
@@ -204,6 +204,10 @@ class HyPrompt(Listener):
             self.repl.of_hy.showtraceback()
         sys.stderr.write(as_written(told.getvalue()))
         sys.stderr.flush()
+
+    def showsyntaxerror(self, *places, **texts):
+        """As the REPL's own. What it is given depends on Python's version."""
+        self.repl.of_hy.showsyntaxerror(*places, **texts)
 
     def _listen_no_more(self):
         speak(lisp=False)
@@ -485,7 +489,11 @@ def _repl_of(session, kind=HyPrompt, interact=None, banner=None):
 
 
 def _interact(repl, banner, farewell=None):
-    """The loop of ``repl``. What is typed is kept in our file. That of Hy's prompts has what was typed in the session that ended last."""
+    """The loop of ``repl``. What is typed is kept in our file. That of Hy's prompts has what was typed in the session that ended last.
+
+    Errors are told in our words from the first one on: Hy has put a hook of its own there before its loop begins.
+    """
+    errors.install()
     with repl.lisp.input.keep(History(place("hy-history"))) if "readline" in sys.modules else nullcontext():
         repl.of_hy.interact(banner, farewell)
 

@@ -33,6 +33,9 @@ class Attended:
     def showtraceback(self):
         return (self.lisp or super()).showtraceback()
 
+    def showsyntaxerror(self, *places, **texts):
+        return (self.lisp or super()).showsyntaxerror(*places, **texts)
+
     def write(self, text):
         return (self.lisp or super()).write(text)
 

@@ -12,7 +12,7 @@ but before the form runs, interrupts the form, and what was typed ahead stays.
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 
 from cramhy_runtime.kernel.standard_input import BrokenOff, StandardInput
@@ -54,13 +54,15 @@ class Lines:
     that was broken off, so that the next prompt stands below it. ``shows_open``: whether the prompt of a line that goes on with a form says
     what is open; in a pipe and in Emacs' ``run-lisp`` these prompts would stand in a heap in front of the answer. ``before``: the lines
     before this one of the form that is being typed. ``edits``: whether keys such as TAB do something. ``sent``: the last line, if an editor
-    has sent it: its text, the path of the file, and the line and column, from 1, where it begins there."""
+    has sent it: its text, the path of the file, and the line and column, from 1, where it begins there. ``heed``: is asked where a form
+    stays open at the end of a line: given the lines, it says what to tell, or ``None``, and whether the last line is to be forgotten."""
 
     interactive = False
     shows_open = False
     before: Sequence[str] = ()
     edits = False
     sent: tuple[str, str, int, int] | None = None
+    heed: Callable[[list[str]], tuple[str | None, bool]] | None = None
     can_be_woken = True
     pressed = False
     ended = False

@@ -80,6 +80,7 @@ class Listener:
         self.input = lines
         self.level = 0
         self.progress = Progress()
+        self.behind = str  # a function that gives what stands behind the form that is evaluated, in its text
 
     @contextmanager
     def listening(self):
@@ -219,9 +220,18 @@ class Listener:
     def evaluate(self, text):
         """Evaluate and print every form of ``text``; a line that is a ROS command is carried out.
 
-        Where a form ends otherwise than by its values, the rest of the text is not evaluated, and that is told.
+        Where a form ends otherwise than by its values, the rest of the text is not evaluated, and that is told: when the debugger opens,
+        or else when the form has ended.
         """
         reader, begun = None, 0  # where the form begins that is being read
+        told = ""  # of what stands behind the form, by the debugger that it has opened
+
+        def behind():
+            nonlocal told
+            told = rest_of(reader) if reader is not None and begun is None else ""
+            return told
+
+        before, self.behind = self.behind, behind
         try:
             if self.ctrl_c_came():
                 kernel.interrupt()
@@ -262,8 +272,9 @@ class Listener:
         except Exception as exception:
             self.debug(condition_of(exception))
         finally:
-            if reader is not None:
-                self.tell_not_evaluated(rest_of(reader, begun))
+            self.behind = before
+            if reader is not None and (rest := rest_of(reader, begun)) != told:
+                self.tell_not_evaluated(rest)
 
     def reader_of(self, text):
         """A reader of ``text``, which knows where it stands: in a file, if an editor has sent it."""
@@ -272,12 +283,15 @@ class Listener:
             return self.session.reader(text)
         return self.session.reader_in_file(*sent)
 
-    def tell_not_evaluated(self, text):
-        """Tell that ``text``, which stands behind a form that failed, was not evaluated. Closing parentheses alone are no forms."""
+    def tell_not_evaluated(self, text, so_far=False):
+        """Tell that ``text``, which stands behind a form that failed, was not evaluated. Closing parentheses alone are no forms.
+
+        so_far: whether a choice of the debugger may go on with it.
+        """
         if text.strip(") "):
             text = text if len(text) <= MOST_TOLD else f"{text[:MOST_TOLD]} ..."
             streams.CONSOLE_OUTPUT.fresh_line()
-            streams.CONSOLE_OUTPUT.write(f"; Not evaluated: {text}\n")
+            streams.CONSOLE_OUTPUT.write(f"; Not evaluated{' so far' if so_far else ''}: {text}\n")
             streams.CONSOLE_OUTPUT.flush()
 
     def say(self, text):
@@ -344,6 +358,7 @@ class Listener:
             "restarts (type a number to choose one, or a form to evaluate):",
         ]
         output.write("\n".join([*lines, *self.choices(restarts)]) + "\n")
+        self.tell_not_evaluated(self.behind(), so_far=True)
         output.flush()
 
     def explained(self, condition):

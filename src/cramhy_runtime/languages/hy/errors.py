@@ -20,6 +20,7 @@ import re
 import sys
 import traceback
 from pathlib import Path
+from types import ModuleType
 
 import hy
 from hy import errors as hy_errors
@@ -223,9 +224,16 @@ def _hint(exception, condition):
     if isinstance(exception, (NameError, SyntaxError)) and (hint := _not_required(exception)):
         return hint
     if isinstance(exception, NameError) and exception.name:
-        return shapes.hint_for_name(exception.name, _names_known(exception))
+        return shapes.hint_for_name(exception.name, _names_known(exception), _modules_known(exception))
     hint = condition.hint
     return hint() if callable(hint) else hint
+
+
+def _modules_known(exception):
+    """The modules that were imported where ``exception`` arose, by the names that they have there."""
+    frames = [frame for frame, _ in traceback.walk_tb(exception.__traceback__) if _is_users(frame.f_code.co_filename)]
+    found = frames[-1].f_globals if frames else {}
+    return {hy.unmangle(name): each for name, each in found.items() if isinstance(each, ModuleType) and not name.startswith(("_", "hy"))}
 
 
 def _names_known(exception):

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import builtins
 import re
+import sys
 
 import hy
 
@@ -100,8 +101,8 @@ def hint(name):
     return f"It is written {shape}." if shape else None
 
 
-def hint_for_name(name, known):
-    """What to try where Python says that the name ``name`` is not defined. known: the names that are there."""
+def hint_for_name(name, known, modules=None):
+    """What to try where Python says that the name ``name`` is not defined. known: the names that are there. modules: of these, by name."""
     if name in _LISP:
         return f"{_LISP[name]} is Common Lisp. In Hy it is written {LISP[_LISP[name]]}. {_WHERE_LISP_IS}"
     written = hy.unmangle(name)
@@ -109,6 +110,11 @@ def hint_for_name(name, known):
         return _INSIDE[written]
     if hy.mangle(name) in builtins._hy_macros and not any(map(str.isalnum, written)):
         return f"{written} stands at the head of its form, as in ({written} 1 2)."
+    for alias, module in (modules or {}).items():
+        if hy.mangle(name) in vars(module) or (written.upper() not in COMMON_LISP.external and hasattr(module, hy.mangle(name))):
+            return f"{written} is a name of {alias}: {alias}.{written}"
+    if len(written) > 1 and hy.mangle(name) in {*builtins._hy_macros, *getattr(sys.modules.get("cramhy"), "_hy_macros", ())}:
+        return f"{written} stands at the head of its form, as in ({written} ...)."
     if written.upper() in COMMON_LISP.external:
         return f"{written} is Common Lisp, and Hy has nothing of that name. {_WHERE_LISP_IS}"
     if re.match(r"\?\w", written):
@@ -122,7 +128,9 @@ def hint_for_name(name, known):
         )
     import difflib
 
-    near = difflib.get_close_matches(written, sorted({hy.unmangle(each) for each in known} - {written}), n=2, cutoff=0.7)
+    names = {hy.unmangle(each) for each in known} - {written}
+    names -= {name for name in names if "::" in name and name.replace("::", ":") in names}
+    near = difflib.get_close_matches(written, sorted(names), n=2, cutoff=0.7)
     return f"Did you mean {' or '.join(near)}?" if near else None
 
 

@@ -114,7 +114,7 @@ def parse(lambda_list, destructuring=False, default=None):
             malformed(lambda_list, "only one variable may follow &REST.")
     if cell is not None:
         if not destructuring or not isinstance(cell, Symbol):
-            example = f", as in ({cell.name.lower()})" if isinstance(cell, Symbol) else ""
+            example = f", as in ({cell.name.strip('[]').lower()})" if isinstance(cell, Symbol) else ""
             malformed(lambda_list, "it ends in a dot." if isinstance(lambda_list, Cons) else f"the parameters stand in a list{example}.")
         result.rest = cell
     return result

@@ -21,7 +21,7 @@ from cramhy_runtime.lisp_core.source_places import describe, describe_frame, exc
 from ..printer.clos_printing import specializer_names
 from cramhy_runtime.lisp_core.dispatch.generic_errors import NoApplicableMethodError
 from cramhy_runtime.ros.definition_files import why_no_lisp_package
-from cramhy_runtime.lisp_core.packages import all_packages, is_symbol, near_names, sym, symbol_name
+from cramhy_runtime.lisp_core.packages import Package, all_packages, is_symbol, near_names, sym, symbol_name
 from cramhy_runtime.lisp_core.ports import PORTS
 from ..evaluation.forms import special_operator_p
 from ..printer import pprint_dispatch
@@ -223,7 +223,7 @@ def _function(symbol):
         return f"There is {_qualified(other)} in another package."
     if missing_space := glued(symbol.name):
         return missing_space
-    home = _users_package_with(symbol)
+    home = users_package_with(symbol.name)
     if home is not None:
         name = min(home.names, key=len).lower()
         return f"There is one in the package {home.name}: (in-package :{name}) goes there; from here it is {name}::{symbol.name.lower()}."
@@ -272,10 +272,10 @@ def elsewhere(symbol):
     return last
 
 
-def _users_package_with(symbol):
-    """A package of the user's that has an operator of the same name and does not export it, or ``None``."""
+def users_package_with(name: str) -> Package | None:
+    """A package of the user's that has an operator of that name and does not export it, or ``None``."""
     for package in all_packages():
-        other = None if package.built_in else package.internal.get(symbol.name)
+        other = None if package.built_in else package.internal.get(name)
         if isinstance(other, Symbol) and other.package is package and is_operator(other):
             return package
     return None

@@ -1,0 +1,34 @@
+"""What the guide says of a function of the student's own that was defined behind another prompt, and so stands in another package.
+
+A page of Lisp begins behind ``CL-USER>`` and goes on behind ``TUT>``. A form that was typed too early, or after a way back, defines a
+function that the next form does not find.
+"""
+
+from __future__ import annotations
+
+from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
+from cramhy_runtime.languages.commonlisp.tools.advice import users_package_with
+
+_BEGIN = "COMMON-LISP-USER"
+
+
+def of_name(name: str) -> str | None:
+    """What to say of ``name``, which is not a function where the prompt is, if another package of the user's has one; else ``None``."""
+    here = PACKAGE.value
+    other = users_package_with(name.upper())
+    if other is None or other is here:
+        return None
+    there, shown = _short(other), name.lower()
+    if here.name == _BEGIN:
+        return f"; {shown} is a function of another package: after (in-package :{there.lower()}) the prompt is {there}> and knows it."
+    return (
+        f"; {shown} was defined behind {there}>, in another package. The prompt is {_short(here)}> now: type the definition again here. "
+        "(Press the arrow key up until it is there.)"
+    )
+
+
+def _short(package):
+    return min(package.names, key=len)
+
+
+__all__ = ["of_name"]
