@@ -269,28 +269,16 @@ class Guide:
         told = told or mistyped.of_text(name if self.language == "hy" else name.lower(), self._text, self._forms())
         if told or (self._in_task() and _asks_for(self.step.part, name)):
             return told
-        return self._of_task(name) or slips.of_missing(name, *self._untyped(), known=self._words())
-
-    def _of_task(self, name):
-        """What to say of a name that another task of this page asks for; else ``None``."""
-        number = contents.NAMES.index(self.page.name) + 1
-        for place, step in enumerate(self.steps, 1):
-            if isinstance(step.part, Task) and _asks_for(step.part, name):
-                shown = name.lower().replace("_", "-")
-                return f"; {shown} is the function of another task, {step.part.title}: :page {number} {place} leads to it."
-        return None
+        return _of_task(name, self.page, self.steps) or slips.of_missing(name, *self._untyped(), known=self._words())
 
     def _untyped(self):
         """The forms of the page up to here that were not typed, the number of the step, and that of the page."""
         forms = [slips.Form(text, step) for text, step in self._forms().items() if _squeezed(text) not in self._typed]
         return forms, self.place + 1, contents.NAMES.index(self.page.name) + 1
 
-    def _all_typed(self):
-        return [typed for part in self.page.parts if isinstance(part, Code) for lines in (part.lisp, part.hy) for typed in lines]
-
     def _words(self):
         """The names that stand in the code of the page, also in that of its texts, but not in what the page shows to fail."""
-        found, wrong = [], {typed.form for typed in self._all_typed() if _fails(typed)}
+        found, wrong = [], {typed.form for typed in _all_typed(self.page) if _fails(typed)}
         for part in self.page.parts:
             if isinstance(part, Code):
                 found += [typed.form for typed in getattr(part, self.language) if typed.form not in wrong]
@@ -338,15 +326,10 @@ class Guide:
         if some and not self._waiting:
             self._cue = OVER
         elif self._by_course and self._waiting:
-            self._cue = self._cue or self._left()
+            self._cue = self._cue or _left(self._waiting)
         self._by_course = False
         cue, self._cue = self._cue, None
         return cue
-
-    def _left(self):
-        """What to say of the forms of this step that are left when :type has typed one."""
-        count = sum(not _OF_DEBUGGER.match(typed.prompt) for typed in self._waiting)
-        return f"; Left of this step: {count} form{'s' * (count != 1)}. :type types the next one."
 
     # ------------------------------------------------------------------------------------------------------------------ commands
 
@@ -517,19 +500,41 @@ class Guide:
         hint = "; :hint gives a hint." if more else "; :hint shows the hints again."
         missing = in_session.missing_name(found["told"])
         unprepared = self._of_missing(missing) if missing is not None else None
-        unprepared = unprepared or self._of_error_in_check("\n".join(found["told"][:1]))
+        unprepared = unprepared or _of_error_in_check("\n".join(found["told"][:1]), self.language)
         unprepared = unprepared or slips.of_unprepared(*self._untyped())
         worded = slips.in_words_of_hy if self.language == "hy" else slips.in_words_of_lisp
         return "\n".join(["Not yet.", *self._filled(map(worded, found["told"])), *filter(None, [unprepared]), hint])
 
-    def _of_error_in_check(self, told):
-        """What to say of an error that a check met, if its place in the student's form shows a slip; else ``None``."""
-        if "ended with an error" not in told:
-            return None
-        return slips.of_failed_form(told, self.language, in_task=True) or mistyped.of_error(told, told, self.language)
-
     def _filled(self, texts):
         return [shown.filled(line, self.style) for text in texts for line in text.split("\n")]
+
+
+def _of_error_in_check(told, language):
+    """What to say of an error that a check met, if its place in the student's form shows a slip; else ``None``."""
+    if "ended with an error" not in told:
+        return None
+    return slips.of_failed_form(told, language, in_task=True) or mistyped.of_error(told, told, language)
+
+
+def _left(waiting):
+    """What to say of the forms of this step that are left when :type has typed one."""
+    count = sum(not _OF_DEBUGGER.match(typed.prompt) for typed in waiting)
+    return f"; Left of this step: {count} form{'s' * (count != 1)}. :type types the next one."
+
+
+def _of_task(name, page, steps):
+    """What to say of a name that another task of this page asks for; else ``None``."""
+    number = contents.NAMES.index(page.name) + 1
+    for place, step in enumerate(steps, 1):
+        if isinstance(step.part, Task) and _asks_for(step.part, name):
+            shown = name.lower().replace("_", "-")
+            return f"; {shown} is the function of another task, {step.part.title}: :page {number} {place} leads to it."
+    return None
+
+
+def _all_typed(page):
+    """What is typed on a page, in both languages."""
+    return [typed for part in page.parts if isinstance(part, Code) for lines in (part.lisp, part.hy) for typed in lines]
 
 
 def _asks_for(task, name):

@@ -119,6 +119,13 @@ def _terminal_lines(repl, in_lisp):
     return HyLines(repl, in_lisp)
 
 
+def _listen_no_more(warnings):
+    """Leave errors and warnings to Hy. warnings: the stream where they went before."""
+    speak(lisp=False)
+    conditions.install_debugger(None)
+    streams.ERROR_OUTPUT.value = warnings
+
+
 def _show_prompt(repl, prompt):
     repl.ps1 = prompt
     if hasattr(sys, "ps1"):  # the REPL runs
@@ -190,7 +197,7 @@ class HyPrompt(Listener):
         if self.in_lisp:
             self.in_lisp = False
             self.repl.compile.compiler.reader, prompt, self.repl.output_fn = self._hy
-            self._listen_no_more()
+            _listen_no_more(self._warnings)
             _show_prompt(self.repl, prompt)
 
     def write(self, text):
@@ -208,11 +215,6 @@ class HyPrompt(Listener):
     def showsyntaxerror(self, *places, **texts):
         """As the REPL's own. What it is given depends on Python's version."""
         self.repl.of_hy.showsyntaxerror(*places, **texts)
-
-    def _listen_no_more(self):
-        speak(lisp=False)
-        conditions.install_debugger(None)
-        streams.ERROR_OUTPUT.value = self._warnings
 
     def leads_away(self, form, reader):
         self._form = form
@@ -237,7 +239,7 @@ class HyPrompt(Listener):
             self._respond(text)
         finally:
             if not self.in_lisp:
-                self._listen_no_more()
+                _listen_no_more(self._warnings)
         streams.CONSOLE_OUTPUT.fresh_line()
         streams.CONSOLE_OUTPUT.flush()
         if self._rest is not None:
