@@ -42,6 +42,17 @@ _REST_STEPS = 50
 _DEEP = 5e-3  # metres
 _BELOW_ALL = -1000.0  # metres
 _MOST_LIFTS = 200
+_WAYS_OUT = sorted(
+    [np.array((0.0, 0.0, number * _DEEP)) for number in range(1, _MOST_LIFTS + 1)]
+    + [
+        np.array((metres * np.cos(turn), metres * np.sin(turn), up))
+        for metres in (0.01, 0.02, 0.03, 0.04)
+        for turn in np.arange(8) * np.pi / 4
+        for up in (0.0, 0.01, 0.02)
+    ],
+    key=lambda way: np.hypot(way[0], way[1]) + way[2],
+)
+"""How an item is moved that is inside of something: as far up as it takes, or a little aside; metres, the shortest first."""
 _ASIDE = [metres * np.array((np.cos(turn), np.sin(turn))) for metres in np.arange(0.01, 0.41, 0.01) for turn in np.arange(16) * np.pi / 8]
 _SAME_HEIGHT = 0.01  # metres
 _ROOM_FOR_A_FINGER = 0.03  # metres, between items that are parted
@@ -392,21 +403,23 @@ class Scene:
         return float(place[2] - down) if down >= 0 else -np.inf
 
     def _lift(self, part: Part) -> int | None:
-        """Raise a free item that is inside of something that stands to where it is no more; a geom that it cannot get out of."""
+        """Bring a free item that is inside of something that stands to where it is no more; a geom that it cannot get out of.
+
+        It goes the shortest of the ways out: up, or aside to where what is below its origin is as high. So a low wall pushes it aside, as
+        that of a drawer; raised to the top of the wall, it would topple.
+        """
+        first = self._blocker(part)
+        if first is None:
+            return None
         start = self.model.jnt_qposadr[self.model.body_jntadr[part.body]]
-        first, lifted = self._blocker(part), False
-        blocker = first
-        before = self.data.qpos[start + 2]
-        for _ in range(_MOST_LIFTS):
-            if blocker is None:
+        before, level = self.data.qpos[start : start + 3].copy(), self._height_below(part)
+        for way in _WAYS_OUT:
+            self.data.qpos[start : start + 3] = before + way
+            mujoco.mj_kinematics(self.model, self.data)
+            if self._blocker(part) is None and (not way[:2].any() or abs(self._height_below(part) - level) < _SAME_HEIGHT):
                 return None
-            lifted = True
-            self.data.qpos[start + 2] += _DEEP
-            mujoco.mj_kinematics(self.model, self.data)
-            blocker = self._blocker(part)
-        if lifted:
-            self.data.qpos[start + 2] = before
-            mujoco.mj_kinematics(self.model, self.data)
+        self.data.qpos[start : start + 3] = before
+        mujoco.mj_kinematics(self.model, self.data)
         return first
 
     def _blocker(self, part: Part) -> int | None:
