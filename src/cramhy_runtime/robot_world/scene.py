@@ -56,6 +56,7 @@ _WAYS_OUT = sorted(
 _ASIDE = [metres * np.array((np.cos(turn), np.sin(turn))) for metres in np.arange(0.01, 0.41, 0.01) for turn in np.arange(16) * np.pi / 8]
 _SAME_HEIGHT = 0.01  # metres
 _ROOM_FOR_A_FINGER = 0.03  # metres, between items that are parted
+_MANY = 20  # geoms
 _TOGETHER = 25  # steps that are computed in one call; what is at rest is at rest after two calls
 
 
@@ -304,9 +305,15 @@ class Scene:
     def _near(self, lowest: np.ndarray, highest: np.ndarray, mine: np.ndarray, distance: float) -> np.ndarray:
         """Which geoms are so near to those of the numbers ``mine``, by the boxes around all: a row of truth values for each of ``mine``."""
         low, high = lowest[mine] - distance, highest[mine] + distance
-        near = np.ones((len(mine), len(lowest)), bool)
+        near = np.zeros((len(mine), len(lowest)), bool)
+        around = slice(None)  # those near the box around all of mine, where it pays to look for them first
+        if len(mine) >= _MANY:
+            around = np.flatnonzero(((lowest <= high.max(0)) & (highest >= low.min(0))).all(1))
+        low_around, high_around = lowest[around], highest[around]
+        each = np.ones((len(mine), len(low_around)), bool)
         for axis in range(3):
-            near &= (lowest[:, axis] <= high[:, axis, None]) & (highest[:, axis] >= low[:, axis, None])
+            each &= (low_around[:, axis] <= high[:, axis, None]) & (high_around[:, axis] >= low[:, axis, None])
+        near[:, around] = each
         for plane in np.flatnonzero(self.is_plane):
             normal = self.data.geom_xmat[plane].reshape(3, 3)[:, 2]
             corners = np.where(normal > 0, lowest, highest)
@@ -316,7 +323,8 @@ class Scene:
         return near
 
     def _geoms_of(self, thing: Item | Machine) -> np.ndarray:
-        return np.array([geom for part in self.parts if part.thing is thing for geom in part.geoms], int)
+        number = next((number for number, each in enumerate(self.things) if each is thing), -2)  # -1 is no thing's
+        return np.flatnonzero(self._thing_of_geom == number)
 
     def _touch(self, geom: int, other: int) -> bool:
         return mujoco.mj_geomDistance(self.model, self.data, int(geom), int(other), TOUCHING, None) < TOUCHING
