@@ -1,7 +1,8 @@
 """CRAM's applications run past loading: what their readers type, and what must come.
 
 A file in ``typed`` has the forms, with a blank line between two; ``;=> REGULAR EXPRESSION`` below a form is what its printed value matches
-as a whole, white space being one blank. ``(lies 'name)`` is where an object lies, in centimetres as metres.
+as a whole, white space being one blank. ``(lies 'name)`` is where an object lies, in centimetres as metres; ``(stands-in 'name "link")`` is
+true if its middle is over a link of the furniture, and its lowest point within the heights of that link, or on top of it.
 
 ``cram_cup_demo`` is a package of our own with the habits of CRAM's, in ``workspace``. The others are CRAM's, which are not ours to ship:
 CRAMHY_APPLICATIONS names a folder with checkouts of cram2/cram (``cram-master``, ``cram-devel``), of the EASE Fall School (``cram_teaching``) and of ``roslisp_tutorials``.
@@ -31,6 +32,18 @@ LIES = """
 (defun common-lisp-user::lies (name)
   (let ((place (cl-transforms:origin (btr:pose (btr:object btr:*current-bullet-world* name)))))
     (mapcar (lambda (number) (/ (round number 0.01) 100.0)) (list (cl-transforms:x place) (cl-transforms:y place) (cl-transforms:z place)))))
+
+(defun common-lisp-user::stands-in (name link)
+  (flet ((ends (box axis)
+           (let ((middle (funcall axis (btr:bounding-box-center box))) (half (/ (funcall axis (btr:bounding-box-dimensions box)) 2)))
+             (list (- middle half) (+ middle half)))))
+    (let* ((body (or (gethash link (btr:links (btr:get-environment-object))) (error "There is no link ~a with shapes." link)))
+           (thing (btr:aabb (btr:object btr:*current-bullet-world* name))) (around (btr:aabb body)))
+      (and (loop for axis in '(cl-transforms:x cl-transforms:y)
+                 for (low high) = (ends around axis)
+                 always (< low (funcall axis (btr:bounding-box-center thing)) high))
+           (destructuring-bind (low high) (ends around 'cl-transforms:z)
+             (< (- low 0.01) (first (ends thing 'cl-transforms:z)) (+ high 0.01)))))))
 """
 CHECKOUTS = os.environ.get("CRAMHY_APPLICATIONS")
 foreign = pytest.mark.skipif(not CHECKOUTS, reason="CRAMHY_APPLICATIONS names no folder with checkouts of CRAM's applications")
@@ -54,7 +67,7 @@ def typed(application):
     """The forms that are typed, with what comes."""
     for block in (HERE / "typed" / f"{application}.lisp").read_text(encoding="utf-8").strip().split("\n\n"):
         form, _, answer = block.partition("\n;=> ")
-        yield form.replace("(lies ", "(cl-user::lies "), answer
+        yield re.sub(r"\((lies|stands-in) ", r"(cl-user::\1 ", form), answer
 
 
 def run(session, application):

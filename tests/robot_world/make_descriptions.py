@@ -47,6 +47,31 @@ def read(name: str) -> dict:
     return json.loads((FIGURES / f"{name}.json").read_text())
 
 
+TAPERED = (
+    {"type": "box", "size": [0.0739, 0.0544, 0.0551], "xyz": [0.028, 0.0184, 0.0]},
+    {"type": "box", "size": [0.0301, 0.0411, 0.0435], "xyz": [0.0801, 0.0157, 0.0]},
+)
+"""A left finger of the PR2 as two boxes: the bounds of what pr2_description's ``l_finger.stl`` has before and behind x = 0.065 m, where two
+boxes have the least volume (0.275 of 0.312 l). The figures of pr2.json have one box about the whole of it, which is 0.0551 m high at its end."""
+
+FINGERS = {f"{arm}_gripper_{side}_finger_link": sign for arm in "lr" for side, sign in (("l", 1), ("r", -1))}
+"""Where pr2.urdf departs from pr2.json: at these links alone. The right finger of a hand mirrors the left one."""
+
+WHY = "Fingers: two boxes each, the bounds of the mesh l_finger.stl of pr2_description before and behind x = 0.065 m."
+"""The comment in the file."""
+
+
+def with_tapered_fingers(figures: dict) -> dict:
+    """The figures of a PR2 whose fingers are narrower at their ends, as the real ones are."""
+
+    def link(told):
+        sign = FINGERS.get(told["name"])
+        shapes = [{**shape, "xyz": [x, sign * y, z]} for shape in TAPERED for x, y, z in [shape["xyz"]]] if sign else None
+        return {**told, "shapes": shapes} if shapes else told
+
+    return {**figures, "links": list(map(link, figures["links"]))}
+
+
 def with_kinect(figures: dict) -> dict:
     """The figures of a PR2 that has a Kinect on its head, as the one in Bremen does."""
     joints = figures["optional_kinect_joints"]["joints"]
@@ -78,13 +103,19 @@ def written(models: dict[str, dict]) -> str:
     return f"{{\n{lines}\n}}\n"
 
 
+def commented(text: str, comment: str) -> str:
+    """A file of URDF with a comment behind its first tag."""
+    head, tag, rest = text.partition('">\n')
+    return f"{head}{tag}  <!-- {comment} -->\n{rest}"
+
+
 def made() -> dict[str, str]:
     """The text of each file."""
     kitchen = read("kitchen")
     table = {"table_area_main_joint": {"xyz": (-1.4, -1.18, 0.0), "rpy": (0.0, 0.0, pi)}}  # under the tutorials' bottle
     return {
         "objects.json": written(objects(read("objects"))),
-        "pr2.urdf": urdf.text_of(described("pr2", with_kinect(read("pr2")))),
+        "pr2.urdf": commented(urdf.text_of(described("pr2", with_tapered_fingers(with_kinect(read("pr2"))))), WHY),
         "kitchen.urdf": urdf.text_of(described("iai_kitchen", kitchen, table)),
     }
 

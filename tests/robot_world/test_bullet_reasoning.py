@@ -187,3 +187,15 @@ def test_contact_gives_the_links_of_both_where_both_have_links(ask, one, other):
     links = ask(f"(all '(btr:contact ?w {one} {other} ?link) '?link)").strip("()").replace('"', "").split()
     of_robot = [name in ask("(btr:link-names (named 'pr2))") for name in links]
     assert set(of_robot) == {True, False} and of_robot == sorted(of_robot, reverse=one == "pr2")
+
+
+@pytest.mark.parametrize("relation, name, robot, bare", [
+    ("above", "bottle-1", ":kitchen", "sink_area_footprint"), ("below", "bottle-1", "pr2", "r_gripper_tool_frame"),
+    ("above", "bottle-1", "pr2", "base_footprint"), ("below", "pr2", ":kitchen", "sink_area_footprint"),
+])  # fmt: skip
+def test_a_link_without_shapes_is_neither_above_nor_below(ask, relation, name, robot, bare):
+    """As in the original, which has bodies for solid links alone. Rules of devel ask for the body of each link that they find so."""
+    goal = f"btr:{relation} ?w {name} {robot}"
+    solid = f"(lambda (link) (typep (gethash link (btr:links (named '{robot}))) 'btr:rigid-body))"
+    assert ask(f"(let ((links (all '({goal} ?l) '?l))) (and links (every {solid} links)))") == "T"
+    assert ask(f'(btr:link-pose (named \'{robot}) "{bare}")') != "NIL" == ask(f'(prolog:prolog \'({goal} "{bare}"))')

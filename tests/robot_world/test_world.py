@@ -64,6 +64,33 @@ def test_items_that_are_inside_of_each_other_are_parted_and_none_falls(world, pl
     assert not any(isinstance(thing, type(world.item(0))) for number in range(len(places)) for thing in world.touching(number))
 
 
+SHELF, BOARD_TOP = (-2.0, 1.0), 0.51  # a board with a low wall along y
+
+
+@pytest.mark.parametrize("shape", [CARTON, BOTTLE], ids=["a carton", "a bottle"])
+@pytest.mark.parametrize(
+    "into_wall, into_board, aside, raised",
+    [(0.02, 0.0, 0.03, 0.01), (0.028, 0.0, 0.04, 0.01), (0.0, 0.03, 0.002, 0.0), (0.02, 0.01, 0.03, 0.0), (0.0, 0.0, 0.002, 0.01)],
+    ids=["in the wall", "nearly its middle in the wall", "in the board", "in both", "in neither"],
+)
+def test_an_item_that_is_in_a_low_wall_is_put_beside_it_and_stands(world, shape, into_wall, into_board, aside, raised):
+    """As what a hand lets go in a tray or a drawer: raised to the top of the wall, it would topple, and fall out of the drawer.
+
+    An item whose middle is over the wall is raised as before.
+    """
+    world.add_item("board", (Shape("box", (0.3, 0.3, 0.02)),), placement((*SHELF, BOARD_TOP - 0.01)), mass=0)
+    world.add_item("wall", (Shape("box", (0.02, 0.3, 0.1)),), placement((SHELF[0] + 0.14, SHELF[1], BOARD_TOP + 0.05)), mass=0)
+    width, low = (0.06, 0.11) if shape is CARTON else (0.0714, 0.1007)
+    before = placement((SHELF[0] + 0.13 - width / 2 + into_wall, SHELF[1], BOARD_TOP + low - into_board + raised))
+    world.add_item("thing", shape, before)
+    world.simulate(10)
+    now = world.item("thing").placement
+    assert 2 * (now.rotation[1] ** 2 + now.rotation[2] ** 2) < 0.01  # upright
+    assert now.position[2] == pytest.approx(BOARD_TOP + low, abs=5e-3)
+    assert np.hypot(*(now.position[:2] - before.position[:2])) < aside and abs(now.position[1] - SHELF[1]) < 0.02
+    assert not world.stuck
+
+
 def test_what_lies_on_something_stays_on_it(world):
     world.add_item("below", CARTON, placement((1.4, 0.8, ON_COUNTER + 0.11)))
     world.add_item("above", BOTTLE, placement((1.4, 0.8, ON_COUNTER + 0.22 + 0.1)))

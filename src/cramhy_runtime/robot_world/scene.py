@@ -42,9 +42,21 @@ _REST_STEPS = 50
 _DEEP = 5e-3  # metres
 _BELOW_ALL = -1000.0  # metres
 _MOST_LIFTS = 200
+_WAYS_OUT = sorted(
+    [np.array((0.0, 0.0, number * _DEEP)) for number in range(1, _MOST_LIFTS + 1)]
+    + [
+        np.array((metres * np.cos(turn), metres * np.sin(turn), up))
+        for metres in (0.01, 0.02, 0.03, 0.04)
+        for turn in np.arange(8) * np.pi / 4
+        for up in (0.0, 0.01, 0.02)
+    ],
+    key=lambda way: np.hypot(way[0], way[1]) + way[2],
+)
+"""How an item is moved that is inside of something: as far up as it takes, or a little aside; metres, the shortest first."""
 _ASIDE = [metres * np.array((np.cos(turn), np.sin(turn))) for metres in np.arange(0.01, 0.41, 0.01) for turn in np.arange(16) * np.pi / 8]
 _SAME_HEIGHT = 0.01  # metres
 _ROOM_FOR_A_FINGER = 0.03  # metres, between items that are parted
+_MANY = 20  # geoms
 _TOGETHER = 25  # steps that are computed in one call; what is at rest is at rest after two calls
 
 
@@ -294,9 +306,15 @@ class Scene:
     def _near(self, lowest: np.ndarray, highest: np.ndarray, mine: np.ndarray, distance: float) -> np.ndarray:
         """Which geoms are so near to those of the numbers ``mine``, by the boxes around all: a row of truth values for each of ``mine``."""
         low, high = lowest[mine] - distance, highest[mine] + distance
-        near = np.ones((len(mine), len(lowest)), bool)
+        near = np.zeros((len(mine), len(lowest)), bool)
+        around = slice(None)  # those near the box around all of mine, where it pays to look for them first
+        if len(mine) >= _MANY:
+            around = np.flatnonzero(((lowest <= high.max(0)) & (highest >= low.min(0))).all(1))
+        low_around, high_around = lowest[around], highest[around]
+        each = np.ones((len(mine), len(low_around)), bool)
         for axis in range(3):
-            near &= (lowest[:, axis] <= high[:, axis, None]) & (highest[:, axis] >= low[:, axis, None])
+            each &= (low_around[:, axis] <= high[:, axis, None]) & (high_around[:, axis] >= low[:, axis, None])
+        near[:, around] = each
         for plane in np.flatnonzero(self.is_plane):
             normal = self.data.geom_xmat[plane].reshape(3, 3)[:, 2]
             corners = np.where(normal > 0, lowest, highest)
@@ -306,7 +324,8 @@ class Scene:
         return near
 
     def _geoms_of(self, thing: Item | Machine) -> np.ndarray:
-        return np.array([geom for part in self.parts if part.thing is thing for geom in part.geoms], int)
+        number = next((number for number, each in enumerate(self.things) if each is thing), -2)  # -1 is no thing's
+        return np.flatnonzero(self._thing_of_geom == number)
 
     def _touch(self, geom: int, other: int) -> bool:
         return mujoco.mj_geomDistance(self.model, self.data, int(geom), int(other), TOUCHING, None) < TOUCHING
@@ -393,21 +412,23 @@ class Scene:
         return float(place[2] - down) if down >= 0 else -np.inf
 
     def _lift(self, part: Part) -> int | None:
-        """Raise a free item that is inside of something that stands to where it is no more; a geom that it cannot get out of."""
+        """Bring a free item that is inside of something that stands to where it is no more; a geom that it cannot get out of.
+
+        It goes the shortest of the ways out: up, or aside to where what is below its origin is as high. So a low wall pushes it aside, as
+        that of a drawer; raised to the top of the wall, it would topple.
+        """
+        first = self._blocker(part)
+        if first is None:
+            return None
         start = self.model.jnt_qposadr[self.model.body_jntadr[part.body]]
-        first, lifted = self._blocker(part), False
-        blocker = first
-        before = self.data.qpos[start + 2]
-        for _ in range(_MOST_LIFTS):
-            if blocker is None:
+        before, level = self.data.qpos[start : start + 3].copy(), self._height_below(part)
+        for way in _WAYS_OUT:
+            self.data.qpos[start : start + 3] = before + way
+            mujoco.mj_kinematics(self.model, self.data)
+            if self._blocker(part) is None and (not way[:2].any() or abs(self._height_below(part) - level) < _SAME_HEIGHT):
                 return None
-            lifted = True
-            self.data.qpos[start + 2] += _DEEP
-            mujoco.mj_kinematics(self.model, self.data)
-            blocker = self._blocker(part)
-        if lifted:
-            self.data.qpos[start + 2] = before
-            mujoco.mj_kinematics(self.model, self.data)
+        self.data.qpos[start : start + 3] = before
+        mujoco.mj_kinematics(self.model, self.data)
         return first
 
     def _blocker(self, part: Part) -> int | None:

@@ -283,17 +283,22 @@
     (%object ?world ?name ?object)
     (%object ?world ?other-name ?other)
     (not (== ?name ?other-name))
-    (link ?world ?other-name ?link)
+    (solid-link ?other ?link)
     (lisp-pred above-link-p ?object ?other ?link))
 
   (<- (below ?world ?name ?other-name)
     (above ?world ?other-name ?name))
 
+  (<- (solid-link ?robot ?link)
+    (lisp-type ?robot robot-object)
+    (lisp-fun solid-links ?robot ?links)
+    (member ?link ?links))
+
   (<- (below ?world ?name ?other-name ?link)
     (%object ?world ?name ?object)
     (%object ?world ?other-name ?other)
     (not (== ?name ?other-name))
-    (link ?world ?other-name ?link)
+    (solid-link ?other ?link)
     (lisp-pred below-link-p ?object ?other ?link))
 
   (<- (supporting ?world ?bottom ?top)

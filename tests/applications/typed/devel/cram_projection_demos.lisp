@@ -13,8 +13,8 @@
 (list (btr:attached-objects (btr:get-robot-object)) (btr:attached-objects (btr:get-environment-object)))
 ;=> \(NIL \(\(:MILK-1 "sink_area_trash_drawer_main"\)\)\)
 
-(lies :milk-1)
-;=> \(1\.44 -0\.48 0\.24\)
+(stands-in :milk-1 "sink_area_trash_drawer_main")
+;=> T
 
 (loop for joint in '("iai_fridge_door_joint" "sink_area_trash_drawer_main_joint")
       always (< (abs (btr:joint-state (btr:get-environment-object) joint)) 0.01))
