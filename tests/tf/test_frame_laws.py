@@ -319,7 +319,6 @@ def test_what_python_would_stumble_over(lisp, text, kind, hint):
         (-30.0, "-30.0 s is 31 s in the past of that"),
         (9.5, "9.5 s is 0.5 s in the future of that"),
         (40, "40.0 s is 31 s in the future of that"),
-        (5.0, "5.0 s is in a gap of that, between stamps of seconds that are no neighbours"),
     ],
 )
 def test_python_is_told_whether_a_time_is_past_or_future(time, where):

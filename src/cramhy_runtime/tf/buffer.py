@@ -6,8 +6,9 @@ stamps. A bucket is emptied when the first transform of a later second with the 
 is known ends ten seconds before the newest stamp. The transform between two frames is the product of the links on the way.
 
 A time is looked for in each link of its own: between two stamps the translation is interpolated linearly and the rotation on the
-sphere. No time (``None`` or 0) means the newest of each link, so the stamps of links on the way may differ; the result has one of
-them. Static transforms come with the stamp 0, and so are found by the newest only.
+sphere. The stamps are the nearest ones before and after the time, also where seconds lie between them in which nothing was told. No
+time (``None`` or 0) means the newest of each link, so the stamps of links on the way may differ; the result has one of them. Static
+transforms come with the stamp 0, and so are found by the newest only.
 
 This is plain Python and knows of no nodes, clocks or waiting; what cannot be given is the exception `Unavailable`, which
 ``transformer.py`` turns into conditions. Source: cl-transforms.md 7.
@@ -94,24 +95,30 @@ class Link:
             return self.newest
         second = floor(time)
         bucket = self.buckets[second % SECONDS]
+        before = after = None
+        if bucket is not None and bucket.second == second:
+            place = bisect_right(bucket.stamps, time)
+            if place and bucket.stamps[place - 1] == time:
+                return bucket.transforms[place - 1]
+            before = bucket.transforms[place - 1] if place else self._beside(second, -1)
+            after = bucket.transforms[place] if place < len(bucket.stamps) else self._beside(second, 1)
+        elif bucket is None or bucket.second < second:
+            before, after = self._beside(second, -1), self._beside(second, 1)
+        if before is not None and after is not None and floor(after.stamp) - floor(before.stamp) < SECONDS:
+            return _between(before, after, time)
         if bucket is None:
             raise self._unknown_at(time, "empty", "The assertion (NOT (CL-TF::CACHE-EMPTY CL-TF::CACHE)) failed.")
         if abs(time - bucket.stamps[-1]) > SECONDS:
             raise self._unknown_at(time, "extrapolation", "Requested time points to the future. Cannot transform.")
-        before = after = None
-        if bucket.second == second:
-            place = bisect_right(bucket.stamps, time)
-            if place and bucket.stamps[place - 1] == time:
-                return bucket.transforms[place - 1]
-            before = bucket.transforms[place - 1] if place else self._beside(second - 1, -1)
-            after = bucket.transforms[place] if place < len(bucket.stamps) else self._beside(second + 1, 0)
-        if before is None or after is None:
-            raise self._unknown_at(time, "extrapolation", "The requested time stamp does not point into the cache.")
-        return _between(before, after, time)
+        raise self._unknown_at(time, "extrapolation", "The requested time stamp does not point into the cache.")
 
-    def _beside(self, second, place):
-        bucket = self.buckets[second % SECONDS]
-        return bucket.transforms[place] if bucket is not None and bucket.second == second else None
+    def _beside(self, second: int, step: int) -> TransformStamped | None:
+        """The nearest transform of a second before ``second`` (``step`` -1) or after it (1), less than ten seconds away."""
+        for other in range(second + step, second + step * SECONDS, step):
+            bucket = self.buckets[other % SECONDS]
+            if bucket is not None and bucket.second == other:
+                return bucket.transforms[-1 if step < 0 else 0]
+        return None
 
     def _unknown_at(self, time: float, kind: str, text: str) -> Unavailable:
         """The exception for a ``time`` that is not known. The original says "future" of the past, too."""
@@ -126,7 +133,7 @@ class Link:
         elif time > last:
             where = f"{float(time)} s is {time - last:g} s in the future of that"
         else:
-            where = f"{float(time)} s is in a gap of that, between stamps of seconds that are no neighbours"
+            where = f"{float(time)} s is in a gap of that, of ten seconds or more"
         hint = f"What is known of the transform {way} is from {first} to {last} s; {where}. Without a time the newest is taken."
         return Unavailable(kind, text, hint, f"The transform {way} is not known at {float(time)} s. {hint}")
 

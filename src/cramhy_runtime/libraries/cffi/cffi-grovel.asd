@@ -1,3 +1,4 @@
 (defsystem "cffi-grovel"
-  :description "Nothing: C is neither asked nor compiled here. See cffi."
-  :depends-on ("cffi"))
+  :description "The names of files that ask the compiler of C, which are passed over. See cffi."
+  :depends-on ("cffi" "cffi-toolchain")
+  :components ((:file "grovel")))

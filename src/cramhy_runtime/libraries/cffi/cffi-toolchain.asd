@@ -1,3 +1,4 @@
 (defsystem "cffi-toolchain"
-  :description "Nothing: C is neither asked nor compiled here. See cffi."
-  :depends-on ("cffi"))
+  :description "The names of the compiler of C, which is not called. See cffi."
+  :depends-on ("cffi")
+  :components ((:file "toolchain")))

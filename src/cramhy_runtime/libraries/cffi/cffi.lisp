@@ -107,9 +107,15 @@
   (declare (ignore base-type documentation))
   `',name)
 
+(defclass foreign-struct-type () ()
+  (:documentation "The class of the types of structures and unions of C; methods of users are for its subclasses."))
+
 (defmacro defcstruct (name-and-options &body fields)
+  "Define the class of the structure, :CLASS of its options or NAME-TCLASS."
   (declare (ignore fields))
-  `',(if (consp name-and-options) (first name-and-options) name-and-options))
+  (destructuring-bind (name &key class &allow-other-keys) (if (consp name-and-options) name-and-options (list name-and-options))
+    `(progn (defclass ,(or class (intern (format nil "~A-~A" name '#:tclass) (or (symbol-package name) *package*))) (foreign-struct-type) ())
+            ',name)))
 
 (defmacro defcunion (name-and-options &body fields)
   `(defcstruct ,name-and-options ,@fields))
