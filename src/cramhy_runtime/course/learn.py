@@ -23,7 +23,6 @@ from cramhy_runtime.lisp_core.packages import is_symbol, symbol_name
 from cramhy_runtime.lisp_core.python_exceptions import from_python
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.languages.commonlisp.streams import streams
-from cramhy_runtime.languages.commonlisp.tools import user_queries
 from cramhy_runtime.languages.commonlisp.tools.advice import explanation
 from cramhy_runtime.repl import hy_prompt, prompt_words
 from cramhy_runtime.repl.console import Console
@@ -285,11 +284,22 @@ def run(
     while name is not None and not status:
         way = Guide(name, language, progress, style)
         with Image(), contextlib.ExitStack() as closings:
-            user_queries.WIDTH.value = style.width
+            closings.enter_context(_warnings_filled(style.width))
             closings.enter_context(_in_work_folder(way, top))
             status = _go(way, lambda closings=closings, page=way.page: _session_for(page, make_session(closings)), lines)
         name = way.leaves_for
     return status
+
+
+@contextlib.contextmanager
+def _warnings_filled(width):
+    """During the block warnings are filled to so many columns."""
+    stream = streams.CONSOLE_OUTPUT
+    before, stream.filled_to = stream.filled_to, width
+    try:
+        yield
+    finally:
+        stream.filled_to = before
 
 
 def _session_for(page, session):

@@ -65,14 +65,15 @@ def misused(stream, what):
 class OutputStream(Stream):
     """A sink of text. Subclasses define ``emit(text)``; ``column`` is where the next character goes.
 
-    ``line_length`` is the width of a line in characters, ``None`` when the stream has no opinion.
+    ``line_length`` is the width of a line in characters, ``None`` when the stream has no opinion. ``filled_to``: the width to which
+    warnings are filled; ``None``: they look as SBCL prints them.
     """
 
     is_output = True
     of_user = False
     """Whether the stream is of a class of a user's, who may want to know what was written how."""
     column = 0
-    line_length = None
+    line_length = filled_to = None
 
     def write(self, text):
         if not text:
