@@ -6,43 +6,61 @@
 (defvar *epsilon* nil "The relative error that is allowed, NIL for twice that of the floats compared.")
 (defvar *significant-figures* 4 "How many figures SIGFIG-EQUAL compares.")
 
-(defun float-epsilon (value)
-  "The relative error of rounding in the floats of VALUE, a number or a sequence; zero when all is exact."
-  (etypecase value
-    (rational 0)
-    ((or double-float (complex double-float)) (* 2d0 double-float-epsilon))
-    ((or float (complex float)) (* 2.0 single-float-epsilon))
-    (complex 0)
-    (array (loop for index below (array-total-size value) maximize (float-epsilon (row-major-aref value index))))
-    (sequence (reduce #'max (map 'list #'float-epsilon value) :initial-value 0))))
+(defgeneric default-epsilon (value)
+  (:documentation "The relative error of rounding in VALUE, a float, or in the floats of a sequence or an array.")
+  (:method ((value double-float)) (* 2d0 double-float-epsilon))
+  (:method ((value float)) (* 2.0 single-float-epsilon))
+  (:method ((value complex)) (rounding (realpart value)))
+  (:method ((value list)) (reduce #'max (mapcar #'rounding value) :initial-value 0))
+  (:method ((value array)) (default-epsilon (elements value))))
 
-(defun default-epsilon (value1 value2)
-  "The relative error that is allowed between VALUE1 and VALUE2: that of the less exact one."
-  (let ((epsilon1 (float-epsilon value1)) (epsilon2 (float-epsilon value2)))
-    (max epsilon1 epsilon2)))
+(defun rounding (value)
+  "As DEFAULT-EPSILON, and zero for what is exact."
+  (if (rationalp value) 0 (default-epsilon value)))
 
-(defun relative-error (exact approximate)
-  "How far APPROXIMATE is from EXACT, in parts of EXACT."
-  (abs (/ (- exact approximate) exact)))
+(defgeneric relative-error (exact approximate)
+  (:documentation "How far APPROXIMATE is from EXACT, in parts of EXACT.")
+  (:method ((exact number) (approximate number))
+    (check-type exact (or float complex))
+    (check-type approximate (or float complex))
+    (abs (/ (- exact approximate) exact))))
 
 (defun close-p (value1 value2 distance size1 size2 epsilon)
   "Whether DISTANCE is within EPSILON of the mean size; when both are that small they are equal too."
-  (let ((epsilon (or epsilon *epsilon* (default-epsilon value1 value2))))
+  (let ((epsilon (or epsilon *epsilon* (max (rounding value1) (rounding value2)))))
     (or (zerop distance)
         (and (< size1 epsilon) (< size2 epsilon))
         (< (/ (* 2 distance) (+ size1 size2)) epsilon))))
 
-(defun float-equal (data1 data2 &optional (epsilon *epsilon*))
-  "Whether the numbers are equal within the relative error EPSILON."
-  (close-p data1 data2 (abs (- data1 data2)) (abs data1) (abs data2) epsilon))
+(defun every-pair-p (test data1 data2)
+  "Whether two sequences of one length, or two arrays of the same dimensions, hold numbers that are equal under TEST, pair by pair."
+  (if (or (typep data1 'sequence) (typep data2 'sequence))
+      (and (= (length data1) (length data2)) (every test data1 data2))
+      (and (equal (array-dimensions data1) (array-dimensions data2)) (every test (elements data1) (elements data2)))))
 
-(defun norm (data &optional (measure *measure*))
-  "The size of a sequence or array of numbers: the sum of their sizes (1), its length in space (2), or the greatest (:INFINITY)."
-  (let ((sizes (mapcar #'abs (elements data))))
-    (ecase measure
-      (1 (reduce #'+ sizes))
-      (2 (sqrt (reduce #'+ (mapcar (lambda (size) (* size size)) sizes))))
-      (:infinity (reduce #'max sizes)))))
+(defgeneric float-equal (data1 data2 &optional epsilon)
+  (:documentation "Whether the numbers, or those of two sequences or arrays, are equal within the relative error EPSILON.")
+  (:method ((data1 number) (data2 number) &optional (epsilon *epsilon*))
+    (if (and (rationalp (realpart data1)) (rationalp (realpart data2)))
+        (error "FLOAT-EQUAL compares floats, and neither ~S nor ~S is one. Use = or NUMBER-EQUAL." data1 data2)
+        (close-p data1 data2 (abs (- data1 data2)) (abs data1) (abs data2) epsilon)))
+  (:method ((data1 sequence) (data2 sequence) &optional (epsilon *epsilon*))
+    (every-pair-p (lambda (a b) (float-equal a b epsilon)) data1 data2))
+  (:method ((data1 array) (data2 array) &optional (epsilon *epsilon*))
+    (every-pair-p (lambda (a b) (float-equal a b epsilon)) data1 data2)))
+
+(defgeneric norm (data &optional measure)
+  (:documentation "The size of a sequence or array of numbers: for MEASURE 1 the sum of their sizes, for 2 the length in space, for a greater
+number the root of the sum of their powers, for :INFINITY the greatest.")
+  (:method ((data sequence) &optional (measure *measure*))
+    (let ((sizes (map 'list #'abs data)))
+      (case measure
+        (1 (reduce #'+ sizes))
+        (2 (sqrt (reduce #'+ (mapcar (lambda (size) (* size size)) sizes))))
+        (:infinity (reduce #'max sizes))
+        (t (check-type measure (integer 1))
+         (expt (reduce #'+ (mapcar (lambda (size) (expt size measure)) sizes)) (/ measure))))))
+  (:method ((data array) &optional (measure *measure*)) (norm (elements data) measure)))
 
 (defun elements (data)
   "The numbers of a sequence or array, as a list."
@@ -50,16 +68,18 @@
       (loop for index below (array-total-size data) collect (row-major-aref data index))
       (coerce data 'list)))
 
-(defun relative-error-norm (exact approximate &optional (measure *measure*))
-  "The size of the difference in parts of the size of EXACT."
-  (/ (norm (mapcar #'- (elements exact) (elements approximate)) measure) (norm exact measure)))
+(defgeneric relative-error-norm (exact approximate &optional measure)
+  (:documentation "The size of the difference in parts of the size of EXACT.")
+  (:method (exact approximate &optional (measure *measure*))
+    (/ (norm (mapcar #'- (elements exact) (elements approximate)) measure) (norm exact measure))))
 
-(defun norm-equal (data1 data2 &optional (epsilon *epsilon*) (measure *measure*))
-  "Whether two sequences or arrays of numbers are equal within the relative error EPSILON of their sizes."
-  (let ((list1 (elements data1)) (list2 (elements data2)))
-    (and (= (length list1) (length list2))
-         (or (null list1)
-             (close-p data1 data2 (norm (mapcar #'- list1 list2) measure) (norm list1 measure) (norm list2 measure) epsilon)))))
+(defgeneric norm-equal (data1 data2 &optional epsilon measure)
+  (:documentation "Whether two sequences or arrays of numbers are equal within the relative error EPSILON of their sizes.")
+  (:method (data1 data2 &optional (epsilon *epsilon*) (measure *measure*))
+    (let ((list1 (elements data1)) (list2 (elements data2)))
+      (and (= (length list1) (length list2))
+           (or (null list1)
+               (close-p data1 data2 (norm (mapcar #'- list1 list2) measure) (norm list1 measure) (norm list2 measure) epsilon))))))
 
 (defun figures (number count)
   "NUMBER as an integer of COUNT significant figures and the power of ten that it is to be multiplied with."
@@ -72,9 +92,14 @@
                           finally (return power))))
         (values (round number (expt 10 power)) power))))
 
-(defun sigfig-equal (data1 data2 &optional (figures *significant-figures*))
-  "Whether the numbers are the same when rounded to so many significant FIGURES."
-  (equal (multiple-value-list (figures data1 figures)) (multiple-value-list (figures data2 figures))))
+(defgeneric sigfig-equal (data1 data2 &optional significant-figures)
+  (:documentation "Whether the numbers, or those of two sequences or arrays, are the same when rounded to so many significant figures.")
+  (:method ((data1 number) (data2 number) &optional (figures *significant-figures*))
+    (equal (multiple-value-list (figures data1 figures)) (multiple-value-list (figures data2 figures))))
+  (:method ((data1 sequence) (data2 sequence) &optional (figures *significant-figures*))
+    (every-pair-p (lambda (a b) (sigfig-equal a b figures)) data1 data2))
+  (:method ((data1 array) (data2 array) &optional (figures *significant-figures*))
+    (every-pair-p (lambda (a b) (sigfig-equal a b figures)) data1 data2)))
 
 (defun number-equal (number1 number2 &optional (epsilon *epsilon*) type-eq-p)
   "Whether the numbers are equal, within EPSILON if one is a float; with TYPE-EQ-P only if they are of one type."
@@ -83,16 +108,13 @@
            (float-equal number1 number2 epsilon)
            (= number1 number2))))
 
-(defun numerical-equal (result1 result2 &key (test #'number-equal))
-  "Whether two numbers, or sequences or arrays of them to any depth, are equal under TEST."
-  (cond ((and (numberp result1) (numberp result2)) (funcall test result1 result2))
-        ((and (typep result1 'sequence) (typep result2 'sequence))
-         (and (= (length result1) (length result2))
-              (every (lambda (a b) (numerical-equal a b :test test)) result1 result2)))
-        ((and (arrayp result1) (arrayp result2))
-         (and (equal (array-dimensions result1) (array-dimensions result2))
-              (every (lambda (a b) (numerical-equal a b :test test)) (elements result1) (elements result2))))
-        (t nil)))
+(defgeneric numerical-equal (result1 result2 &key test)
+  (:documentation "Whether two numbers, or sequences or arrays of them to any depth, are equal under TEST.")
+  (:method ((result1 number) (result2 number) &key (test #'number-equal)) (funcall test result1 result2))
+  (:method ((result1 sequence) (result2 sequence) &key (test #'number-equal))
+    (every-pair-p (lambda (a b) (numerical-equal a b :test test)) result1 result2))
+  (:method ((result1 array) (result2 array) &key (test #'number-equal))
+    (every-pair-p (lambda (a b) (numerical-equal a b :test test)) result1 result2)))
 
 (defun rational-equal (data1 data2)
   "Whether two exact numbers, or sequences of them, are equal."
