@@ -45,7 +45,7 @@ def told_of(session, **table):
 
 SQUARE = {"way": "repeat 4 [ forward 1 left 90 ]"}
 AGAIN = "The lines of the drawing are right, but 1.0 m of them were drawn more than once."
-OTHER = "The lines of the drawing are right, but the turtle drew them in another order, or the other way round."
+OTHER = "The lines of the drawing are right, but the order matters: the turtle drew them in another one, or the other way round."
 COLOUR = "The lines of the drawing are right, but 1.1 m of them have another colour than they should, near x 4.0, y 4.0."
 MISSING = "2.0 m of the drawing are missing, the first near x 4.0, y 4.0."
 MUCH = "1.1 m of the drawing should not be there, the first near x 4.0, y 4.0."

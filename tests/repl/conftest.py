@@ -45,6 +45,7 @@ def type_in(capsys):
             return made
 
         errors = streams.ERROR_OUTPUT.value
+        streams.CONSOLE_OUTPUT.column = 0  # another file's tests may have left it within a line
         try:
             type_in.status = Console(session, Script(text)).run()
         finally:

@@ -476,7 +476,7 @@ def converse(session, lines, text="", begun=lambda repl: None):
     repl = _repl_of(session, functools.partial(HyPrompt, lines=lines), banner="")
     begun(repl)
     if text:
-        repl.lisp._answer_in_hy(text)
+        _answer_in_hy(repl, text)
     repl.run()
 
 
