@@ -210,8 +210,20 @@ def test_progress_is_kept_and_the_next_run_goes_on_there(typed, tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("first", "chosen", "shown"), [("hy", None, "hy"), ("lisp", None, "lisp"), ("hy", "lisp", "lisp"), (None, None, "lisp")]
+)
+def test_who_comes_back_learns_in_the_language_of_the_last_time(typed, tmp_path, first, chosen, shown):
+    path = str(tmp_path / "learn.json")
+    if first:
+        typed([":quit"], None, first, Progress(path))
+    typed([TASK[shown], ":quit"], None, chosen, Progress(path))
+    assert Progress(path).language == shown
+    assert list(Progress(path).typed)[-1].endswith(f" {shown}")
+
+
+@pytest.mark.parametrize(
     "content",
-    ["", "{", "[]", "null", '{"page": 3}', json.dumps({"page": "x", "steps": {"x": -1}, "solved": []}), '{"page": "a", "steps": {}, "solved": [], "typed": {"a": 7}}', '{"page": "a", "steps": [], "solved": 0}', "\0" * 100],
+    ["", "{", "[]", "null", '{"page": 3}', json.dumps({"page": "x", "steps": {"x": -1}, "solved": []}), '{"page": "a", "steps": {}, "solved": [], "typed": {"a": 7}}', '{"page": "a", "steps": [], "solved": 0}', '{"page": "a", "steps": {}, "solved": [], "language": "C"}', "\0" * 100],
 )  # fmt: skip
 def test_a_file_of_progress_that_is_broken_is_no_progress(tmp_path, content, typed):
     path = tmp_path / "learn.json"

@@ -232,7 +232,10 @@ def _add_learn(commands):
     learn = _session(commands, "learn", "the course, step by step at the prompt", _opening_options("on a desktop it opens with the turtle"))
     learn.add_argument("page", nargs="?", default=None, metavar="PAGE", help="a page by its number or name (the one that was left last)")
     learn.add_argument(
-        "--language", choices=["lisp", "hy"], default="lisp", help="the language to learn in: Common Lisp, or plain Hy (lisp)"
+        "--language",
+        choices=["lisp", "hy"],
+        default=None,
+        help="the language to learn in: Common Lisp, or plain Hy (that of the last time; first lisp)",
     )
     learn.add_argument("--folder", default=None, metavar="FOLDER", help="where the files of the lectures go (cramhy-course)")
 

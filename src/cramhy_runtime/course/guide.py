@@ -157,7 +157,7 @@ class Guide:
         self._waiting = list(getattr(part, self.language)) if isinstance(part, Code) else []
         self._read = self._cue = None
         self._checked = self._begins_anew = False
-        self.progress.page = self.page.name
+        self.progress.page, self.progress.language = self.page.name, self.language
         self.progress.steps[self.page.name] = self.place
         self.progress.keep()
 

@@ -263,7 +263,7 @@ def _failure(error: Any) -> Failure:
 
 def run(
     make_session: Callable[[contextlib.ExitStack], Session],
-    language: str = "lisp",
+    language: str | None = None,
     page: str | None = None,
     top: Path | None = None,
     progress: Progress | None = None,
@@ -272,12 +272,13 @@ def run(
 ) -> int:
     """Go through the course from a page on, until the student leaves. Returns the exit status.
 
-    make_session: makes the session of a page; it gets a stack that is closed when the page is left. language: "lisp" or "hy". page: the
-    name of the first page, ``None``: the one that was shown last. top: the folder for files of the student. progress, style: by default
-    those of the user and of the terminal. lines: where lines come from, by default from standard input. Raises `PageError` if there is no
-    such page, or if the folder cannot be used.
+    make_session: makes the session of a page; it gets a stack that is closed when the page is left. language: "lisp" or "hy"; ``None``:
+    that of the last time, at first Lisp. page: the name of the first page, ``None``: the one that was shown last. top: the folder for
+    files of the student. progress, style: by default those of the user and of the terminal. lines: where lines come from, by default from
+    standard input. Raises `PageError` if there is no such page, or if the folder cannot be used.
     """
     progress, style = progress or Progress.kept(), style or Style.of_terminal()
+    language = language or progress.language or "lisp"
     name = page or (progress.page if progress.page in contents.NAMES else None) or contents.NAMES[0]
     top = (top or Path(FOLDER)).absolute()
     status = 0
