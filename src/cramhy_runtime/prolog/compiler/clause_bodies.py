@@ -11,6 +11,7 @@ The rules of cut are those of ``builtins/control.py``, which interprets the goal
 from __future__ import annotations
 
 from collections import namedtuple
+from functools import partial
 
 from cramhy_runtime.lisp_core.data import Cons, list_from
 from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
@@ -18,7 +19,6 @@ from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
 from ..builtins import control
 from ..engine.database import arguments_of, find_predicate, in_place, looked_up, valid_functor
 from ..engine.machine import FAIL
-from .head_matching import Matching
 from .generated_code import is_ground, proper, variables
 from .variants import variant_of_call
 from ..symbols import sym
@@ -118,15 +118,17 @@ def may_cut(goal):
     return goal.car is CUT or (goal.car in (AND, IF, SOFT_IF) and any(map(may_cut, arguments)))
 
 
-class Bodies(Matching):
-    """Code for bodies of clauses.
+class Bodies:
+    """Writes code for bodies of clauses into ``out``, a `Source`. terms: what writes their terms. predicate: whose clauses they are.
 
     ``keep_variables`` says that every variable must be a `Var`, since goals of the clause change variables that are set.
     """
 
     keep_variables = False
     enumerating = False  # whether a generator is written, which yields at a solution
-    predicate = None
+
+    def __init__(self, out, terms, predicate):
+        self.out, self.terms, self.predicate = out, terms, predicate
 
     def body(self, goals, names, context):
         """Emit code for ``goals``, a list. The code leaves the function, or repeats the predicate."""
@@ -135,7 +137,7 @@ class Bodies(Matching):
             goal, goals = goals[0], goals[1:]
             arguments = known_goal(goal, CONSTRUCTS)
             if goal.__class__ is Cons and goal.car is CUT and arguments is not None:
-                self.emit(f"del m.choices[{context.b}:]")
+                self.out.emit(f"del m.choices[{context.b}:]")
             elif is_test(goal):
                 self.test(goal, names)
                 if goal.car is FALSE:
@@ -143,17 +145,17 @@ class Bodies(Matching):
             elif goal.__class__ is Cons and goal.car is CALL and arguments is not None and direct(arguments[0]):
                 goals.insert(0, arguments[0])
             elif arguments is not None:
-                getattr(self, _METHODS[goal.car])(arguments, goals, names, context)
+                _WRITERS[goal.car](self, arguments, goals, names, context)
                 return
             else:
                 self._call(goal, goals, names, context)
                 return
         if self.enumerating:
-            self.emit("m.choices.pop()")
-            self.emit("yield")
-            self.emit("return")
+            self.out.emit("m.choices.pop()")
+            self.out.emit("yield")
+            self.out.emit("return")
         else:
-            self.emit(f"return {context.k}")
+            self.out.emit(f"return {context.k}")
 
     # ------------------------------------------------------------------------------------------------------------------ tests
 
@@ -163,7 +165,7 @@ class Bodies(Matching):
         if functor is TRUE:
             return
         if functor is FALSE:
-            self.emit(self.failing)
+            self.out.emit(self.out.failing)
         elif functor in (AND, ONCE):
             for part in arguments:
                 self.test(part, names)
@@ -179,78 +181,78 @@ class Bodies(Matching):
             given = "".join(self._argument(argument, names) + ", " for argument in arguments[1:-1])
             result = arguments[-1] if len(arguments) > 1 else None
             if variable(result) and result is not ANONYMOUS and result not in names and not self.keep_variables:
-                name = names[result] = self.fresh("v")
-                self.emit(f"{name} = lisp_value(m, {function}, ({given}))")
-                self.emit(f"if {name} is NotImplemented: {self.failing}")
+                name = names[result] = self.out.fresh("v")
+                self.out.emit(f"{name} = lisp_value(m, {function}, ({given}))")
+                self.out.emit(f"if {name} is NotImplemented: {self.out.failing}")
             else:
-                self.fail_unless(f"lisp_fun(m, {function}, ({given}), {self.build(result, names)})")
+                self.terms.fail_unless(f"lisp_fun(m, {function}, ({given}), {self.terms.build(result, names)})")
         elif functor is LISP_PRED:
             given = "".join(self._argument(argument, names) + ", " for argument in arguments[1:])
-            self.fail_unless(f"lisp_pred(m, {self.constant(arguments[0])}, ({given}))")
+            self.terms.fail_unless(f"lisp_pred(m, {self.out.constant(arguments[0])}, ({given}))")
         elif functor is BOUND:
-            self.fail_unless(f"deref({self.build(arguments[0], names)}).__class__ is not Var")
+            self.terms.fail_unless(f"deref({self.terms.build(arguments[0], names)}).__class__ is not Var")
         else:
-            self.fail_unless(f"ground({self.build(arguments[0], names)})")
+            self.terms.fail_unless(f"ground({self.terms.build(arguments[0], names)})")
 
     def _compare(self, functor, left, right):
-        x, y = self.fresh("x"), self.fresh("y")
-        self.emit(f"{x} = {left}; {y} = {right}")
-        self.emit(f"if {x}.__class__ is int and {y}.__class__ is int:")
-        self.emit(f"    if not {x} {functor.name} {y}: {self.failing}")
-        self.emit(f"elif not compare(m, {self.constant(functor)}, {x}, {y}): {self.failing}")
+        x, y = self.out.fresh("x"), self.out.fresh("y")
+        self.out.emit(f"{x} = {left}; {y} = {right}")
+        self.out.emit(f"if {x}.__class__ is int and {y}.__class__ is int:")
+        self.out.emit(f"    if not {x} {functor.name} {y}: {self.out.failing}")
+        self.out.emit(f"elif not compare(m, {self.out.constant(functor)}, {x}, {y}): {self.out.failing}")
 
     def _unify(self, left, right, names):
         for side, other in ((left, right), (right, left)):
             if variable(side) and side is not ANONYMOUS and side not in names and not self.keep_variables and side not in variables(other):
-                names[side] = self.fresh("v")
-                self.emit(f"{names[side]} = {self.build(other, names)}")
+                names[side] = self.out.fresh("v")
+                self.out.emit(f"{names[side]} = {self.terms.build(other, names)}")
                 return
-        self.fail_unless(f"unify({self.build(left, names)}, {self.build(right, names)}, trail)")
+        self.terms.fail_unless(f"unify({self.terms.build(left, names)}, {self.terms.build(right, names)}, trail)")
 
     def _not_test(self, goal, names):
-        height = self.fresh("t")
+        height = self.out.fresh("t")
         names = dict(names)
         if not is_ground(goal):
-            self.emit(f"{height} = len(trail)")
+            self.out.emit(f"{height} = len(trail)")
         self._tests([goal], names)
-        self.emit("else:")
-        self.depth += 1
+        self.out.emit("else:")
+        self.out.depth += 1
         if not is_ground(goal):
-            self.emit(f"undo(trail, {height})")
-        self.emit(self.failing)
-        self.depth -= 1
+            self.out.emit(f"undo(trail, {height})")
+        self.out.emit(self.out.failing)
+        self.out.depth -= 1
         if not is_ground(goal):
-            self.emit(f"undo(trail, {height})")
+            self.out.emit(f"undo(trail, {height})")
 
     def _tests(self, goals, names):
         """Emit a loop of one turn around tests. It breaks when a test fails, and an ``else`` may follow it."""
-        self.emit("for _ in ONCE:")
-        self.depth += 1
-        outer, self.failing = self.failing, "break"
-        count = len(self.lines)
+        self.out.emit("for _ in ONCE:")
+        self.out.depth += 1
+        outer, self.out.failing = self.out.failing, "break"
+        count = len(self.out.lines)
         for goal in goals:
             self.test(goal, names)
-        if len(self.lines) == count:
-            self.emit("pass")
-        self.failing = outer
-        self.depth -= 1
+        if len(self.out.lines) == count:
+            self.out.emit("pass")
+        self.out.failing = outer
+        self.out.depth -= 1
 
     def _argument(self, pattern, names):
         """An expression for the argument of a Lisp function for ``pattern``: a variable's value; lists as they are written."""
         if variable(pattern):
-            return f"resolve_argument(m, {self.build(pattern, names)})"
+            return f"resolve_argument(m, {self.terms.build(pattern, names)})"
         if not isinstance(pattern, Cons) or is_ground(pattern):
-            return self.constant(pattern)
+            return self.out.constant(pattern)
         return f"raw_argument(m, {self._as_written(pattern, names)})"
 
     def _as_written(self, pattern, names):
         """An expression for a list in which the variables are variables, even where their values are known."""
-        self.first_occurrences(pattern, names)
+        self.terms.first_occurrences(pattern, names)
         boxes = {}
         for name in variables(pattern):
-            boxes[name] = self.fresh("v")
-            self.emit(f"{boxes[name]} = as_variable({names[name]})")
-        return self.build(pattern, boxes)
+            boxes[name] = self.out.fresh("v")
+            self.out.emit(f"{boxes[name]} = as_variable({names[name]})")
+        return self.terms.build(pattern, boxes)
 
     # ------------------------------------------------------------------------------------------------------------------ calls
 
@@ -260,27 +262,28 @@ class Bodies(Matching):
             if not self.keep_variables:
                 variant, arguments = variant_of_call(goal, names, variables(list_from(goals)))
                 if variant is not None:
-                    given = [self.build(argument, names) for argument in arguments]
+                    given = [self.terms.build(argument, names) for argument in arguments]
                     rest = self.continuation(goals, names, context)
-                    self.emit(f"return {self.constant(variant)}.call, {rest}{''.join(', ' + item for item in given)}")
+                    self.out.emit(f"return {self.out.constant(variant)}.call, {rest}{''.join(', ' + item for item in given)}")
                     return
-            build = self._as_written if functor in (LISP_FUN, LISP_PRED) else self.build
+            build = self._as_written if functor in (LISP_FUN, LISP_PRED) else self.terms.build
             given = [build(argument, names) for argument in goal.cdr or ()]
             predicate = self.predicate
             if not goals and context.repeat and functor is predicate.functor and len(given) == predicate.arity:
-                self.assign_arguments(given)
-                self.emit(context.repeat)
+                self.out.assign_arguments(given)
+                self.out.emit(context.repeat)
                 return
-            callee = self.constant(self.predicate_of(functor, len(given)))
+            callee = self.out.constant(self.predicate_of(functor, len(given)))
             rest = self.continuation(goals, names, context)
-            self.emit(f"return {callee}.call, {rest}{''.join(', ' + item for item in given)}")
+            self.out.emit(f"return {callee}.call, {rest}{''.join(', ' + item for item in given)}")
             return
-        term = self.build(goal, names)
+        term = self.terms.build(goal, names)
         rest = self.continuation(goals, names, context)
         if functor in control.CONTROL:
-            self.emit(f"return {self.constant(control.in_clause(functor))}(m, ({term}).cdr, {rest}, {context.b if may_cut(goal) else 0})")
+            barrier = context.b if may_cut(goal) else 0
+            self.out.emit(f"return {self.out.constant(control.in_clause(functor))}(m, ({term}).cdr, {rest}, {barrier})")
         else:
-            self.emit(f"return {self.constant(control.solve)}(m, {term}, {rest}, {context.b})")
+            self.out.emit(f"return {self.out.constant(control.solve)}(m, {term}, {rest}, {context.b})")
 
     def predicate_of(self, functor, arity):
         """The `Predicate` for a call. The code that is being written may be that of a variant, which calls itself."""
@@ -305,18 +308,18 @@ class Bodies(Matching):
         held = dict(held)
         if any(map(may_cut, goals)):
             held["b"] = context.b
-        function = self.fresh(kind)
+        function = self.out.fresh(kind)
 
         def body():
-            self.emit(f"{', '.join(['_', 'k', *held, *(f'w{i}' for i in range(len(live)))])} = step")
+            self.out.emit(f"{', '.join(['_', 'k', *held, *(f'w{i}' for i in range(len(live)))])} = step")
             for line in opening:
-                self.emit(line)
-            self.emit("trail = m.trail")
-            outer, self.failing = self.failing, "return fail(m)"
+                self.out.emit(line)
+            self.out.emit("trail = m.trail")
+            outer, self.out.failing = self.out.failing, "return fail(m)"
             self.body(goals, {name: f"w{i}" for i, name in enumerate(live)}, context._replace(k="k", b="b"))
-            self.failing = outer
+            self.out.failing = outer
 
-        self.define(function, "m, step", body)
+        self.out.define(function, "m, step", body)
         return f"({', '.join([function, k, *held.values(), *(names[name] for name in live)])})"
 
     # ------------------------------------------------------------------------------------------------- constructs of control
@@ -326,51 +329,51 @@ class Bodies(Matching):
         seen = variables(list_from(goals))
         for part in parts:
             inside = variables(part)
-            self.first_occurrences(list_from([name for name in inside if name in seen]), names)
+            self.terms.first_occurrences(list_from([name for name in inside if name in seen]), names)
             seen = {**seen, **inside}
 
     def _rest(self, goals, names, context):
         """A Python variable with the continuation after a construct."""
         if not goals:
             return context.k
-        k = self.fresh("k")
-        self.emit(f"{k} = {self.continuation(goals, names, context)}")
+        k = self.out.fresh("k")
+        self.out.emit(f"{k} = {self.continuation(goals, names, context)}")
         return k
 
     def _height(self):
-        height = self.fresh("h")
-        self.emit(f"{height} = len(m.choices)")
+        height = self.out.fresh("h")
+        self.out.emit(f"{height} = len(m.choices)")
         return height
 
     def _or(self, branches, goals, names, context):
         self._shared(branches, goals, names)
         k = self._rest(goals, names, context)
         if not branches:
-            self.emit(self.failing)
+            self.out.emit(self.out.failing)
             return
         local = self._height()
         if len(branches) > 1:
-            self.emit(f"m.choices.append({self._other_branches(branches[1:], names, k)})")
+            self.out.emit(f"m.choices.append({self._other_branches(branches[1:], names, k)})")
         self.body(branches[:1], dict(names), Context(k, local, context.repeat if k == context.k else None))
 
     def _other_branches(self, branches, names, k):
         """An expression for the choice point of the later branches of an ``or``, which share their variables."""
         live = [name for name in variables(list_from(branches)) if name in names]
-        function = self.fresh("or_")
+        function = self.out.fresh("or_")
 
         def body():
-            self.emit(f"{', '.join(['_', 'k', 'height', *(f'w{i}' for i in range(len(live)))])} = step")
-            self.emit("trail = m.trail")
+            self.out.emit(f"{', '.join(['_', 'k', 'height', *(f'w{i}' for i in range(len(live)))])} = step")
+            self.out.emit("trail = m.trail")
             here = {name: f"w{i}" for i, name in enumerate(live)}
-            self.emit("m.choices.pop()")
-            self.emit("b = len(m.choices)")
+            self.out.emit("m.choices.pop()")
+            self.out.emit("b = len(m.choices)")
             if len(branches) > 1:
-                self.emit(f"m.choices.append({self._other_branches(branches[1:], here, 'k')})")
-            outer, self.failing = self.failing, "return fail(m)"
+                self.out.emit(f"m.choices.append({self._other_branches(branches[1:], here, 'k')})")
+            outer, self.out.failing = self.out.failing, "return fail(m)"
             self.body(branches[:1], here, Context())
-            self.failing = outer
+            self.out.failing = outer
 
-        self.define(function, "m, step", body)
+        self.out.define(function, "m, step", body)
         return f"({', '.join([function, k, 'len(trail)', *(names[name] for name in live)])})"
 
     def _if(self, arguments, goals, names, context, soft=False):
@@ -379,24 +382,24 @@ class Bodies(Matching):
         k = self._rest(goals, names, context)
         inner = Context(k, context.b, context.repeat if k == context.k else None)
         if is_test(condition):
-            height = self.fresh("t")
-            self.emit(f"{height} = len(trail)")
+            height = self.out.fresh("t")
+            self.out.emit(f"{height} = len(trail)")
             inside = dict(names)
             self._tests([condition], inside)
-            self.emit("else:")
-            self.depth += 1
+            self.out.emit("else:")
+            self.out.depth += 1
             self.body([then], inside, inner)
-            self.depth -= 1
-            self.emit(f"undo(trail, {height})")
+            self.out.depth -= 1
+            self.out.emit(f"undo(trail, {height})")
             self.body([otherwise], dict(names), inner)
             return
-        self.first_occurrences(list_from([name for name in variables(condition) if name in variables(then)]), names)
+        self.terms.first_occurrences(list_from([name for name in variables(condition) if name in variables(then)]), names)
         h = self._height()
         alone = inner._replace(repeat=None)
-        self.emit(f"m.choices.append({self.branch('else_', [otherwise], names, alone, k, {'_': 'len(trail)'}, ['m.choices.pop()'])})")
-        inside = self.fresh("k")
+        self.out.emit(f"m.choices.append({self.branch('else_', [otherwise], names, alone, k, {'_': 'len(trail)'}, ['m.choices.pop()'])})")
+        inside = self.out.fresh("k")
         opening = ["settle(m, h)" if soft else "del m.choices[h:]"]
-        self.emit(f"{inside} = {self.branch('then_', [then], names, alone, k, {'h': h}, opening)}")
+        self.out.emit(f"{inside} = {self.branch('then_', [then], names, alone, k, {'h': h}, opening)}")
         self.body([condition], names, Context(inside, f"{h} + 1"))
 
     def _soft_if(self, arguments, goals, names, context):
@@ -409,8 +412,8 @@ class Bodies(Matching):
         self._shared(arguments, goals, names)
         k = self._rest(goals, names, context)
         h = self._height()
-        self.emit(f"m.choices.append((proceed, {k}, len(trail)))")
-        self.body(arguments, dict(names), Context(f"({self.constant(control.refute)}, {k}, {h})", f"{h} + 1"))
+        self.out.emit(f"m.choices.append((proceed, {k}, len(trail)))")
+        self.body(arguments, dict(names), Context(f"({self.out.constant(control.refute)}, {k}, {h})", f"{h} + 1"))
 
     def _forall(self, arguments, goals, names, context):
         condition, action = arguments
@@ -426,7 +429,7 @@ class Bodies(Matching):
         self._shared(arguments, goals, names)
         k = self._rest(goals, names, context)
         h = self._height()
-        self.body(arguments, names, Context(f"({self.constant(control.commit)}, {k}, {h})", h))
+        self.body(arguments, names, Context(f"({self.out.constant(control.commit)}, {k}, {h})", h))
 
     def _call_construct(self, arguments, goals, names, context):
         goal = arguments[0]
@@ -439,65 +442,52 @@ class Bodies(Matching):
 
     # -------------------------------------------------------------------------------------------------------------- collections
 
-    def collection(self, kind):
-        """The method for ``findall``, ``bagof`` or ``setof``: the goal becomes a function, which a machine of its own proves."""
+    def _collect(self, arguments, goals, names, context, kind):
+        """``findall``, ``bagof`` or ``setof``: the goal becomes a function, which a machine of its own proves."""
+        template, goal, result = arguments
+        self.terms.first_occurrences(list_from([template, goal]), names)  # what a solution leaves unset is the same in all instances
+        live = list(variables(list_from([template, goal])))
+        function = self.out.fresh("all_")
 
-        def collect(arguments, goals, names, context):
-            template, goal, result = arguments
-            self.first_occurrences(list_from([template, goal]), names)  # what a solution leaves unset is the same in all instances
-            live = list(variables(list_from([template, goal])))
-            function = self.fresh("all_")
+        def body():
+            self.out.emit(f"{', '.join(['_', 'k', 'template', *(f'w{i}' for i in range(len(live)))])} = step")
+            self.out.emit("trail = m.trail")
+            self.out.emit("b = 0")
+            inner = [goal]
+            here = {name: f"w{i}" for i, name in enumerate(live)}
+            if template not in live:
+                here[_TEMPLATE] = "template"
+                inner.append(list_from([UNIFIES, _TEMPLATE, template]))
+            outer, self.out.failing = self.out.failing, "return fail(m)"
+            self.body(inner, here, Context())
+            self.out.failing = outer
 
-            def body():
-                self.emit(f"{', '.join(['_', 'k', 'template', *(f'w{i}' for i in range(len(live)))])} = step")
-                self.emit("trail = m.trail")
-                self.emit("b = 0")
-                inner = [goal]
-                here = {name: f"w{i}" for i, name in enumerate(live)}
-                if template not in live:
-                    here[_TEMPLATE] = "template"
-                    inner.append(list_from([UNIFIES, _TEMPLATE, template]))
-                outer, self.failing = self.failing, "return fail(m)"
-                self.body(inner, here, Context())
-                self.failing = outer
-
-            self.define(function, "m, step", body)
-            found = self.fresh("f")
-            held = "".join(names[name] + ", " for name in live)
-            self.emit(
-                f"{found} = {self.constant(getattr(control, kind))}(m, {function}, ({held}), "
-                f"{live.index(template) if template in live else None})"
-            )
-            if kind != "findall":
-                self.emit(f"if {found} is None: {self.failing}")
-            if variable(result) and result is not ANONYMOUS and result not in names and not self.keep_variables:
-                names[result] = found
-            else:
-                self.fail_unless(f"unify({self.build(result, names)}, {found}, trail)")
-            self.body(goals, names, context)
-
-        return collect
-
-    def _findall(self, *arguments):
-        self.collection("findall")(*arguments)
-
-    def _bagof(self, *arguments):
-        self.collection("bagof")(*arguments)
-
-    def _setof(self, *arguments):
-        self.collection("setof")(*arguments)
+        self.out.define(function, "m, step", body)
+        found = self.out.fresh("f")
+        held = "".join(names[name] + ", " for name in live)
+        self.out.emit(
+            f"{found} = {self.out.constant(getattr(control, kind))}(m, {function}, ({held}), "
+            f"{live.index(template) if template in live else None})"
+        )
+        if kind != "findall":
+            self.out.emit(f"if {found} is None: {self.out.failing}")
+        if variable(result) and result is not ANONYMOUS and result not in names and not self.keep_variables:
+            names[result] = found
+        else:
+            self.terms.fail_unless(f"unify({self.terms.build(result, names)}, {found}, trail)")
+        self.body(goals, names, context)
 
 
 _TEMPLATE = sym("CRAM-PROLOG::?WHOLE-TEMPLATE")
-_METHODS = {
-    OR: "_or",
-    IF: "_if",
-    SOFT_IF: "_soft_if",
-    NOT: "_not",
-    FORALL: "_forall",
-    ONCE: "_once",
-    CALL: "_call_construct",
-    **{name: "_" + kind for name, kind in COLLECTIONS.items()},
+_WRITERS = {
+    OR: Bodies._or,
+    IF: Bodies._if,
+    SOFT_IF: Bodies._soft_if,
+    NOT: Bodies._not,
+    FORALL: Bodies._forall,
+    ONCE: Bodies._once,
+    CALL: Bodies._call_construct,
+    **{name: partial(Bodies._collect, kind=kind) for name, kind in COLLECTIONS.items()},
 }
 
 __all__ = ["FAIL", "Bodies", "Context", "direct", "flat", "is_test", "may_cut"]

@@ -38,11 +38,11 @@ from .clause_bodies import (
 )
 from .list_building import FILL, Holes, can_wait, hole_positions
 from ..engine.machine import again, fail
-from .head_matching import A_LIST, SAME, UNBOUND
+from .head_matching import A_LIST, SAME, UNBOUND, Matching
 from ..engine.list_shapes import index_key
 from ..engine.relations import relation_of, relation_of_rows
 from ..engine.services import SERVICES
-from .generated_code import Rest, is_ground
+from .generated_code import Rest, Source, is_ground
 from .variants import Variant
 
 LOOP = range(100)
@@ -117,72 +117,78 @@ def _weight(item):
     return count
 
 
-class PredicateCode(Holes, Bodies):
+class PredicateCode:
     """The code of one predicate while it is written. ``fitting`` are pairs (argument patterns, clause)."""
 
     waiting = False  # whether the clause to come may find a hole
     leaving = "return fail(m)"
 
     def __init__(self, predicate, fitting):
-        super().__init__(f"clauses of {predicate.functor!r}/{predicate.arity}")
+        self.out = Source(f"clauses of {predicate.functor!r}/{predicate.arity}")
+        self.terms = Matching(self.out)
+        self.bodies = Bodies(self.out, self.terms, predicate)
         self.predicate, self.fitting = predicate, fitting
         self.arity = predicate.arity
         self.goals = [list(flat(clause.goals)) for _, clause in fitting]
         self.weights = [_weight([clause.head, *(clause.goals or ())]) for _, clause in fitting]
         self.arguments = "".join(f", a{i}" for i in range(self.arity))
         self.looping = predicate.functor not in database.traced and any(map(self._repeats, self.goals))
-        self.repeating = Context(repeat="continue")
         positions = [hole_positions(predicate.functor, patterns, goals) for (patterns, _), goals in zip(fitting, self.goals)]
         telling = self._telling(range(len(fitting)), {})
         self.hole = next((i for i in sum(positions, []) if i != telling), None) if self.looping else None
         self.builders = {n for n, found in enumerate(positions) if self.hole in found}
-        self.space.update(LOOP=LOOP, P=predicate, try_clauses=try_clauses, again=again)
+        self.out.space.update(LOOP=LOOP, P=predicate, try_clauses=try_clauses, again=again)
         self.tries, self.buckets, self.clause_names = {}, {}, {}
 
     def function(self):
         """Write and compile all code. Returns the call function."""
 
         def body():
-            self.emit(f"_, k{self.arguments} = step")
-            self.emit("trail = m.trail")
+            self.out.emit(f"_, k{self.arguments} = step")
+            self.out.emit("trail = m.trail")
             if self.looping:
                 self._loop(lambda: self._dispatch(list(range(len(self.fitting))), {}))
             else:
                 self._dispatch(list(range(len(self.fitting))), {})
 
-        self.define("predicate", "m, step", body)
-        self.make()
+        self.out.define("predicate", "m, step", body)
+        self.out.make()
+        space = self.out.space
+
+        def functions(numbers):
+            return tuple([space[self.clause_names[n]] for n in numbers])
+
         for name, content in self.buckets.values():
             if isinstance(content, dict):
-                self.space[name] = {key: tuple([self.space[self.clause_names[n]] for n in numbers]) for key, numbers in content.items()}
+                space[name] = {key: functions(numbers) for key, numbers in content.items()}
             else:
-                self.space[name] = tuple([self.space[self.clause_names[n]] for n in content])
-        return self.space["predicate"]
+                space[name] = functions(content)
+        return space["predicate"]
 
     def each(self):
         """Write and compile a function for each clause. Returns (clause, function) pairs."""
         for n in range(len(self.fitting)):
             self._clause_function(n)
-        self.make()
-        return [(clause, self.space[self.clause_names[n]]) for n, (_, clause) in enumerate(self.fitting)]
+        self.out.make()
+        return [(clause, self.out.space[self.clause_names[n]]) for n, (_, clause) in enumerate(self.fitting)]
 
     def _loop(self, body):
         if self.hole is not None:
-            self.emit("hole = None")
-            self.emit("while True:")
-            self.depth += 1
-        self.emit("for _ in LOOP:")
-        self.depth += 1
+            self.out.emit("hole = None")
+            self.out.emit("while True:")
+            self.out.depth += 1
+        self.out.emit("for _ in LOOP:")
+        self.out.depth += 1
         body()
-        self.depth -= 1
-        self.emit(f"budget.left -= {len(LOOP)}")  # the machine's next checkpoint knows what was done here
-        self.emit("if not m.choices: trail.clear()")
+        self.out.depth -= 1
+        self.out.emit(f"budget.left -= {len(LOOP)}")  # the machine's next checkpoint knows what was done here
+        self.out.emit("if not m.choices: trail.clear()")
         if self.hole is not None:
-            self.emit("if hole is None or P.call is not predicate: break")  # a list that is being built stays in one piece
-            self.emit("m.rest()")
-            self.depth -= 1
-            self.emit(FILL.format(self.hole))
-        self.emit(f"return P.call, k{self.arguments}")
+            self.out.emit("if hole is None or P.call is not predicate: break")  # a list that is being built stays in one piece
+            self.out.emit("m.rest()")
+            self.out.depth -= 1
+            self.out.emit(FILL.format(self.hole))
+        self.out.emit(f"return P.call, k{self.arguments}")
 
     def _repeats(self, goals):
         """Whether a body may end by calling its own predicate in this function."""
@@ -222,17 +228,17 @@ class PredicateCode(Holes, Bodies):
         """Emit code for calls in which the argument that tells most is not known. A variant is not made for them."""
         if not isinstance(self.predicate, Variant):
             self._dispatch(numbers, known)
-        elif self.enumerating:
-            self.emit(self._going_on())
+        elif self.bodies.enumerating:
+            self.out.emit(self._going_on())
         else:
-            self.emit(f"return P.call_general(m, (None, k{self.arguments}))")
+            self.out.emit(f"return P.call_general(m, (None, k{self.arguments}))")
 
     def _going_on(self):
         """The statements with which a generator lets the predicate go on."""
         return f"yield ({self.arguments[2:]}{',' if self.arity == 1 else ''}); return"
 
     def _call_again(self):
-        self.emit("continue" if self.enumerating else f"return P.call, k{self.arguments}")
+        self.out.emit("continue" if self.bodies.enumerating else f"return P.call, k{self.arguments}")
 
     def _discriminates(self, position):
         """Whether some clauses can match values of an argument that others cannot."""
@@ -244,12 +250,12 @@ class PredicateCode(Holes, Bodies):
             self._candidates(numbers, known)
             return
         a, c = f"a{position}", f"c{position}"
-        self.emit(f"{c} = {a}.__class__")
-        self.emit(f"if {c} is Var:")
-        self.depth += 1
-        self.follow(a)
-        self.emit(f"{c} = {a}.__class__")
-        self.depth -= 1
+        self.out.emit(f"{c} = {a}.__class__")
+        self.out.emit(f"if {c} is Var:")
+        self.out.depth += 1
+        self.terms.follow(a)
+        self.out.emit(f"{c} = {a}.__class__")
+        self.out.depth -= 1
         kinds = {n: self._kind(n, position) for n in numbers}
 
         def fit(*wanted):
@@ -264,9 +270,9 @@ class PredicateCode(Holes, Bodies):
             for key, value in list(keys.items()):
                 chosen = fit(_OTHER, key)
                 test = (
-                    f"{a} is {self.constant(value)}"
+                    f"{a} is {self.out.constant(value)}"
                     if isinstance(value, Symbol) or value is None or value is True
-                    else f"{c} is int and {a} == {self.constant(value)}"
+                    else f"{c} is int and {a} == {self.out.constant(value)}"
                     if value.__class__ is int
                     else None
                 )
@@ -275,49 +281,52 @@ class PredicateCode(Holes, Bodies):
                     del keys[key]
         self._case(
             f"elif {c} is LazyTail or {c} is TermTail:",
-            lambda: (self._fill(outermost), self.emit(f"{a} = {a}.force()"), self._call_again()),
+            lambda: (self._fill(outermost), self.out.emit(f"{a} = {a}.force()"), self._call_again()),
         )
-        self.emit("else:")
-        self.depth += 1
+        self.out.emit("else:")
+        self.out.depth += 1
         self._fill(outermost)
         if keys:
             index = self._bucket({key: fit(_OTHER, key) for key in keys})
             others = self._bucket(fit(_OTHER))
-            self.emit(f"found = {index}.get({a} if {c} is Symbol else index_key({a}), {others})")
-            self.emit(f"return try_clauses(m, k, found{self.arguments})")
+            self.out.emit(f"found = {index}.get({a} if {c} is Symbol else index_key({a}), {others})")
+            self.out.emit(f"return try_clauses(m, k, found{self.arguments})")
         else:
             self._candidates(fit(_OTHER), {**known, position: None})
-        self.depth -= 1
+        self.out.depth -= 1
 
     def _case(self, test, body):
-        self.emit(test)
-        self.depth += 1
+        self.out.emit(test)
+        self.out.depth += 1
         body()
-        self.depth -= 1
+        self.out.depth -= 1
 
     def _light(self, numbers):
         return len(self.fitting) == 1 or sum(self.weights[n] for n in numbers) <= _HEAVY
 
     def _fill(self, outermost):
         if outermost and self.hole is not None:
-            self.emit(FILL.format(self.hole))
+            self.out.emit(FILL.format(self.hole))
 
     def _candidates(self, numbers, known, telling=None):
         """Emit code that tries the clauses ``numbers``. ``telling`` is the argument that chose them, if there may be a hole."""
         if telling is not None and self.hole is not None:
             if len(numbers) == 1 and numbers[0] in self.builders and known[telling] is A_LIST:
-                self._owned(numbers[0], lambda: self.turn_with_hole(numbers[0], self.hole, telling))
+                self._owned(numbers[0], lambda: self._turn_with_hole(numbers[0], telling))
                 return
             if len(numbers) == 1 and can_wait(self.fitting[numbers[0]][0], self.hole) and self._light(numbers):
                 self.waiting = True
             elif numbers:
                 self._fill(True)
         if not numbers:
-            self.emit(self.leaving)
+            self.out.emit(self.leaving)
         elif self._light(numbers) and not any(kind is UNBOUND and self._discriminates(position) for position, kind in known.items()):
             self._chain(numbers, known, "continue" if self.looping else None)
         else:
-            self.emit(f"return try_clauses(m, k, {self._bucket(numbers)}{self.arguments})")
+            self.out.emit(f"return try_clauses(m, k, {self._bucket(numbers)}{self.arguments})")
+
+    def _turn_with_hole(self, n, telling):
+        Holes(self.out, self.terms, self.bodies).turn(self.fitting[n][0], self.goals[n][0], self.hole, telling)
 
     def _bucket(self, content):
         """The name of a tuple of clause functions, or of a dict of such tuples. ``content`` has the numbers of the clauses."""
@@ -338,21 +347,21 @@ class PredicateCode(Holes, Bodies):
         patterns, _ = self.fitting[n]
 
         def body():
-            self.emit("trail = m.trail")
+            self.out.emit("trail = m.trail")
             names = {}
-            self.match_head(patterns, names)
-            self.body(self.goals[n], names, Context())
+            self.terms.match_head(patterns, names)
+            self.bodies.body(self.goals[n], names, Context())
 
-        self._owned(n, lambda: self.define(f"clause_{n}", f"m, k, b{self.arguments}", body))
+        self._owned(n, lambda: self.out.define(f"clause_{n}", f"m, k, b{self.arguments}", body))
 
     def _owned(self, n, write):
         """Write code of clause ``n``."""
         clause = self.fitting[n][1]
-        outer = self.owner, self.keep_variables, self.failing
-        self.owner, self.failing = getattr(clause, "original", clause), self.leaving
-        self.keep_variables = _mentions(clause.goals, FILTER)
+        outer = self.out.owner, self.bodies.keep_variables, self.out.failing
+        self.out.owner, self.out.failing = getattr(clause, "original", clause), self.leaving
+        self.bodies.keep_variables = _mentions(clause.goals, FILTER)
         write()
-        self.owner, self.keep_variables, self.failing = outer
+        self.out.owner, self.bodies.keep_variables, self.out.failing = outer
 
     def _known(self, n, known):
         """The part of ``known`` about the arguments that helps clause ``n``."""
@@ -363,47 +372,47 @@ class PredicateCode(Holes, Bodies):
         n = numbers[0]
         patterns, names, goals = self.fitting[n][0], {}, self.goals[n]
         if any(map(may_cut, goals)):
-            self.emit("b = len(m.choices)")
+            self.out.emit("b = len(m.choices)")
         if len(numbers) == 1:
 
             def last():
                 waiting, self.waiting = self.waiting, False
-                self.match_head(patterns, names, self._known(n, known), self.hole if waiting else None)
-                self.body(goals, names, Context(repeat=repeat))
+                self.terms.match_head(patterns, names, self._known(n, known), self.hole if waiting else None)
+                self.bodies.body(goals, names, Context(repeat=repeat))
 
             self._owned(n, last)
             return
-        height = self.fresh("t")
+        height = self.out.fresh("t")
 
         def first():
-            self.emit(f"{height} = len(trail)")
-            self.emit("while True:" if self.enumerating else "for _ in ONCE:")
-            self.depth += 1
-            count, self.failing = len(self.lines), "break"
-            self.match_head(patterns, names, self._known(n, known))
+            self.out.emit(f"{height} = len(trail)")
+            self.out.emit("while True:" if self.bodies.enumerating else "for _ in ONCE:")
+            self.out.depth += 1
+            count, self.out.failing = len(self.out.lines), "break"
+            self.terms.match_head(patterns, names, self._known(n, known))
             tests = 0
             while tests < len(goals) and is_test(goals[tests]):
-                self.test(goals[tests], names)
+                self.bodies.test(goals[tests], names)
                 tests += 1
-            self.failing = self.leaving
-            if self.enumerating:
-                self.emit(f"choice[2] = {height}; yield")
-                self.emit("break")
-                self.depth -= 1
+            self.out.failing = self.leaving
+            if self.bodies.enumerating:
+                self.out.emit(f"choice[2] = {height}; yield")
+                self.out.emit("break")
+                self.out.depth -= 1
                 return
-            if len(self.lines) == count:
-                self.emit("pass")
-            self.depth -= 1
-            self.emit("else:")
-            self.depth += 1
+            if len(self.out.lines) == count:
+                self.out.emit("pass")
+            self.out.depth -= 1
+            self.out.emit("else:")
+            self.out.depth += 1
             following = goals[tests:]
             if not (following and known_goal(following[0], {CUT: (0, 0)}) is not None):
-                self.emit(f"m.choices.append({self._choice(numbers[1:], known, height)})")
-            self.body(following, names, Context(repeat=repeat))
-            self.depth -= 1
+                self.out.emit(f"m.choices.append({self._choice(numbers[1:], known, height)})")
+            self.bodies.body(following, names, Context(repeat=repeat))
+            self.out.depth -= 1
 
         self._owned(n, first)
-        self.emit(f"while len(trail) > {height}: trail.pop().ref = UNSET")
+        self.out.emit(f"while len(trail) > {height}: trail.pop().ref = UNSET")
         self._chain(numbers[1:], known, repeat)
 
     def _choice(self, numbers, known, height):
@@ -430,29 +439,29 @@ class PredicateCode(Holes, Bodies):
         key = ("rest", tuple(numbers), tuple(known.items()))
         name = self.tries.get(key)
         if name is None:
-            name = self.tries[key] = self.fresh("rest_")
-            self.define(name, f"m{self.arguments}", lambda: self._enumerate(numbers, known))
+            name = self.tries[key] = self.out.fresh("rest_")
+            self.out.define(name, f"m{self.arguments}", lambda: self._enumerate(numbers, known))
         return name
 
     def _enumerate(self, numbers, known):
-        outer = self.leaving, self.enumerating
-        self.leaving, self.enumerating = "return", True
-        self.emit("trail, choice, code = m.trail, m.choices[-1], P.call")
-        self.emit("for _ in ONCE:")  # the first turn takes the clauses that are left
-        self.depth += 1
+        outer = self.leaving, self.bodies.enumerating
+        self.leaving, self.bodies.enumerating = "return", True
+        self.out.emit("trail, choice, code = m.trail, m.choices[-1], P.call")
+        self.out.emit("for _ in ONCE:")  # the first turn takes the clauses that are left
+        self.out.depth += 1
         self._chain(numbers, known, "continue")
-        self.depth -= 1
-        self.emit("while True:")
-        self.depth += 1
-        self.emit("for _ in LOOP:")
-        self.depth += 1
+        self.out.depth -= 1
+        self.out.emit("while True:")
+        self.out.depth += 1
+        self.out.emit("for _ in LOOP:")
+        self.out.depth += 1
         self._dispatch(list(range(len(self.fitting))), {})
-        self.depth -= 1
-        self.emit(f"budget.left -= {len(LOOP)}")
-        self.emit(f"if P.call is not code: {self._going_on()}")
-        self.emit("m.rest()")
-        self.depth -= 1
-        self.leaving, self.enumerating = outer
+        self.out.depth -= 1
+        self.out.emit(f"budget.left -= {len(LOOP)}")
+        self.out.emit(f"if P.call is not code: {self._going_on()}")
+        self.out.emit("m.rest()")
+        self.out.depth -= 1
+        self.leaving, self.bodies.enumerating = outer
 
     def _try(self, numbers, known):
         """The name of the function of a choice point that tries ``numbers``."""
@@ -460,27 +469,27 @@ class PredicateCode(Holes, Bodies):
         name = self.tries.get(key)
         if name is not None:
             return name
-        name = self.tries[key] = self.fresh("try_")
+        name = self.tries[key] = self.out.fresh("try_")
 
         def body():
-            self.emit(f"_, k, _{self.arguments} = step")
-            self.emit("m.choices.pop()")
-            self.emit("trail = m.trail")
+            self.out.emit(f"_, k, _{self.arguments} = step")
+            self.out.emit("m.choices.pop()")
+            self.out.emit("trail = m.trail")
             if self.looping and any(self._repeats(self.goals[n]) for n in numbers):
-                self.emit("entering = True")
+                self.out.emit("entering = True")
                 self._loop(enter_the_loop)
             else:
                 self._chain(numbers, known, None)
 
         def enter_the_loop():
-            self.emit("if entering:")
-            self.depth += 1
-            self.emit("entering = False")
+            self.out.emit("if entering:")
+            self.out.depth += 1
+            self.out.emit("entering = False")
             self._chain(numbers, known, "continue")
-            self.depth -= 1
+            self.out.depth -= 1
             self._dispatch(list(range(len(self.fitting))), {})
 
-        self.define(name, "m, step", body)
+        self.out.define(name, "m, step", body)
         return name
 
 

@@ -48,7 +48,12 @@ GLOBALS = {
 
 
 class Source:
-    """The text of functions that belong together. ``emit`` adds a line to the function that is being written."""
+    """The text of functions that belong together. ``emit`` adds a line to the function that is being written.
+
+    ``failing`` is the statement that leaves on failure where the next line stands.
+    """
+
+    failing = "return fail(m)"
 
     def __init__(self, title):
         self.title = title

@@ -4,7 +4,7 @@ The pattern is known when the clause is compiled, so its unification is written 
 has made already are left out. A variable of the clause is a Python variable that holds a term: the argument itself, a part of it, or a
 new `Var` if a term must be built before the variable has a value.
 
-``names`` maps the variables that have occurred to Python expressions; ``self.failing`` is the statement that leaves on failure.
+``names`` maps the variables that have occurred to Python expressions; ``failing`` of the `Source` is the statement that leaves on failure.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
 
 from ..engine.database import traced
 from ..terms.terms import NEW_VARIABLE
-from .generated_code import Rest, Source, is_ground, variables
+from .generated_code import Rest, is_ground, variables
 
 _DEEP = 4
 _ALONG = 0.5
@@ -31,14 +31,15 @@ def _short(pattern):
     )
 
 
-class Matching(Source):
-    """Writes code for heads and for terms."""
+class Matching:
+    """Writes code for heads and for terms into ``out``, a `Source`."""
 
-    failing = "return fail(m)"
+    def __init__(self, out):
+        self.out = out
 
     def fail_unless(self, test):
         """Emit code that fails unless the expression ``test`` is true."""
-        self.emit(f"if not {test}: {self.failing}")
+        self.out.emit(f"if not {test}: {self.out.failing}")
 
     def match_head(self, patterns, names, known=None, hole=None):
         """Emit code that matches the arguments ``a0``, ``a1``, ... with ``patterns``.
@@ -52,13 +53,13 @@ class Matching(Source):
                 names[pattern] = f"a{i}"
         # A variable that stands alone as an argument is that argument; the other occurrences must be the same as it.
         # Arguments may be the same variable, so once something is matched none is known to be unset.
-        count = len(self.lines)
+        count = len(self.out.lines)
         if hole is not None:
-            self.emit(f"if hole is not None: hole.cdr = {self.build(patterns[hole], names)}")
-            self.emit("else:")
-            self.depth += 1
+            self.out.emit(f"if hole is not None: hole.cdr = {self.build(patterns[hole], names)}")
+            self.out.emit("else:")
+            self.out.depth += 1
             self.match(patterns[hole], f"a{hole}", names, 0)
-            self.depth -= 1
+            self.out.depth -= 1
         for i, pattern in enumerate(patterns):
             if i == hole:
                 continue
@@ -66,7 +67,7 @@ class Matching(Source):
                 self._match_rest(i, pattern, names)
             elif not (variable(pattern) and (pattern is ANONYMOUS or names[pattern] == f"a{i}")):
                 kind = (known or {}).get(i)
-                self.match(pattern, f"a{i}", names, 0, None if kind is UNBOUND and len(self.lines) > count else kind)
+                self.match(pattern, f"a{i}", names, 0, None if kind is UNBOUND and len(self.out.lines) > count else kind)
 
     def _match_rest(self, i, pattern, names):
         built = "None"
@@ -76,8 +77,8 @@ class Matching(Source):
             if pattern.name in names:
                 self.fail_unless(f"unify({names[pattern.name]}, {built}, trail)")
             else:
-                names[pattern.name] = self.fresh("rest")
-                self.emit(f"{names[pattern.name]} = {built}")
+                names[pattern.name] = self.out.fresh("rest")
+                self.out.emit(f"{names[pattern.name]} = {built}")
 
     def match(self, pattern, x, names, depth, known=None, own=False):
         """Emit code that unifies ``pattern`` with the term in the Python variable ``x``. If it is ``known``, it is dereferenced.
@@ -89,9 +90,9 @@ class Matching(Source):
                 return
             if pattern in names:
                 known_term = names[pattern]
-                self.emit(f"if {x}.__class__ is not Var and {known_term}.__class__ is Var and {known_term}.ref is UNSET:")
-                self.emit(f"    {known_term}.ref = {x}; trail.append({known_term})")
-                self.emit(f"elif not unify({known_term}, {x}, trail): {self.failing}")
+                self.out.emit(f"if {x}.__class__ is not Var and {known_term}.__class__ is Var and {known_term}.ref is UNSET:")
+                self.out.emit(f"    {known_term}.ref = {x}; trail.append({known_term})")
+                self.out.emit(f"elif not unify({known_term}, {x}, trail): {self.out.failing}")
             else:
                 names[pattern] = x
             return
@@ -101,36 +102,36 @@ class Matching(Source):
             self.fail_unless(f"unify({self.build(pattern, names)}, {x}, trail)")
             return
         if known is None and not own:
-            term, x = x, self.fresh("x")
-            self.emit(f"{x} = {term}")
+            term, x = x, self.out.fresh("x")
+            self.out.emit(f"{x} = {term}")
         if isinstance(pattern, Cons):
             self._match_list(pattern, x, names, depth, known)
             return
         if known is None:
             self.follow(x)
-        value = self.constant(pattern)
+        value = self.out.constant(pattern)
         if known is UNBOUND:
             self._set(x, value)
             return
         identical = isinstance(pattern, Symbol) or pattern is None or pattern is True
-        self.emit(f"if {x} is not {value}:" if identical else f"if not same_atom({x}, {value}):")
-        self.emit(f"    if {x}.__class__ is Var:")
-        self.depth += 2
+        self.out.emit(f"if {x} is not {value}:" if identical else f"if not same_atom({x}, {value}):")
+        self.out.emit(f"    if {x}.__class__ is Var:")
+        self.out.depth += 2
         self._set(x, value)
-        self.depth -= 2
+        self.out.depth -= 2
         other = f"{x}.__class__ is Symbol or " if identical else ""
-        self.emit(f"    elif {other}not unify({x}, {value}, trail): {self.failing}")
+        self.out.emit(f"    elif {other}not unify({x}, {value}, trail): {self.out.failing}")
 
     def follow(self, x):
         """Emit code after which ``x`` is the value, if it is a variable that has one."""
-        self.emit(f"while {x}.__class__ is Var:")
-        self.emit(f"    r = {x}.ref")
-        self.emit("    if r is UNSET: break")
-        self.emit(f"    {x} = r")
+        self.out.emit(f"while {x}.__class__ is Var:")
+        self.out.emit(f"    r = {x}.ref")
+        self.out.emit("    if r is UNSET: break")
+        self.out.emit(f"    {x} = r")
 
     def _set(self, x, value):
-        self.emit(f"{x}.ref = {value}")
-        self.emit(f"trail.append({x})")
+        self.out.emit(f"{x}.ref = {value}")
+        self.out.emit(f"trail.append({x})")
 
     def _match_list(self, pattern, x, names, depth, known):
         if known is A_LIST:
@@ -139,39 +140,39 @@ class Matching(Source):
         if known is UNBOUND:
             self._set(x, self._cell(pattern, names))
             return
-        self.emit(f"if {x}.__class__ is not Cons:")
-        self.depth += 1
+        self.out.emit(f"if {x}.__class__ is not Cons:")
+        self.out.depth += 1
         self.follow(x)
-        self.emit(f"if {x}.__class__ is LazyTail or {x}.__class__ is TermTail: {x} = {x}.force()")
-        self.depth -= 1
+        self.out.emit(f"if {x}.__class__ is LazyTail or {x}.__class__ is TermTail: {x} = {x}.force()")
+        self.out.depth -= 1
         before = dict(names)
-        self.emit(f"if {x}.__class__ is Cons:")
-        self.depth += 1
-        count = len(self.lines)
+        self.out.emit(f"if {x}.__class__ is Cons:")
+        self.out.depth += 1
+        count = len(self.out.lines)
         self._match_parts(pattern, x, names, depth)
-        if len(self.lines) == count:
-            self.emit("pass")
-        self.depth -= 1
-        self.emit(f"elif {x}.__class__ is Var:")
-        self.depth += 1
+        if len(self.out.lines) == count:
+            self.out.emit("pass")
+        self.out.depth -= 1
+        self.out.emit(f"elif {x}.__class__ is Var:")
+        self.out.depth += 1
         inside = variables(pattern)
         for name in names:
             if name not in before and name in inside:
                 self.new_variable(names[name], name)
         self._set(x, self._cell(pattern, dict(names)))
-        self.depth -= 1
-        self.emit(f"else: {self.failing}")
+        self.out.depth -= 1
+        self.out.emit(f"else: {self.out.failing}")
 
     def _match_parts(self, pattern, x, names, depth):
         for part, attribute, further in ((pattern.car, "car", 1), (pattern.cdr, "cdr", _ALONG)):
             if part is ANONYMOUS:
                 continue
             if variable(part) and part not in names:
-                names[part] = self.fresh("v")
-                self.emit(f"{names[part]} = {x}.{attribute}")
+                names[part] = self.out.fresh("v")
+                self.out.emit(f"{names[part]} = {x}.{attribute}")
             else:
-                piece = self.fresh("p")
-                self.emit(f"{piece} = {x}.{attribute}")
+                piece = self.out.fresh("p")
+                self.out.emit(f"{piece} = {x}.{attribute}")
                 self.match(part, piece, names, depth + further, own=True)
 
     # ------------------------------------------------------------------------------------------------------------ building terms
@@ -179,31 +180,31 @@ class Matching(Source):
     def _cell(self, pattern, names):
         """Emit code for a new cons, without a call of its constructor. Returns the Python variable that holds it."""
         car, cdr = self.build(pattern.car, names), self.build(pattern.cdr, names)
-        cell = self.fresh("n")
-        self.emit(f"{cell} = new(Cons); {cell}.car = {car}; {cell}.cdr = {cdr}")
+        cell = self.out.fresh("n")
+        self.out.emit(f"{cell} = new(Cons); {cell}.car = {car}; {cell}.cdr = {cdr}")
         return cell
 
     def build(self, pattern, names):
         """An expression for the term ``pattern``; new variables and conses are made on lines before it."""
         if variable(pattern):
             if pattern is ANONYMOUS:
-                name = self.fresh("v")
-                self.emit(NEW_VARIABLE.format(name))
+                name = self.out.fresh("v")
+                self.out.emit(NEW_VARIABLE.format(name))
                 return name
             if pattern not in names:
-                names[pattern] = self.fresh("v")
+                names[pattern] = self.out.fresh("v")
                 self.new_variable(names[pattern], pattern)
             return names[pattern]
         if not isinstance(pattern, Cons) or is_ground(pattern):
-            return self.constant(pattern)
+            return self.out.constant(pattern)
         cells, cell = [], pattern
         while isinstance(cell, Cons) and not is_ground(cell) and len(cells) < 40:
             cells.append(self.build(cell.car, names))
             cell = cell.cdr
         end = self.build(cell, names)
         for car in reversed(cells):
-            name = self.fresh("n")
-            self.emit(f"{name} = new(Cons); {name}.car = {car}; {name}.cdr = {end}")
+            name = self.out.fresh("n")
+            self.out.emit(f"{name} = new(Cons); {name}.car = {car}; {name}.cdr = {end}")
             end = name
         return end
 
@@ -211,15 +212,15 @@ class Matching(Source):
         """Emit code for the variables of ``item`` that have not occurred yet."""
         for name in variables(item):
             if name not in names:
-                names[name] = self.fresh("v")
+                names[name] = self.out.fresh("v")
                 self.new_variable(names[name], name)
 
     def new_variable(self, python_name, symbol):
         """Emit code that makes a variable. While goals are traced, the variable knows its name in the clause."""
-        self.emit(NEW_VARIABLE.format(python_name))
+        self.out.emit(NEW_VARIABLE.format(python_name))
         self.name_variable(python_name, symbol)
 
     def name_variable(self, python_name, symbol):
         """While goals are traced, emit code that gives a variable its name in the clause."""
         if traced:
-            self.emit(f"{python_name}.written = {self.constant(symbol)}")
+            self.out.emit(f"{python_name}.written = {self.out.constant(symbol)}")

@@ -14,6 +14,7 @@ from __future__ import annotations
 from cramhy_runtime.lisp_core.data import Cons
 from cramhy_runtime.utilities.patterns import ANONYMOUS, variable
 
+from .clause_bodies import Context
 from .generated_code import Rest, is_ground, variables
 
 FILL = "if hole is not None: a{0} = hole.cdr = Var(); hole = None"
@@ -60,42 +61,46 @@ def can_wait(patterns, position):
 
 
 class Holes:
-    """Writes code for such loops; a part of the class of the compiler."""
+    """Writes code for such loops into ``out``, a `Source`. terms, bodies: what writes the rest of a clause."""
 
-    def turn_with_hole(self, n, position, telling):
-        """Emit code for a turn of clause ``n``, whose list argument ``telling`` is known to be a cons."""
-        patterns, _ = self.fitting[n]
-        call = self.goals[n][0]
+    def __init__(self, out, terms, bodies):
+        self.out, self.terms, self.bodies = out, terms, bodies
+
+    def turn(self, patterns, call, position, telling):
+        """Emit code for a turn of a clause with the arguments ``patterns`` and the body ``call``.
+
+        position: of the argument that is built. telling: that of the list argument, which is known to be a cons.
+        """
         pattern, first = patterns[position], patterns[telling]
         names = {item: f"a{i}" for i, item in enumerate(patterns) if variable(item) and item is not ANONYMOUS}
-        self.emit("if hole is not None:")
-        self.depth += 1
-        self.emit(f"if a{telling} is hole: a{position} = hole.cdr = Var(); hole = None")
-        self.emit("else:")
-        self.depth += 1
+        self.out.emit("if hole is not None:")
+        self.out.depth += 1
+        self.out.emit(f"if a{telling} is hole: a{position} = hole.cdr = Var(); hole = None")
+        self.out.emit("else:")
+        self.out.depth += 1
         self._take_parts(first, telling, names)
-        self.emit(f"n = new(Cons); n.car = {self.build(pattern.car, dict(names))}; hole.cdr = n; hole = n")
+        self.out.emit(f"n = new(Cons); n.car = {self.terms.build(pattern.car, dict(names))}; hole.cdr = n; hole = n")
         self._next_turn(call, position, dict(names))
-        self.depth -= 2
+        self.out.depth -= 2
         self._take_parts(first, telling, names)
         x = f"a{position}"
-        self.follow(x)
-        self.emit(f"if {x}.__class__ is Var:")
-        self.depth += 1
+        self.terms.follow(x)
+        self.out.emit(f"if {x}.__class__ is Var:")
+        self.out.depth += 1
         inside = dict(names)
-        self.emit(f"n = new(Cons); n.car = {self.build(pattern.car, inside)}; {x}.ref = n; trail.append({x}); hole = n")
+        self.out.emit(f"n = new(Cons); n.car = {self.terms.build(pattern.car, inside)}; {x}.ref = n; trail.append({x}); hole = n")
         self._next_turn(call, position, inside)
-        self.depth -= 1
-        self.match(pattern, x, names, 0)
-        self.body([call], names, self.repeating)
+        self.out.depth -= 1
+        self.terms.match(pattern, x, names, 0)
+        self.bodies.body([call], names, Context(repeat="continue"))
 
     def _take_parts(self, first, telling, names):
         for part, attribute in ((first.car, "car"), (first.cdr, "cdr")):
             if part is not ANONYMOUS:
-                names[part] = self.fresh("v")
-                self.emit(f"{names[part]} = a{telling}.{attribute}")
+                names[part] = self.out.fresh("v")
+                self.out.emit(f"{names[part]} = a{telling}.{attribute}")
 
     def _next_turn(self, call, position, names):
-        given = [self.build(item, names) if i != position else None for i, item in enumerate(call.cdr)]
-        self.assign_arguments(given)
-        self.emit("continue")
+        given = [self.terms.build(item, names) if i != position else None for i, item in enumerate(call.cdr)]
+        self.out.assign_arguments(given)
+        self.out.emit("continue")
