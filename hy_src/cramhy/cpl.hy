@@ -39,7 +39,7 @@ What the operators mean stands there, and in the sections of cpl.md that the com
   (setv #(task #* options) spec)
   (when (and options (or (!= (len options) 2) (is-not (get options 0) (sym ":REASON"))))
     (raise (ValueError "after the task only :REASON and a text may stand.")))
-  `(%with-task-suspended ~task ~(if options (get options 1) None) (lambda [] ~@body)))
+  `(%with-task-suspended ~task (lambda [] ~@body) ~(if options (get options 1) None)))
 
 (defoperator with-task [options #* body]
   (setv options (keyword-options "WITH-TASK" (elements options) ["CLASS" "NAME"]))
@@ -55,7 +55,7 @@ What the operators mean stands there, and in the sections of cpl.md that the com
 
 (defoperator def-cpl-parameter [name [value None] [documentation None]]
   `(progn
-     (%cpl-parameter (quote ~name) ~value)
+     (%define-cpl-parameter (quote ~name) ~value)
      ~@(if documentation [`(setf (documentation (quote ~name) (quote variable)) ~documentation)] [])
      (define-symbol-macro ~name (%parameter-value (quote ~name)))))
 
@@ -125,7 +125,7 @@ What the operators mean stands there, and in the sections of cpl.md that the com
     (wrong "It is written (with-failure-handling ((plan-failure (failure) form*)) form*)." "WITH-FAILURE-HANDLING" clauses
            "the first part is a list of clauses."))
   `(block nil
-     (%with-failure-handling
+     (%handling-failures
        (lambda [~again] (flet [[retry [] (%retry ~again)]] ~@body))
        ~@(handlers clauses again))))
 
@@ -140,9 +140,9 @@ What the operators mean stands there, and in the sections of cpl.md that the com
     (.append names counter.car))
   `(let [~@(lfor #(name initial) (elements counters) [(counter-variable name) `(%make-retry-counter (lambda [] ~initial))])]
      (macrolet [[do-retry [counter &body forms &environment here]
-                  (list* 'when (list '%use-retry (%retry-counter counter here)) forms)]
-                [get-counter [counter &environment here] (list '%counter-value (%retry-counter counter here))]
-                [reset-counter [counter &environment here] (list '%reset-retry-counter (%retry-counter counter here))]]
+                  (list* 'when (list '%use-retry (%known-counter counter here)) forms)]
+                [get-counter [counter &environment here] (list '%counter-value (%known-counter counter here))]
+                [reset-counter [counter &environment here] (list '%reset-retry-counter (%known-counter counter here))]]
        ~@body)))
 
 ;; --------------------------------------------------------------------------------------------------------- 9: policies
@@ -237,7 +237,7 @@ What the operators mean stands there, and in the sections of cpl.md that the com
 
 (defoperator logging-enabled-p [#* tags]
   (check-constant-tags tags)
-  `(%logging-enabled (quote ~(list-from tags))))
+  `(%logging-enabled-p (quote ~(list-from tags))))
 
 (defoperator define-log-tags [#* tags]
   `(eval-when [:compile-toplevel :load-toplevel :execute]

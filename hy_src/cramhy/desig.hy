@@ -37,4 +37,4 @@ How the pairs of a designator become the form of its description is a function o
   (setv names (lfor definition (elements definitions) definition.car) form `(progn ~@body))
   (for [#(name type properties) (reversed (elements definitions))]
     (setv form `(let [[~name (%create-designator (quote ~name) ~type ~properties)]] ~form)))
-  `(%with-designators-node (quote ~(list-from names)) (lambda [] ~form)))
+  `(%with-designators (lambda [] ~form) (quote ~(list-from names))))

@@ -88,7 +88,7 @@ function, because the task tree and `expand-plan` show it."
        ~@documentation
        (block nil
          (apply (lambda ~lambda-list ~@declarations ~@forms) ~arguments)
-         (%goal-call (quote ~name) ~arguments)))
+         (%call-goal (quote ~name) ~arguments)))
      (%declare-goal (quote ~name))))
 
 (defoperator def-goal [head #* body]

@@ -78,7 +78,7 @@ Topics of log lines and field paths are not evaluated, so they become constants 
   (setv #(control #* values) (if (isinstance first str) [first #* rest] rest))
   (setv path (if (or (listp topic) (is topic None)) topic (lisp-list topic)))
   `(if (and (%log-enabled ~level (quote ~path)) ~condition)
-       (%ros-log-line ~level (quote ~path) ~control ~@values)
+       (%log-line ~level (quote ~path) ~control ~@values)
        nil))
 
 (defoperator ros-debug [#* arguments] (log-form 1 arguments))
@@ -89,7 +89,7 @@ Topics of log lines and field paths are not evaluated, so they become constants 
 
 (defoperator set-debug-levels [#* arguments]
   (setv #(names levels) (fields-and-values arguments))
-  `(%set-debug-levels (quote ~names) ~@levels))
+  `(%set-debug-levels ~@(sum (lfor #(name level) (zip names levels) [`(quote ~name) level]) [])))
 
 ;; ----------------------------------------------------------------------------------------------------------- 2: nodes
 
@@ -115,12 +115,12 @@ Topics of log lines and field paths are not evaluated, so they become constants 
 (defoperator def-service-callback [service bindings #* body]
   (setv #(name symbol) (name-and-service service) request (gensym "REQUEST") initargs (gensym "INITARGS"))
   `(defun ~name [~request]
-     (flet [[make-response [&rest ~initargs] (apply (function %make-service-response) (quote ~symbol) ~initargs)]]
+     (flet [[make-response [&rest ~initargs] (apply (function %make-response) (quote ~symbol) ~initargs)]]
        (with-fields ~bindings ~request ~@body))))
 
 (defoperator register-service [name type]
   (setv symbol (if (and (listp type) (is type.car (sym "QUOTE"))) type.cdr.car type))
-  `(%register-service-of ~name (quote ~symbol)))
+  `(%register-service ~name (quote ~symbol)))
 
 (defoperator def-service-call [designator ros-name #* options]
   (setv #(name symbol) (name-and-service designator) request (gensym "REQUEST"))
@@ -132,7 +132,7 @@ Topics of log lines and field paths are not evaluated, so they become constants 
 
 (defoperator "roslisp-utils::spin-until" [test increment #* body]
   (setv #(step timeout) (if (listp increment) increment [increment None]))
-  `(block nil (%ros-spin-until (lambda [] ~test) ~step ~timeout (lambda [] ~@body))))
+  `(block nil (%spin-until (lambda [] ~test) ~step ~timeout (lambda [] ~@body))))
 
 (defoperator with-parallel-thread [spec #* body]
   (setv #(function #* name) (if (listp spec) spec [spec]))
@@ -170,4 +170,4 @@ Topics of log lines and field paths are not evaluated, so they become constants 
 ;; --------------------------------------------------------------------------------------------- 11: roslisp-utilities
 
 (defoperator "roslisp-utilities::register-ros-init-function" [name [rank 0]]
-  `(%register-init-function (quote ~name) (quote ~rank)))
+  `(%register-ros-init-function (quote ~name) (quote ~rank)))

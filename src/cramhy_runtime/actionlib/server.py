@@ -18,7 +18,7 @@ from cramhy_runtime.lisp_core.printing import princ_to_string
 from ..ros.roslisp import logging, node, topics
 from . import goals
 from .goal_server import GoalServer
-from .goals import ABORTED, PREEMPTED, SUCCEEDED, TERMINAL
+from .goals import ABORTED, TERMINAL
 
 LOG_TOPIC = ("ACTIONLIB",)
 
@@ -140,21 +140,6 @@ def end_current(state, result=None):
         )
     server.finish(goal, state, result)
     return throw(goal, None)
-
-
-def succeed_current(result=None):
-    """The goal is reached. From Python; Lisp has the macro."""
-    return end_current(SUCCEEDED, result)
-
-
-def abort_current(result=None):
-    """The goal cannot be reached."""
-    return end_current(ABORTED, result)
-
-
-def preempt_current(result=None):
-    """The goal was given up, because it was cancelled or another one came."""
-    return end_current(PREEMPTED, result)
 
 
 def publish_feedback(feedback=None):

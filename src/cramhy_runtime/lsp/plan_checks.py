@@ -15,6 +15,7 @@ from cramhy_runtime.lisp_core.data import Symbol, UndefinedFunction
 from cramhy_runtime.lisp_core.packages import near_names
 from cramhy_runtime.languages.commonlisp.format import format_parser
 from cramhy_runtime.languages.commonlisp.tools.advice import hint_for, report_text
+from cramhy_runtime.languages.operators import ROSLISP
 from cramhy_runtime.prolog.engine import database
 from cramhy_runtime.prolog.explanations.undefined import advice
 from cramhy_runtime.ros import messages
@@ -25,7 +26,7 @@ from .findings import ERROR, HINT, WARNING, Finding, fixes, meant_in_lisp
 from .known_names import KnownNames
 from .texts import Form
 
-_LOGGED = frozenset(("ROS-INFO", "ROS-WARN", "ROS-ERROR", "ROS-DEBUG", "ROS-FATAL"))
+_LOGGED = [name for name, operator in ROSLISP.items() if '"text" argument' in operator.shape]
 _TYPED = frozenset(("FAIL", "ERROR", "SIGNAL", "WARN", "MAKE-CONDITION", "MAKE-INSTANCE"))
 _CONTROL = frozenset(("AND", "OR", "NOT", "ONCE", "FORALL", "->"))
 _ONE_ARGUMENT = frozenset("ASDFEG$XOBCRW")
@@ -87,7 +88,7 @@ class Checks:
 
     # ---------------------------------------------------------------------------------------------------- control strings
 
-    @_for("FORMAT", *sorted(_LOGGED))
+    @_for("FORMAT", *_LOGGED)
     def _format(self, form, name):
         items = _unprefixed(form)
         control = items[2] if len(items) > 2 else None

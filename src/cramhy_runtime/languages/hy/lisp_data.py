@@ -16,6 +16,7 @@ from cramhy_runtime.lisp_core.data import Cons, Keyword, Symbol, list_from
 from cramhy_runtime.lisp_core.packages import common, find_package, find_package_or_error, intern, make_package, named_package, symbol_name
 from cramhy_runtime.kernel.images import per_image
 from ..commonlisp.syntax.hy_models import atom
+from ..operators import BRANCHES, PLAN_LANGUAGE
 
 USED = (
     "CRAM-PROLOG",
@@ -271,9 +272,8 @@ _OURS, _CONSTANT = (models.Expression(map(models.Symbol, (".", "hy", "R", "cramh
 """The macros of `module_names`."""
 
 
-BRANCHING = "TOP-LEVEL NAMED-TOP-LEVEL PAR PURSUE TRY-ALL TRY-IN-ORDER TRY-EACH-IN-ORDER PAR-LOOP PARTIAL-ORDER WITH-TASK".split()
+BRANCHING = frozenset(name for name, operator in PLAN_LANGUAGE.items() if BRANCHES in operator.marks)
 """The functions of CRAMHY that raise what a branch failed with: in Hy it is the exception that the branch raised."""
-
 
 GOALS = ("PROLOG", "RETE-ASSERT", "RETE-RETRACT", "RETE-HOLDS", "RETE-PROVE")
 """Functions whose first argument is a goal, a fact or a pattern of facts, or a list of them."""

@@ -25,13 +25,9 @@ from hy.compiler import Result
 from hy.errors import HySyntaxError
 from hy.scoping import OuterVar, ScopeFn, ScopeGen, ScopeGlobal, ScopeLet
 
-IN_PLACE = frozenset(
-    "block top-level named-top-level try-in-order try-each-in-order with-failure-handling with-task with-task-suspended "
-    "with-task-tree-node without-scheduling with-scheduling retry-after-suspension on-suspension with-tags "
-    "with-policy with-named-policy with-policies with-named-policies with-process-modules-running "
-    "with-process-module-aliases with-process-module-registered-running "
-    "with-designator-solution-filter with-episode-knowledge with-last-episode-knowledge with-lock-held with-facts-asserted".split()
-)
+from ..operators import IN_PLACE as RUNS_IN_PLACE, TABLES
+
+IN_PLACE = {name.lower() for table in TABLES for name, operator in table.items() if RUNS_IN_PLACE in operator.marks} | {"block"}
 """The operators that run their body where they stand, and whose value is the body's. A ``block`` is in what a definition stands for."""
 
 CLAUSE = "clause of with-failure-handling"

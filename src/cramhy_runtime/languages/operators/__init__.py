@@ -6,7 +6,7 @@ from cramhy_runtime.lisp_core.data import Symbol
 from cramhy_runtime.kernel.typing_names import Any
 
 from .acting import DESIGNATORS, EPISODES, PROCESS_MODULES, PROJECTION
-from .declaration import Operator, Table
+from .declaration import BRANCHES, IN_PLACE, Operator, Table
 from .plan_language import PLAN_LANGUAGE
 from .reasoning import PROLOG, UTILITIES
 from .ros import ACTIONLIB, FRAMES, ROSLISP
@@ -26,9 +26,11 @@ def operator_of(symbol: Any) -> Operator | None:
 
 __all__ = [
     "ACTIONLIB",
+    "BRANCHES",
     "DESIGNATORS",
     "EPISODES",
     "FRAMES",
+    "IN_PLACE",
     "OPERATORS",
     "Operator",
     "PLAN_LANGUAGE",

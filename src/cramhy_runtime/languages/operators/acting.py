@@ -5,7 +5,7 @@ Source: designators.md, process-modules.md, projection-and-events.md.
 
 from __future__ import annotations
 
-from .declaration import Table
+from .declaration import IN_PLACE, Table
 
 DESIGNATORS = Table(
     "CRAM-DESIGNATORS",
@@ -41,6 +41,7 @@ DESIGNATORS = Table(
         "(with-designator-solution-filter filter form...)",
         "(%with-designator-solution-filter filter (lambda () form...))",
         "The body, in which only solutions count for which the function is true.",
+        IN_PLACE,
     ),
     (
         "(cram-designator-properties::def-desig-package name option...)",
@@ -70,16 +71,19 @@ PROCESS_MODULES = Table(
         "(with-process-modules-running (module...) form...)",
         "(%with-process-modules-running '(module...) (lambda () form...))",
         "The body while the modules run. MODULE is a name, or a list of an alias and a name.",
+        IN_PLACE,
     ),
     (
         "(with-process-module-aliases (alias...) form...)",
         "(%with-process-module-aliases '(alias...) (lambda () form...))",
         "The body, in which modules have other names, too. ALIAS is a list of the new name and the module's.",
+        IN_PLACE,
     ),
     (
         "(with-process-module-registered-running (name instance) form...)",
         "(%with-process-module-registered-running name instance (lambda () form...))",
         "The body while the instance of a process module runs under the name.",
+        IN_PLACE,
     ),
     (
         "(def-asynchronous-process-module name (slot...) option...)",
@@ -119,11 +123,13 @@ EPISODES = Table(
         "(with-episode-knowledge episode form...)",
         "(%with-episode-knowledge episode (lambda () form...))",
         "The body, in which questions about tasks and fluents are about the episode.",
+        IN_PLACE,
     ),
     (
         "(with-last-episode-knowledge form...)",
         "(%with-last-episode-knowledge (lambda () form...))",
         "As WITH-EPISODE-KNOWLEDGE, of the last plan.",
+        IN_PLACE,
     ),
     (
         "(with-top-level-episode-knowledge plan-name form...)",

@@ -8,26 +8,38 @@ written by hand in ``hy_src/cramhy`` says it.
 from __future__ import annotations
 
 import functools
-from cramhy_runtime.kernel.typing_names import Any
+from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 
 from . import grammar
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+
+IN_PLACE, BRANCHES = "in place", "branches"
+"""Marks of rows. The first is for an operator that runs its body where it stands, so that its value is the body's. The second is for one
+that raises what a branch failed with."""
 
 
 class Operator:
     """A macro of one of our packages.
 
-    package: the name of its home. exported: whether users of that package see it; others write ``package::name``.
+    package: the name of its home. exported: whether users of that package see it; others write ``package::name``. marks: `IN_PLACE` and
+    `BRANCHES`, as far as they hold.
     """
 
-    __slots__ = ("name", "package", "exported", "shape", "expansion", "documentation", "__dict__")
+    __slots__ = ("name", "package", "exported", "shape", "expansion", "documentation", "marks", "__dict__")
 
-    def __init__(self, package: str, shape: str, expansion: str | None, documentation: str, exported: bool = True) -> None:
+    def __init__(
+        self, package: str, shape: str, expansion: str | None, documentation: str, exported: bool = True, marks: Iterable[str] = ()
+    ) -> None:
         written = shape[1:].split(None, 1)[0].rstrip(")")
         prefix, _, name = written.rpartition("::")
         self.name = name.upper()
         self.package = prefix.upper() if prefix else package
         self.shape = shape.replace(written, name, 1)
         self.expansion, self.documentation, self.exported = expansion, documentation, exported
+        self.marks = frozenset(marks)
 
     def __repr__(self) -> str:
         return f"<operator {self.package}::{self.name}>"
@@ -47,6 +59,12 @@ class Operator:
         """The names of the keyword options that may stand in a call, at any depth."""
         return sorted({name for pattern in self.patterns for name in grammar.options(pattern)})
 
+    @property
+    def meanings(self) -> list[str]:
+        """The names of the functions that a call comes to, in lower case: the operator's own, and those of its template."""
+        words = (self.expansion or "").replace("(", " ").replace(")", " ").split()
+        return [self.name.lower(), *(word[1:] for word in words if word.startswith("%"))]
+
     @functools.cached_property
     def template(self) -> Any:
         """The template of what a call stands for; ``None`` if an expander says it."""
@@ -56,12 +74,13 @@ class Operator:
 class Table(dict[str, Operator]):
     """The operators of a room, by their names."""
 
-    def __init__(self, package: str, *rows: tuple[str, str | None, str]) -> None:
-        """rows: (shape, template or None, documentation). A shape that begins with ``(-`` is of one that is not exported."""
+    def __init__(self, package: str, *rows: tuple[str, str | None, str, *tuple[str, ...]]) -> None:
+        """rows: (shape, template or None, documentation), and the marks behind them. A shape that begins with ``(-`` is of one
+        that is not exported."""
         super().__init__()
-        for shape, expansion, documentation in rows:
+        for shape, expansion, documentation, *marks in rows:
             exported = not shape.startswith("(- ")
-            operator = Operator(package, shape if exported else "(" + shape[3:], expansion, documentation, exported)
+            operator = Operator(package, shape if exported else "(" + shape[3:], expansion, documentation, exported, marks)
             self[operator.name] = operator
         self.package = package
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .declaration import Table
+from .declaration import IN_PLACE, Table
 
 PROLOG = Table(
     "CRAM-PROLOG",
@@ -21,6 +21,7 @@ PROLOG = Table(
         "(with-facts-asserted (fact...) form...)",
         "(%with-facts-asserted (list (lambda () fact)...) (lambda () form...))",
         "The body while the facts are asserted in the alpha network.",
+        IN_PLACE,
     ),
     ("(trace-prolog functor...)", "(%trace-prolog '(functor...))", "Tell of each goal of these predicates, or of all."),
     ("(untrace-prolog functor...)", "(%untrace-prolog '(functor...))", "Tell of goals of these predicates no longer, or of none."),
@@ -42,7 +43,7 @@ UTILITIES = Table(
     ),
     ("(with-lazy-list-dynamic-environment ((variable value)...) form...)", None, "Bindings that also hold while a lazy list goes on."),
     ("(lazy-dolist (variable list [result]) form...)", None, "The body with one element of a lazy list after the other."),
-    ("(delay form...)", "(%delay-thunk (lambda () form...))", "A promise of the value of the body, which FORCE computes once."),
+    ("(delay form...)", "(%delay (lambda () form...))", "A promise of the value of the body, which FORCE computes once."),
     ("(with-vars-bound (variable...) bindings form...)", None, "The body with Prolog variables bound as the bindings say."),
     ("(with-vars-strictly-bound (variable...) bindings form...)", None, "As WITH-VARS-BOUND; each variable must have a value."),
     ("(with-pat-vars-bound pattern sequence form...)", None, "The body with the variables of the pattern bound as the sequence fits."),
@@ -65,6 +66,7 @@ UTILITIES = Table(
         "(with-lock-held (lock [:whostate text]) form...)",
         "(%with-lock-held lock (lambda () form...))",
         "The body while the task holds the lock.",
+        IN_PLACE,
     ),
     (
         "(with-hash-table-locked (table) form...)",

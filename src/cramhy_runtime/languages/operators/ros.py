@@ -63,7 +63,7 @@ ROSLISP = Table(
     ("(roslisp-utilities::register-ros-init-function function [rank])", None, "Let STARTUP-ROS call the function; low ranks first."),
     (
         "(roslisp-utilities::register-ros-cleanup-function function)",
-        "(%register-cleanup-function 'function)",
+        "(%register-ros-cleanup-function 'function)",
         "Let SHUTDOWN-ROS call the function.",
     ),
 )

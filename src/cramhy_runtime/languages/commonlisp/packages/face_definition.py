@@ -11,6 +11,7 @@ A Python function with keyword-only parameters becomes a Lisp function with ``&k
 from __future__ import annotations
 
 import sys
+from types import FunctionType
 
 from cramhy_runtime.lisp_core.dispatch.open_functions import open_to_methods
 from cramhy_runtime.lisp_core.dynamic import special
@@ -62,6 +63,20 @@ def define_face(
         for symbol_name in list(find_package_or_error(other).external):
             package.export(package.intern(symbol_name))
     return package
+
+
+def define_meanings(table, *modules, adapters=None):
+    """Enter into CRAMHY what the operators of ``table`` call: for ``%name`` in a template, and for an operator's own name, the function of
+    one of ``modules``.
+
+    adapters: a module all of whose public functions are entered. They turn Lisp's lists into what a room's function takes.
+    """
+    names = dict.fromkeys(name for operator in table.values() for name in operator.meanings)
+    found = {name: vars(module)[function] for name in names for module in modules if (function := python_name(name)) in vars(module)}
+    for name, value in vars(adapters).items() if adapters is not None else ():
+        if value.__class__ is FunctionType and value.__module__ == adapters.__name__ and name[0] != "_" and name != "define":
+            found[name.replace("_", "-")] = value
+    define_face("CRAMHY", functions=found)
 
 
 def _functions(key, value):

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from ...packages.face_definition import define_face
+import sys
+
+from ....operators import DESIGNATORS
+from ...packages.face_definition import define_face, define_meanings
 from ...objects.classes import find_class
 from cramhy_runtime.lisp_core.packages import keyword
 from cramhy_runtime.designators import classes, locations
@@ -16,16 +19,5 @@ def register_designator_class(type_, class_name):
 
 def define():
     """Enter the functions into CRAMHY."""
-    define_face(
-        "CRAMHY",
-        functions={
-            "register-designator-class": register_designator_class,
-            "register-location-generator": locations.register_location_generator,
-            "register-location-validation-function": locations.register_location_validation_function,
-            "with-designator-solution-filter": locations.with_designator_solution_filter,
-            "define-designator-package": properties_package.define_designator_package,
-            "create-designator": language_support.create_designator,
-            "with-designators-node": lambda names, body: language_support.with_designators(body, names),
-            "with-equate-fluent": language_support.with_equate_fluent,
-        },
-    )
+    define_meanings(DESIGNATORS, locations, properties_package, language_support, adapters=sys.modules[__name__])
+    define_face("CRAMHY", functions={language_support: "create-designator"})

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from ...packages.face_definition import define_face
+from ....operators import EPISODES
+from ...packages.face_definition import define_face, define_meanings
 from . import backends, files
 from cramhy_runtime.episodes import knowledge
 
 
 def define():
     """Enter the functions into CRAMHY."""
+    define_meanings(EPISODES, knowledge)
     define_face(
         "CRAMHY",
         functions={
-            "with-episode-knowledge": knowledge.with_episode_knowledge,
-            "with-last-episode-knowledge": knowledge.with_last_episode_knowledge,
-            "with-top-level-episode-knowledge": knowledge.with_top_level_episode_knowledge,
             "with-offline-episode-knowledge": files.with_offline_episode_knowledge,
             "define-episode-store": backends.define_store,
             "define-episode-restore": backends.define_restore,

@@ -2,28 +2,20 @@
 
 from __future__ import annotations
 
+import sys
+
 from cramhy_runtime.lisp_core.data import python_list
-from ...packages.face_definition import define_face
-from cramhy_runtime.process_modules.modules import define_process_module
-from cramhy_runtime.process_modules.registry import (
-    register_process_module,
-    with_process_module_aliases,
-    with_process_module_registered_running,
-)
-from cramhy_runtime.process_modules.running import with_process_modules_running
+from cramhy_runtime.process_modules import modules, registry, running
+from ....operators import PROCESS_MODULES
+from ...packages.face_definition import define_face, define_meanings
+
+
+def with_process_module_aliases(aliases, body):
+    """``aliases`` is a list of lists (alias module)."""
+    return registry.with_process_module_aliases([tuple(pair) for pair in python_list(aliases)], body)
 
 
 def define():
     """Enter the functions into CRAMHY."""
-    define_face(
-        "CRAMHY",
-        functions={
-            "define-process-module": define_process_module,
-            "register-process-module": register_process_module,
-            "with-process-modules-running": with_process_modules_running,
-            "with-process-module-aliases": lambda aliases, body: with_process_module_aliases(
-                [tuple(pair) for pair in python_list(aliases)], body
-            ),
-            "with-process-module-registered-running": with_process_module_registered_running,
-        },
-    )
+    define_meanings(PROCESS_MODULES, modules, registry, running, adapters=sys.modules[__name__])
+    define_face("CRAMHY", functions={modules: "define-process-module", registry: "register-process-module"})

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import sys
+
 from cramhy_runtime.lisp_core.data import python_list
-from ...packages.face_definition import define_face
+from ....operators import PROLOG
+from ...packages.face_definition import define_face, define_meanings
 
 from cramhy_runtime.prolog.engine import fact_groups as facts
 from cramhy_runtime.prolog.builtins import native_predicates as natives, productions, rete
@@ -56,18 +59,5 @@ def with_production_handlers(handlers, body):
 
 def define():
     """Let Common Lisp see it; called once, when the image is made."""
-    define_face(
-        "CRAMHY",
-        functions={
-            "define-prolog-handler": natives.define_handler,
-            "with-facts-asserted": with_facts_asserted,
-            "with-productions": with_productions,
-            "with-production-handlers": with_production_handlers,
-            "fact-collector": fact_collector,
-            "collect-fact": collect_fact,
-            "finish-fact-group": finish_fact_group,
-            "fact-outside-group": fact_outside_group,
-            "trace-prolog": tracing.trace_prolog,
-            "untrace-prolog": tracing.untrace_prolog,
-        },
-    )
+    define_meanings(PROLOG, productions, rete, tracing, adapters=sys.modules[__name__])
+    define_face("CRAMHY", functions={"define-prolog-handler": natives.define_handler})

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import sys
+
 from cramhy_runtime.lisp_core.data import Symbol, python_list, truth
-from ...packages.face_definition import define_face
+from ....operators import ROSLISP
+from ...packages.face_definition import define_face, define_meanings
 from cramhy_runtime.lisp_core.packages import symbol_name
 from cramhy_runtime.ros import message_building, messages
 from cramhy_runtime.ros.roslisp import logging, node, services, time, topics, utilities
@@ -139,10 +142,6 @@ def log_line(level, topic, control, *arguments):
     return logging.ros_log(level, topic, control, *arguments)
 
 
-def set_debug_levels(names, *levels):
-    return logging.set_debug_levels(*[item for pair in zip(python_list(names), levels) for item in pair])
-
-
 def with_ros_node(options, spin, body):
     name, *rest = python_list(options)
     keywords = {key.name.lower().replace("-", "_"): value for key, value in zip(rest[::2], rest[1::2])}
@@ -159,25 +158,5 @@ def call_named_service(service_name, service_symbol, return_field, request):
 
 def define():
     """Let Common Lisp see it; called once, when the image is made."""
-    define_face(
-        "CRAMHY",
-        functions={
-            "build-message": build_message,
-            "build-request": build_request,
-            "build-publisher-message": build_publisher_message,
-            "changed-message": changed_message,
-            "message-field": message_field,
-            "log-enabled": log_enabled,
-            "ros-log-line": log_line,
-            "set-debug-levels": set_debug_levels,
-            "with-ros-node": with_ros_node,
-            "ros-spin-until": spin_until,
-            "loop-at-most-every": time.loop_at_most_every,
-            "with-parallel-thread": time.with_parallel_thread,
-            "register-init-function": utilities.register_ros_init_function,
-            "register-cleanup-function": utilities.register_ros_cleanup_function,
-            "register-service-of": services.register_service,
-            "make-service-response": message_building.make_response,
-            "call-named-service": call_named_service,
-        },
-    )
+    define_meanings(ROSLISP, logging, message_building, services, time, utilities, adapters=sys.modules[__name__])
+    define_face("CRAMHY", functions={message_building: "make-response"})

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from cramhy_runtime.lisp_core.data import list_from, python_list, truth
 from cramhy_runtime.lisp_core.dispatch.open_functions import open_to_methods
-from ...packages.face_definition import define_face
+from ...packages.face_definition import define_face, define_meanings
 from ...syntax.operator_macros import export
 from ....operators import UTILITIES
 from cramhy_runtime.lisp_core.packages import sym
@@ -83,19 +83,15 @@ def define():
     define_type(CUT.intern("TIMESTAMP"), lambda form, environment: sym("DOUBLE-FLOAT"), "Seconds: what CURRENT-TIMESTAMP gives.")
     open_to_methods(small_functions.set_pool_value, "(setf CUT::POOL-VALUE)")
     CUT.intern("CACHED-FILE-VALUE").setf_function = file_cache.set_cached_file_value
+    define_meanings(UTILITIES, lazy_lists, locks, barriers)
     define_face(
         "CRAMHY",
         functions={
             "lazy-list-of": lazy_list_of,
             "lazy-environment": lazy_environment,
-            "delay-thunk": lazy_lists.delay,
-            "lazy-dolist": lazy_lists.lazy_dolist,
             "values-of-variables": values_of_variables,
             "strict-values-of-variables": strict_values_of_variables,
             "values-of-pattern": values_of_pattern,
             "file-value": file_cache.file_value,
-            "with-lock-held": locks.with_lock_held,
-            "with-hash-table-locked": locks.with_hash_table_locked,
-            "with-synchronization-barrier": barriers.with_synchronization_barrier,
         },
     )
