@@ -7,7 +7,7 @@ message texts are SBCL's.
 
 from __future__ import annotations
 
-from operator import attrgetter
+from operator import attrgetter, is_, itemgetter
 
 from cramhy_runtime.kernel.images import part, per_image
 from cramhy_runtime.kernel.typing_names import Any
@@ -484,6 +484,7 @@ USERS = ("COMMON-LISP-USER", "CRAM-USER", "TESTING-USER", "PYTHON-USER")
 """The packages of our own code whose contents are the user's: each image has its own."""
 _DEFINITIONS = ("value", "function", "macro", "setf_function", "plist", "special", "constant", "compiler_data")
 _definitions = attrgetter(*_DEFINITIONS)
+_functions = itemgetter(_DEFINITIONS.index("function"), _DEFINITIONS.index("setf_function"))
 _redefined: dict[Symbol, tuple] = {}  # symbols of ours that users redefined -> what they mean by themselves
 
 
@@ -535,16 +536,20 @@ class _Redefinitions:
     @staticmethod
     def put(state):
         for symbol, own in _redefined.items():
-            for name, value in zip(_DEFINITIONS, state.get(symbol, own)):
+            before, wanted = _definitions(symbol), state.get(symbol, own)
+            if all(map(is_, before, wanted)):
+                continue  # as most are, and a change of images shall not take longer for them
+            for name, value in zip(_DEFINITIONS, wanted):
                 setattr(symbol, name, value)
-            symbol.function_changed()
+            if not all(map(is_, _functions(before), _functions(wanted))):
+                symbol.function_changed()
 
     @staticmethod
     def copy(state):
         for package in _users_packages():
             for symbol in (*package.internal.values(), *package.external.values()):
-                if isinstance(symbol, Symbol) and symbol.package is package:
-                    _redefined.setdefault(symbol, _state_of(symbol))
+                if isinstance(symbol, Symbol) and symbol.package is package and symbol not in _redefined:
+                    _redefined[symbol] = _state_of(symbol)
         return {symbol: _state_of(symbol) for symbol in _redefined}
 
     @staticmethod

@@ -9,15 +9,14 @@ from __future__ import annotations
 import sys
 
 from ..commonlisp.evaluation.evaluator import PACKAGE
-from ..commonlisp.systems.importer import PackageModule
+from ..commonlisp.systems import importer
 
 
 def show_package(name):
     """Let the module ``name``, if it is being imported, show the current package."""
     module = sys.modules.get(name)
     if module is not None and getattr(module, "__spec__", None) is not None and name != "__main__":
-        module.__dict__["lisp_package"] = PACKAGE.value
-        module.__class__ = PackageModule
+        importer.show_package(module, PACKAGE.value)
 
 
 __all__ = ["show_package"]

@@ -8,6 +8,7 @@ are drawn otherwise.) Law: same seed, same run.
 
 from __future__ import annotations
 
+import functools
 import random as python_random
 
 from cramhy_runtime.lisp_core.conditions import SimpleTypeError, error, type_error
@@ -71,13 +72,14 @@ def restored_state(slot=None, words=None):
     return state
 
 
+@functools.lru_cache(maxsize=1)  # each session begins with the same seed
 def _initial_words(seed):
     word = seed & 0xFFFFFFFF
     words = [word]
     for index in range(1, 624):
         word = (1812433253 * (word ^ word >> 30) + index) & 0xFFFFFFFF
         words.append(word)
-    return words
+    return tuple(words)
 
 
 RANDOM_STATE = special("*RANDOM-STATE*", RandomState())

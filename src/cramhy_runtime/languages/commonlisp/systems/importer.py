@@ -23,8 +23,16 @@ from ..python import python_face
 from . import loader, systems
 
 
+_names: set[str] = set()
+"""Under which names packages were imported in any image. To look through all modules of Python takes milliseconds."""
+
+
 class PackageModule(types.ModuleType):
     """The Python face of a Lisp package."""
+
+    def __init__(self, name):
+        _names.add(name)
+        super().__init__(name)
 
     def __getattr__(self, name):
         package = self.__dict__.get("lisp_package")
@@ -50,7 +58,8 @@ class _PackageModules:
 
     @staticmethod
     def take():
-        return {name: module for name, module in list(sys.modules.items()) if module.__class__ is PackageModule}
+        modules = {name: sys.modules.get(name) for name in list(_names)}
+        return {name: module for name, module in modules.items() if module.__class__ is PackageModule}
 
     @staticmethod
     def put(state):
@@ -59,6 +68,13 @@ class _PackageModules:
         sys.modules.update(state)
 
     copy = staticmethod(dict)
+
+
+def show_package(module, package):
+    """Let a module of Python, which is being imported, show a Lisp package from now on."""
+    _names.add(module.__name__)
+    module.__dict__["lisp_package"] = package
+    module.__class__ = PackageModule
 
 
 def package_for(name):
