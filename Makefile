@@ -1,5 +1,5 @@
 # make tutorial: both lectures, typed into the REPL. make view: the turtle draws a house on a page. make kitchen: a robot sets a table.
-# make test: the tests. make soak: each case of them, for hours.
+# make test: the tests but those that are marked for the soak. make soak: all of them, in their long forms, for hours.
 # make docs: the pages with what happens now. make site: the pages as a site, in site/index.html.
 # make bench: what things cost, beside their goals and beside others. make bench-compare COMMIT=HEAD~1: this checkout beside that one.
 # make house: counts the house and writes docs/explanation/house.md.
@@ -70,7 +70,7 @@ bench-compare: $(READY)
 
 soak: $(READY)
 	@CRAMHY_SOAK=1 $(BIN)/python -m pytest
-	@CRAMHY_LATE=$$$$ $(BIN)/python -m pytest tests/rosbridge tests/ros_tools tests/view tests/chronicle tests/repl tests/actionlib
+	@CRAMHY_LATE=$$$$ $(BIN)/python -m pytest -m "soak or not soak" tests/rosbridge tests/ros_tools tests/view tests/chronicle tests/repl tests/actionlib
 
 lint: $(READY)
 	@$(BIN)/ruff check src hy_src tests benchmarks tutorials

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import collections
-import fnmatch
-import functools
 import gc
 import os
-import re
-import zlib
 from pathlib import Path
 
 import late_threads
 import pytest
-from systems import BACKENDS, SOAK, takes_long
+import soak_marks
+from systems import BACKENDS, SOAK
 
 from cramhy_runtime.session import Image
 
@@ -22,18 +18,6 @@ try:
 except ImportError:  # a part of it is compiled, and not for WebAssembly
     settings = None
 
-TESTS = Path(__file__).parent
-LEFT_OUT = [
-    (re.compile(fnmatch.translate(pattern)), int(share or 0), pattern if together else None)
-    for pattern, share, together in re.findall(
-        r"^(?!#)(.+?)(?: 1/(\d+)( together)?)?$", (TESTS / "long_tests.txt").read_text(encoding="utf-8"), re.M
-    )
-]
-"""Which tests `make soak` alone runs: patterns of their names, and of how many siblings one runs everywhere (0: none does). The third is the
-name of the family if all that the pattern fits are siblings; otherwise the cases of one test are."""
-
-A_FEW_ROOMS = 8000
-"""So many cases or fewer run whole: who works on a room wants every case of it."""
 REPOSITORY = Path(__file__).parents[1]
 SHARED = REPOSITORY.parent / "shared"
 
@@ -78,27 +62,37 @@ if "CRAMHY_LATE" in os.environ:
     late_threads.install(os.environ["CRAMHY_LATE"])
 
 
+def whole_files(config):
+    """Whether every case is asked for: by `make soak`, by naming files or tests, or by an expression for marks of one's own."""
+    named = [argument for argument in config.args if "::" in argument or argument.endswith(".py")]
+    return SOAK or config.option.markexpr or len(named) == len(config.args)
+
+
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config, items):
-    """Long files come first. Of a run of the whole only some siblings stay, and the others are told as deselected: to skip 13,000 one by
-    one took half a minute."""
+    """Long files come first. Tests for the soak are told as deselected: to skip 25,000 one by one took half a minute."""
     items.sort(key=lambda item: not any(part in LONG for part in item.path.parts))
-    path_of = functools.cache(lambda path: path.relative_to(TESTS).as_posix())
-    families: dict[str, list] = collections.defaultdict(list)
-    for item in items:
-        name = f"{path_of(item.path)}::{item.name}"
-        share, family = next((share, family) for pattern, share, family in LEFT_OUT if pattern.match(name))
-        if not share:
-            item.add_marker(takes_long)
-        elif len(items) > A_FEW_ROOMS and not SOAK:
-            families[f"{share} {family or name.partition('[')[0]}"].append(item)
-    left_out = set()
-    for name, siblings in families.items():
-        share = min(int(name.partition(" ")[0]), len(siblings))
-        kept = zlib.crc32(name.encode()) % share  # not always the first one, which is that on threads
-        left_out.update(item for number, item in enumerate(siblings) if number % share != kept)
+    config.stash[soak_marks.WRONG] = soak_marks.leave_on_cases(items)
+    left_out = [] if whole_files(config) else [item for item in items if item.get_closest_marker("soak")]
+    config.stash[soak_marks.LEFT_OUT] = len(left_out)
     if left_out:
-        config.hook.pytest_deselected(items=list(left_out))
-        items[:] = [item for item in items if item not in left_out]
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if not item.get_closest_marker("soak")]
+
+
+def pytest_sessionfinish(session):
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput["left_out"] = session.config.stash.get(soak_marks.LEFT_OUT, 0)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node):
+    node.config.stash[soak_marks.LEFT_OUT] = getattr(node, "workeroutput", {}).get("left_out", 0)
+
+
+def pytest_terminal_summary(terminalreporter, config):
+    if count := config.stash.get(soak_marks.LEFT_OUT, 0):
+        terminalreporter.write_line(f"{count} tests with the mark soak were deselected: make soak runs them.")
 
 
 @pytest.fixture(scope="session")

@@ -14,6 +14,8 @@ IN_WEBASSEMBLY = sys.platform == "emscripten"
 """Whether this is Pyodide, in Node or a browser; see tests/webassembly."""
 BACKENDS = ["jspi"] if IN_WEBASSEMBLY else ["threads", "greenlet"]
 """The names of the kernel's back ends that this system can have."""
+ONE_BACKEND = BACKENDS if IN_WEBASSEMBLY else [pytest.param("threads", marks=pytest.mark.soak), "greenlet"]
+"""The same for rooms above `cpl`, whose tests meet the other back end in `make soak`. The tests of `kernel` and `cpl` always meet both."""
 needs_threads = pytest.mark.skipif(IN_WEBASSEMBLY, reason="WebAssembly has no threads")
 needs_processes = pytest.mark.skipif(IN_WEBASSEMBLY, reason="WebAssembly has no processes and no signals")
 
@@ -38,7 +40,6 @@ IS_POSIX = os.name == "posix" and "CRAMHY_TEST_HIDDEN" not in os.environ
 posix = pytest.mark.skipif(not IS_POSIX, reason="users, modes, links, signals and pipes of POSIX")
 SOAK = bool(os.environ.get("CRAMHY_SOAK"))
 """Whether `make soak` runs the tests: all of them, and in their long form."""
-takes_long = pytest.mark.skipif(not SOAK, reason="it takes long: make soak runs it")
 linux = pytest.mark.skipif(sys.platform != "linux" or not IS_POSIX, reason="/proc, /dev/full and limits of Linux")
 needs_terminals = pytest.mark.skipif(not has_module("termios"), reason="this system has no terminals of POSIX")
 needs_deep_stacks = pytest.mark.skipif(

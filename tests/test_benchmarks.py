@@ -21,6 +21,7 @@ def _programs():
         sys.path.remove(str(BENCHMARKS))
 
 
+@pytest.mark.soak(all_but=9)
 @pytest.mark.parametrize("program", _programs(), ids=lambda program: program.function)
 def test_a_program_gives_what_its_peer_gives(program):
     session = Session(time="virtual", turtlesim=False)
@@ -30,6 +31,7 @@ def test_a_program_gives_what_its_peer_gives(program):
     assert session.evaluate_text(f"({program.function} {text})")[0] == program.python(*arguments)
 
 
+@pytest.mark.soak
 def test_two_commits_are_compared_row_by_row():
     """A few rounds of one row; who is faster is not asked."""
     if subprocess.run(["git", "-C", str(BENCHMARKS), "rev-parse", "--verify", "HEAD"], capture_output=True).returncode:

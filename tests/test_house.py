@@ -14,7 +14,6 @@ import sys
 from pathlib import Path
 
 import pytest
-from systems import takes_long
 
 from cramhy_runtime.lisp_core import ports
 
@@ -305,6 +304,7 @@ def _part_of(room, path):
     return parts[depth] if "/".join(parts[:depth]) == room and parts[depth:] != ("__init__",) else None
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("room", sorted({str(path.parents[1].relative_to(SOURCE)) for path in SOURCE.glob("*/**/__init__.py")} - {"."}))
 def test_the_folders_of_a_room_are_in_no_circle(room):
     assert not circles(parts_of(room))
@@ -367,6 +367,7 @@ def test_a_patch_is_found(monkeypatch):
     assert [line.split(":")[0] for line in patches(path)] == ["line 2", "line 2", "line 3", "line 4"]
 
 
+@pytest.mark.soak
 def test_threads_and_the_wall_clock_are_the_kernels():
     used = re.compile(r"^\s*(?:import|from) (?:_?threading|_thread|concurrent)\b|\btime\.(?:sleep|time)\(|from time import", re.M)
     assert offences(lambda path: used.findall(path.read_text()), [path for path in FILES if room_of(path) != "kernel"]) == {}
@@ -405,6 +406,7 @@ def test_every_module_opens_with_a_paragraph():
     assert [str(path.relative_to(ROOT)) for path in FILES if not ast.get_docstring(tree_of(path))] == []
 
 
+@pytest.mark.soak(all_but=25)
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="each module gets a fresh interpreter by a fork")
 @pytest.mark.parametrize(
     "room",
@@ -417,7 +419,7 @@ def test_a_room_that_says_where_its_parts_are_names_them_all(room):
     assert parts - set(re.findall(r"`(\w+)`", told)) == {"__init__"}
 
 
-@pytest.mark.parametrize("files", ["packages", pytest.param("all", marks=takes_long)])
+@pytest.mark.parametrize("files", ["packages", pytest.param("all", marks=pytest.mark.soak)])
 def test_any_module_can_be_imported_first(files):
     """No module relies on another one having been imported before it. The short form takes packages and each twentieth module."""
     wanted = FILES if files == "all" else [path for path in FILES if path.name == "__init__.py"] + FILES[::20]
@@ -448,6 +450,7 @@ while True:
 """
 
 
+@pytest.mark.soak
 def test_nothing_names_a_path_of_a_machine():
     for path in TEXTS:
         assert not re.search(r"(?<![\w.])/(home|work|Users|root)/\w", path.read_text()), path
@@ -458,11 +461,6 @@ def test_test_modules_outside_of_packages_have_names_of_their_own():
     paths = [path for path in (ROOT / "tests").rglob("*.py") if not (path.parent / "__init__.py").exists() and path.name != "conftest.py"]
     names = [path.stem for path in paths]
     assert not {name for name in names if names.count(name) > 1}
-
-
-def test_what_make_test_leaves_out_is_there():
-    lines = [line for line in (ROOT / "tests/long_tests.txt").read_text().splitlines() if not line.startswith("#")]
-    assert [line for line in lines if not list((ROOT / "tests").glob(line.partition("::")[0].split("*")[0] + "*"))] == []
 
 
 SINGLES = re.compile(r"single[-_]?float|new_single\b", re.I)

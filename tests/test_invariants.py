@@ -52,6 +52,7 @@ def invariants(page):
     return {int(number) for number in re.findall(r"^(\d+)\. ", section, re.M)}
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("page", PAGES)
 def test_every_invariant_has_a_test(page):
     numbers, claimed = invariants(page), marks().get(page, {}).keys()

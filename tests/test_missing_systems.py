@@ -15,7 +15,6 @@ from pathlib import Path
 
 import portable
 import pytest
-from systems import takes_long
 
 ROOT = Path(__file__).parents[1]
 MODULES = """crypt curses _curses fcntl grp nis pty pwd readline resource spwd syslog termios tty _posixshmem""".split()
@@ -179,6 +178,7 @@ except OSError as problem:
     assert (done.stdout, done.stderr) == ("resource\ntermios\nfcntl\npwd\n[] []\n10038\n", "")
 
 
+@pytest.mark.soak
 def test_every_module_can_be_imported(hidden_from_cramhy):
     """numpy, of the extra ``robot``, asks a Linux for ``os.uname``, so that others find everything."""
     source = ROOT / "src"
@@ -201,6 +201,7 @@ for name in {names!r}:
     assert (done.stdout, done.stderr) == ("", "")
 
 
+@pytest.mark.soak
 def test_the_repl_does_both_lectures_from_a_pipe(cramhy, backend, tmp_path):
     lectures = runpy.run_path(str(ROOT / "tutorials" / "lectures.py"))
     lines = [*lectures["LECTURE_34"], *lectures["LECTURE_38"], "(value *turtle-pose*)", "(car 5)", '(turtlesim:save-paper "paper.png")']
@@ -214,6 +215,7 @@ def test_the_repl_does_both_lectures_from_a_pipe(cramhy, backend, tmp_path):
     assert (tmp_path / "paper.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.soak
 def test_a_file_runs(cramhy, backend, tmp_path):
     (tmp_path / "plan.lisp").write_text(
         "(in-package :cram-user)\n(print (top-level (par (sleep 1) (progn (sleep 2) :done))))\n"
@@ -225,6 +227,7 @@ def test_a_file_runs(cramhy, backend, tmp_path):
     assert (done.returncode, done.stderr) == (0, "") and "CAUGHT" in done.stdout
 
 
+@pytest.mark.soak
 def test_forms_are_evaluated_as_json(cramhy, backend):
     told = ("machine-type", "software-type", "machine-instance", "software-version")
     forms = [
@@ -246,12 +249,14 @@ def test_forms_are_evaluated_as_json(cramhy, backend):
     assert "Dynamic space usage is:   not told by this system.\n" in answers[7]["output"]
 
 
+@pytest.mark.soak
 def test_the_author_of_a_file_is_not_known(cramhy, tmp_path):
     (tmp_path / "x").write_text("")
     done = cramhy("eval", input=json.dumps({"form": '(file-author "x")'}))
     assert json.loads(done.stdout) == {"output": "", "values": ["NIL"], "error": None}
 
 
+@pytest.mark.soak
 def test_unit_tests_run_without_an_alarm(cramhy, tmp_path):
     (tmp_path / "tests.lisp").write_text("(in-package :cl-user)\n(lisp-unit:define-test adds (lisp-unit:assert-equal 3 (+ 1 2)))")
     done = cramhy("test", "tests.lisp")
@@ -264,6 +269,7 @@ def test_the_shims_are_printed(cramhy):
     assert "cramhy() {" in done.stdout
 
 
+@pytest.mark.soak
 def test_commands_that_need_no_session(cramhy):
     assert cramhy("ros", "rosversion", "-d").stdout == "noetic\n"
     assert cramhy("ros", "rosmsg", "show", "geometry_msgs/Point").stdout == "float64 x\nfloat64 y\nfloat64 z\n\n"
@@ -271,6 +277,7 @@ def test_commands_that_need_no_session(cramhy):
     assert cramhy("teleop").stderr.startswith("ERROR: Unable to communicate with master!\nNo session serves here.")
 
 
+@pytest.mark.soak
 def test_a_session_serves_and_another_terminal_reaches_it(hidden, cramhy):
     pytest.importorskip("uvicorn")
     process = subprocess.Popen(
@@ -298,6 +305,7 @@ def test_a_session_serves_and_another_terminal_reaches_it(hidden, cramhy):
         assert process.wait(60) == 0
 
 
+@pytest.mark.soak
 def test_a_prompt_on_a_terminal_reads_lines(hidden):
     """Reading waits where nobody can say whether a line is there; the forms typed are answered."""
     pty = pytest.importorskip("pty")
@@ -362,7 +370,9 @@ for name in ("cramhy_runtime.kernel.anything", "pytest"):
     assert (done.stdout, done.stderr) == ("False False\nNo module named 'termios' (hidden by a test)\nTrue True\n", "")
 
 
-@pytest.mark.parametrize("room", [room if room in ("kernel", "cpl") else pytest.param(room, marks=takes_long) for room in portable.SUITES])
+@pytest.mark.parametrize(
+    "room", [room if room in ("kernel", "cpl") else pytest.param(room, marks=pytest.mark.soak) for room in portable.SUITES]
+)
 def test_the_suite_of_a_room_passes(hidden_from_cramhy, room):
     options = ["-q", "--no-header", "-p", "no:cacheprovider", "-p", "no:xdist", "--tb=short"]
     environment = {key: value for key, value in hidden_from_cramhy.items() if not key.startswith("PYTEST_")}

@@ -69,6 +69,7 @@ def words_of(text):
     return shlex.split(text.replace("…", "").replace(r"\|", "|"), comments=True)
 
 
+@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize("text", COMMANDS)
 def test_a_command_is_one_that_there_is(text):
     nested = re.fullmatch(r'eval "\$\((.*)\)"', text.strip())

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 import recorded
-from systems import takes_long
 
 SAMPLE = [
     "lisp/sbcl/odds.txt",
@@ -15,6 +14,7 @@ SAMPLE = [
 ]
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("recording", [each for each in recorded.RECORDINGS if each.name in SAMPLE], ids=lambda each: each.name)
 def test_a_recording_made_again_is_the_same(recording):
     if recording.lacking is not None:
@@ -22,7 +22,7 @@ def test_a_recording_made_again_is_the_same(recording):
     assert recorded.answers(recording.made()) == recorded.answers(recording.path.read_text())
 
 
-@takes_long
+@pytest.mark.soak
 @pytest.mark.parametrize("recording", recorded.RECORDINGS, ids=lambda each: each.name)
 def test_each_recording_made_again_is_the_same(recording):
     test_a_recording_made_again_is_the_same(recording)

@@ -6,6 +6,8 @@ import functools
 import re
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[1]
 FOLDERS = [ROOT / name for name in ("src", "hy_src", "tests", "benchmarks", "tutorials", "docs")]
 PAGES = {path.name: path for folder in ("", "tutorials", "docs", "docs/reference") for path in (ROOT / folder).glob("*.md")}
@@ -30,12 +32,14 @@ def texts():
                 yield path.relative_to(ROOT), path.read_text(encoding="utf-8")
 
 
+@pytest.mark.soak
 def test_each_cited_page_is_here():
     cited = {(str(path), name) for path, text in texts() for name in re.findall(r"(?<![\w./-])([a-z][a-z-]+\.md)\b", text)}
     assert len(cited) > 200
     assert not sorted((path, name) for path, name in cited if name not in PAGES)
 
 
+@pytest.mark.soak
 def test_each_cited_section_is_in_its_page():
     citations = [
         (str(path), name, number)

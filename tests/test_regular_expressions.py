@@ -16,12 +16,13 @@ REPEATS = (_constants.MAX_REPEAT, _constants.MIN_REPEAT)
 
 def patterns(path):
     """(line, text, flags) of each regular expression that a file writes out."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    source = path.read_text(encoding="utf-8")
+    for node in ast.walk(ast.parse(source)) if re.search(r"\bre\.|late_pattern", source) else ():
         if not (isinstance(node, ast.Call) and node.args and isinstance(node.args[0], ast.Constant)):
             continue
         function, text = node.func, node.args[0].value
-        of_re = isinstance(function, ast.Attribute) and ast.unparse(function.value) == "re" and function.attr in FUNCTIONS
-        if (of_re or ast.unparse(function) == "late_pattern") and isinstance(text, (str, bytes)):
+        of_re = isinstance(function, ast.Attribute) and getattr(function.value, "id", "") == "re" and function.attr in FUNCTIONS
+        if (of_re or getattr(function, "id", "") == "late_pattern") and isinstance(text, (str, bytes)):
             flags = ast.unparse(node)
             yield node.lineno, text, sum(flag for name, flag in FLAGS.items() if re.search(rf"re\.{name}\b", flags))
 

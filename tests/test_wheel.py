@@ -60,6 +60,7 @@ def test_the_wheel_carries_the_licence(wheel):
     assert (metadata["License-Expression"], metadata.get_all("License-File")) == ("BSD-3-Clause", ["LICENSE"])
 
 
+@pytest.mark.soak
 def test_twine_accepts_both(dist):
     pytest.importorskip("twine", reason="it checks what is published: pip install twine")
     done = subprocess.run([sys.executable, "-m", "twine", "check", "--strict", *map(str, dist.iterdir())], capture_output=True, text=True)
@@ -170,6 +171,7 @@ def unpacked(wheel, tmp_path):
     return tmp_path / "site", started
 
 
+@pytest.mark.soak
 def test_the_first_start_of_the_wheel_compiles_no_macros_and_no_course_unless_they_were_changed(unpacked):
     site, started = unpacked
     assert started() == ["[] False", "[]"]

@@ -48,11 +48,13 @@ def modules_of(room):
     ]
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("room", [*ROOMS, *ABOVE])
 def test_every_module_of_a_room_is_imported_without_languages(room):
     without_languages("import importlib\nfor name in sys.argv[1:]:\n    importlib.import_module(name)\n", *modules_of(room))
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("room", ["cpl", "prolog", "designators", "process_modules", "ros", "turtlesim"])
 def test_importing_a_room_loads_nothing_of_languages(room):
     program = f"import cramhy_runtime.{room}, sys; print([name for name in sys.modules if 'languages' in name or name == 'hy'])"

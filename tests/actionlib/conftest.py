@@ -3,6 +3,7 @@
 import itertools
 
 import pytest
+from systems import ONE_BACKEND
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
@@ -16,7 +17,7 @@ boot()
 _numbers = itertools.count(1)
 
 
-@pytest.fixture(params=["threads", "greenlet"])
+@pytest.fixture(params=ONE_BACKEND)
 def lisp(request, capsys):
     from cramhy_runtime.repl.session import Session
 

@@ -69,6 +69,7 @@ def test_a_state_that_there_is_not_loses_the_goal(lisp, told, capsys):
     assert "ERROR" not in capsys.readouterr().out
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("seed", range(6))
 def test_in_whatever_order_the_messages_are_looked_at(seed):
     from cramhy_runtime import kernel

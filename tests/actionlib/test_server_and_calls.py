@@ -189,6 +189,7 @@ def test_a_shape_server_in_lisp_drives_the_turtle(lisp):
     )
 
 
+@pytest.mark.soak
 def test_a_file_that_was_compiled_before_makes_the_packages_too(tmp_path):
     import subprocess
     import sys

@@ -213,6 +213,7 @@ def test_the_lessons_of_the_ease_fall_school_run(begin, lesson, tmp_path):
     assert errors == LESSONS[lesson]
 
 
+@pytest.mark.soak
 def test_the_lessons_world_is_set_and_made_anew(begin, tmp_path):
     """The system that the lessons load comes with cramhy, for those who have no checkout."""
     session = begin(tmp_path)

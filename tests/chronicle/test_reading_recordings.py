@@ -8,6 +8,7 @@ import json
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from systems import SOAK
 
 from cramhy_runtime import chronicle, kernel
 from cramhy_runtime.chronicle import recorder
@@ -71,8 +72,9 @@ def test_a_whole_recording_is_read_in_order(recorded, whole, tmp_path):
         assert list(found.numbered(after)) == [message for message in numbered if message[0] > after]
 
 
+@pytest.mark.soak
 @given(data=st.data())
-@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=150 if SOAK else 50, deadline=None, suppress_health_check=list(HealthCheck))
 def test_a_file_cut_off_at_any_byte_is_read_as_far_as_whole_chunks_go(recorded, whole, tmp_path_factory, data):
     end = data.draw(st.integers(0, len(recorded) - 1))
     folder = tmp_path_factory.getbasetemp()
@@ -92,6 +94,7 @@ def test_a_file_cut_off_at_any_byte_is_read_as_far_as_whole_chunks_go(recorded, 
         assert "cut off" in found.cut
 
 
+@pytest.mark.soak
 def test_a_small_file_cut_off_at_every_byte_is_readable_up_to_there(tmp_path):
     from cramhy_runtime.repl.session import Session
 
@@ -115,8 +118,9 @@ def test_a_small_file_cut_off_at_every_byte_is_readable_up_to_there(tmp_path):
     assert counts == sorted(counts) and counts[-1] == len(all_of_them)
 
 
+@pytest.mark.soak
 @given(data=st.data())
-@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=150 if SOAK else 50, deadline=None, suppress_health_check=list(HealthCheck))
 def test_damaged_bytes_are_a_recording_or_the_declared_error(recorded, tmp_path_factory, data):
     content = bytearray(recorded)
     for _ in range(data.draw(st.integers(1, 4))):
@@ -128,7 +132,7 @@ def test_damaged_bytes_are_a_recording_or_the_declared_error(recorded, tmp_path_
 
 
 @given(junk=st.binary(max_size=200))
-@settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=100 if SOAK else 50, deadline=None, suppress_health_check=list(HealthCheck))
 def test_any_bytes_behind_the_magic_ones_are_the_declared_error_or_a_recording(tmp_path_factory, junk):
     with pytest.raises(RecordingError):
         read_bytes(tmp_path_factory.getbasetemp(), b"\x89MCAP0\r\n" + junk)

@@ -227,6 +227,7 @@ SHOW = """
        (progn (sleep 0.7) (print (list (make-instance (quote thing)) (cpl-impl:current-task) (value *who*))))))"""
 
 
+@pytest.mark.soak
 def test_the_same_seed_gives_the_same_bytes_and_recording_does_not_change_the_run(tmp_path):
     told = []
     for name, seed, end, backend in (
@@ -242,6 +243,7 @@ def test_the_same_seed_gives_the_same_bytes_and_recording_does_not_change_the_ru
     assert told[0] == told[1] == told[3] and b"THING {1001" in told[0] and b"[PAR-CHILD-#1/3]" in told[0]
 
 
+@pytest.mark.soak
 def test_a_process_that_is_killed_leaves_a_file_that_can_be_read(tmp_path):
     assert run_script(tmp_path / "x.mcap", end="kill") == -signal.SIGKILL
     found = chronicle.read(tmp_path / "x.mcap")
@@ -252,6 +254,7 @@ def test_a_process_that_is_killed_leaves_a_file_that_can_be_read(tmp_path):
     assert found.count > 100 and found.end >= 2
 
 
+@pytest.mark.soak
 def test_a_process_that_ends_by_an_error_closes_its_recording(tmp_path):
     assert run_script(tmp_path / "x.mcap", end="error") == 3
     assert chronicle.read(tmp_path / "x.mcap").cut == ""
@@ -315,6 +318,7 @@ def test_without_mcap_it_is_told_how_to_get_it(session, tmp_path, monkeypatch):
         assert str(problem.value) == f"{what} needs the Python package mcap, which is not installed. Type: {install_command('record')}"
 
 
+@pytest.mark.soak
 def test_the_lecture_is_recorded_whole(tmp_path):
     """Lecture 38 with its two process modules, as ``tutorials/lectures.py`` types it."""
     from cramhy_runtime.repl.session import Session

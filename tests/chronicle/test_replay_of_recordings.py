@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from systems import ONE_BACKEND
 
 from cramhy_runtime import chronicle, kernel
 from cramhy_runtime.chronicle import player as players
@@ -43,7 +44,7 @@ def whole(path):
     return list(chronicle.read(path).messages())
 
 
-@pytest.fixture(params=["threads", "greenlet"])
+@pytest.fixture(params=ONE_BACKEND)
 def fresh(request):
     yield kernel.start(backend=request.param)
     chronicle.stop()
@@ -222,6 +223,7 @@ def test_another_replay_takes_the_place_of_the_first(fresh, path):
     assert not first._timer.active
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "act, text",
     [

@@ -21,12 +21,14 @@ NAMES = {
 }
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("form", NAMES)
 def test_a_name_that_is_missing_is_found_where_it_is(typed, form):
     shown = words(typed([*form.split("\n"), ":quit"], language="hy"))
     assert NAMES[form] in shown and "is Common Lisp" not in shown and "Lisp package" not in shown
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("form", ["(mapcar 1 2)", "(y 1)", "(nosuch 1)"])
 def test_other_names_stand_at_no_head_and_in_no_module(typed, form):
     shown = typed(["(import cram-my-beginner-tutorial :as tut)", form, ":quit"], language="hy")
@@ -57,6 +59,7 @@ def test_other_errors_are_left_as_they_are(error):
     assert of_error(*error, "hy") is None
 
 
+@pytest.mark.soak
 def test_slips_in_rules():
     arrow = "Each fact and each rule of a group stands in a form of its own that begins with <-"
     assert arrow in of_failed_form("(def-fact-group shapes [] (shape house 5))", "hy")
@@ -74,6 +77,7 @@ def test_a_text_without_its_quotes_is_told_from_the_page():
     assert of_text("cram", "(sleep cram)", forms) is None and of_text("node", "(start-ros-node cram)", forms) is None
 
 
+@pytest.mark.soak
 def test_a_minus_before_a_name_is_a_call():
     assert of_name("-motion", "hy") == "; The minus is a function, with parentheses around the call: (- motion...)"
     assert of_name("-", "hy") is None
@@ -86,11 +90,13 @@ def test_the_words_of_lisp_in_messages():
     assert in_words_of_hy(nested) == "already: leave top-level away here."
 
 
+@pytest.mark.soak
 def test_forms_are_named_by_their_first_lines():
     assert first_line("(init)") == "(init)" and first_line("(top-level\n  (f))") == "(top-level ...)"
     assert first_line("(defn f [x]\n  x)") == "(defn f [x] ..."
 
 
+@pytest.mark.soak
 def test_a_form_that_failed_was_not_typed(typed):
     """(init) came before the form that makes it known."""
     first, load, init = "(lisp-package :turtlesim-in-hy)", "(import turtlesim-in-hy.process-modules [init])", "(init)"
@@ -102,6 +108,7 @@ def test_a_form_that_failed_was_not_typed(typed):
     assert "The robot is started" not in typed([place, first, load, choose, init, drive, ":quit"], "choosing-a-module", "hy")
 
 
+@pytest.mark.soak
 def test_what_was_ended_by_ctrl_c_is_not_typed_again(typed, tmp_path):
     path = str(tmp_path / "learn.json")
     typed([":n", "(setv a 1)", "(raise KeyboardInterrupt)", ":quit"], language="hy", progress=Progress(path))
@@ -109,6 +116,7 @@ def test_what_was_ended_by_ctrl_c_is_not_typed_again(typed, tmp_path):
     assert "; Typed again: 1 text." in shown and "raise" not in shown
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("form", "told"),
     [

@@ -14,6 +14,7 @@ def without_comments(code):
     return " ".join(kept).split()
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("width", [44, 80])
 @pytest.mark.parametrize(
     "line",

@@ -50,18 +50,21 @@ def run(tmp_path):
     return run
 
 
+@pytest.mark.soak(all_but=1)
 @needs_processes
 @KINDS
 def test_at_the_prompt(run, kind):
     right(kind, run("repl", text=f"{LISP[kind]}\n{CHECK['lisp']}\n"))
 
 
+@pytest.mark.soak(all_but=1)
 @needs_processes
 @KINDS
 def test_at_the_prompt_of_hy(run, kind):
     right(kind, run("repl", "--hy", text=f"{HY[kind]}\n{CHECK['hy']}\n"))
 
 
+@pytest.mark.soak
 @needs_processes
 @KINDS
 def test_in_a_file_that_asks_itself(run, tmp_path, kind):
@@ -70,6 +73,7 @@ def test_in_a_file_that_asks_itself(run, tmp_path, kind):
         right(kind, run("run", "answer.lisp"))
 
 
+@pytest.mark.soak
 @needs_processes
 @KINDS
 def test_in_a_file_of_hy_that_asks_itself(run, tmp_path, kind):
@@ -78,6 +82,7 @@ def test_in_a_file_of_hy_that_asks_itself(run, tmp_path, kind):
         right(kind, run("run", "answer.hy"))
 
 
+@pytest.mark.soak
 @needs_processes
 @KINDS
 def test_in_a_file_that_is_loaded_before(run, tmp_path, kind):
@@ -86,6 +91,7 @@ def test_in_a_file_that_is_loaded_before(run, tmp_path, kind):
     right(kind, run("repl", "--load", "answer.lisp", text=f"{CHECK['lisp']}\n"))
 
 
+@pytest.mark.soak
 @needs_processes
 @KINDS
 def test_in_what_hy_runs_before_its_prompt_and_what_it_reads_from_a_pipe(tmp_path, kind):
@@ -169,6 +175,7 @@ def test_that_printing_is_not_answering_is_told_in_lisp(session, body):
     assert "and gave NIL." in told("rectangle", session) and PRINTED not in told("rectangle", session)
 
 
+@pytest.mark.soak
 @needs_processes
 def test_hy_speaks_of_none_and_true_when_a_check_does(run):
     check = '(import cramhy-runtime.course.package [check])\n(check "rectangle" "hy")\n'

@@ -47,6 +47,7 @@ def test_a_remark_in_a_task_has_other_numbers_and_names_than_the_line(line, lang
         assert told is not None and not set(re.findall(r"\w+", line)) & set(re.findall(r"\w+", told)) - {"5"}, told
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("line", ["24*60*60", "* 24 60 60", "(24 * 60 * 60)", "24 * 60 * 60"])
 def test_nothing_that_is_said_in_the_first_task_is_its_answer(typed, language, line):
@@ -71,6 +72,7 @@ def test_type_says_how_many_forms_are_left(typed, language):
     assert "Left of this step" not in typed(["42", "(+ 1 2)", ":quit"], language=language)
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_next_names_the_forms_that_were_not_typed(typed, language):
     assert "; Not typed: (+ 1 2), (max 3 7 5)\n" in typed(["42", ":next", ":quit"], language=language)
@@ -83,6 +85,7 @@ def test_next_names_the_forms_that_were_not_typed(typed, language):
     assert f"What comes later may need them: {load} leads back." in words(typed([load, ":next", ":quit"], language=language))
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_a_function_of_that_name_counts_as_typed_however_it_is_written(typed, language):
     head = {"lisp": "(defun ahead", "hy": "(defn ahead"}[language]
@@ -91,6 +94,7 @@ def test_a_function_of_that_name_counts_as_typed_however_it_is_written(typed, la
     assert f"; Not typed: {head}" not in typed([*START[language], *lines], language=language)
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_what_was_typed_before_its_step_came_is_typed(typed, language):
     task = step_with(1, language, "turn-left")
@@ -112,6 +116,7 @@ def test_type_types_what_the_page_shows_behind_the_debuggers_prompt(typed):
     assert "0] q" in shown.split("; Type what")[1] and "Type q first" not in shown
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("line", [":next", ":type", ":check", ":n", ":quit", ":page 3"])
 def test_a_command_waits_until_the_open_form_is_closed_and_is_no_part_of_it(typed, language, line):
@@ -169,6 +174,7 @@ def test_the_check_of_the_square_names_the_task_of_a_missing_function(typed, lan
     assert "Does the loop do both" not in shown and "turn_left" not in shown and "is loaded by" not in shown
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("task", ["turn-left", "first-square"])
 def test_a_function_in_which_nothing_waits_is_named(typed, language, task):
@@ -194,6 +200,7 @@ def test_what_is_not_evaluated_is_told_when_the_debugger_opens(typed):
 # ------------------------------------------------------------------------------------------------------------ calls, and words
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize(("line", "told"), [("max 3 7 5", "(max 3 7 5)"), ("* 2 3", "(* 2 3)"), ("max 3 7.5", "(max 3 7.5)")])
 def test_a_call_without_parentheses_is_told_in_both_languages(typed, language, line, told):
@@ -224,6 +231,7 @@ FORMS_OF_HY = {
 }
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("form", FORMS_OF_HY)
 def test_a_form_of_hy_that_is_written_otherwise_is_told(typed, form):
     shown, told = words(typed([form, ":quit"], language="hy")), FORMS_OF_HY[form]
@@ -250,6 +258,7 @@ OF_ARGUMENTS = {
 }
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(("language", "form"), [(language, form) for language, forms in OF_ARGUMENTS.items() for form in forms])
 def test_messages_have_the_words_of_the_pages(typed, language, form):
     shown = words(typed([*START[language][:1], *form.split("\n"), "q", ":quit"], language=language))

@@ -13,6 +13,8 @@ from systems import needs_processes  # noqa: E402
 from .in_a_notebook import walk  # noqa: E402
 from .walks import LANGUAGES, WITHOUT_ROBOT, orders  # noqa: E402
 
+pytestmark = pytest.mark.soak
+
 
 @needs_processes
 @pytest.mark.parametrize("language", LANGUAGES)

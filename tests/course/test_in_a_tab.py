@@ -14,6 +14,7 @@ from .in_a_tab import TabWalk  # noqa: E402
 from .walks import LANGUAGES, WITHOUT_ROBOT, orders  # noqa: E402
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_each_page_goes_well_after_other_pages(language, tmp_path):
     for number, names in enumerate(orders(WITHOUT_ROBOT, language, "tab")):

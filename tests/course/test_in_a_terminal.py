@@ -41,6 +41,7 @@ def terminal(tmp_path, monkeypatch):
 READY = {"lisp": r"(?:[A-Z-]+> |\d\] )$", "hy": r"=> $"}
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("language", ["lisp", "hy"])
 def test_the_first_lesson_is_typed_and_its_tasks_are_solved(terminal, language):
     with terminal("--language", language) as there:
@@ -77,6 +78,7 @@ def test_the_first_lesson_is_typed_and_its_tasks_are_solved(terminal, language):
         assert there.end() == 0
 
 
+@pytest.mark.soak
 def test_ctrl_c_ends_a_check_that_does_not_end_and_the_prompt_goes_on(terminal):
     with terminal("names-and-functions") as there:
         there.expect("CL-USER> $")
@@ -95,6 +97,7 @@ def test_ctrl_c_ends_a_check_that_does_not_end_and_the_prompt_goes_on(terminal):
         assert there.status() == 0
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("language", ["lisp", "hy"])
 def test_ctrl_c_ends_a_form_that_is_open_and_the_next_line_is_answered(terminal, language):
     prompt = {"lisp": "CL-USER> ", "hy": "=> "}[language]
@@ -109,6 +112,7 @@ def test_ctrl_c_ends_a_form_that_is_open_and_the_next_line_is_answered(terminal,
             there.expect(rf"\n42\n{prompt}$")
 
 
+@pytest.mark.soak
 def test_the_editor_of_the_prompt_is_there_and_recalls_commands(terminal):
     pytest.importorskip("prompt_toolkit")
     with terminal(editor=True) as there:
@@ -121,6 +125,7 @@ def test_the_editor_of_the_prompt_is_there_and_recalls_commands(terminal):
         there.expect("Only tasks have hints")
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("words", "told"),
     [(["nowhere"], "There is no page nowhere. There are first-forms, "), (["0"], "There is no page 0"), (["14"], "There is no page 14")],

@@ -119,6 +119,7 @@ def test_a_command_in_the_middle_of_a_form_is_no_part_of_it(typed):
     assert "(1 :NEXT)" in typed(["'(1", " 2 :next", ")", ":quit"]).replace("(1 2 :NEXT)", "(1 :NEXT)")
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("language", ["lisp", "hy"])
 @pytest.mark.parametrize(("line", "told"), [(":next", True), (":n", True), (":red", False), ("next", False)])
 def test_a_command_in_an_open_form_is_told_to_be_none(typed, language, line, told):
@@ -182,6 +183,7 @@ def test_a_later_page_has_the_files_of_the_earlier_ones(typed, tmp_path):
     assert "motion-designators" in (place / "cram-my-beginner-tutorial.asd").read_text()
 
 
+@pytest.mark.soak
 def test_a_module_from_elsewhere_does_not_stand_for_the_courses(typed, monkeypatch):
     other = python_types.ModuleType("turtlesim_in_hy")
     monkeypatch.setitem(sys.modules, "turtlesim_in_hy", other)
@@ -209,6 +211,7 @@ def test_progress_is_kept_and_the_next_run_goes_on_there(typed, tmp_path):
     assert f"Page 1, step {place + 1} of " in shown and "1 of 3 tasks solved" in shown
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     ("first", "chosen", "shown"), [("hy", None, "hy"), ("lisp", None, "lisp"), ("hy", "lisp", "lisp"), (None, None, "lisp")]
 )
@@ -309,6 +312,7 @@ def test_tasks_that_are_left_unsolved_are_told(typed):
     assert "The task is not solved yet: The seconds of a day." in typed([TASK["lisp"], "(* 24 60)", ":check", ":next", ":quit"])
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     ("argument", "told"),
     [("1 2", "Page 1, step 2 of"), ("2 3", "Page 2, step 3 of"), ("1 99", f"Page 1 has the steps 1 to {LAST}"), ("1 0", f"steps 1 to {LAST}"),
@@ -361,6 +365,7 @@ def test_a_form_that_fails_is_still_to_be_typed(typed):
     assert "To see the next step" in typed([*lines, "(in-package :tut)", "(init)", ":quit"])
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("language", ["lisp", "hy"])
 @pytest.mark.parametrize(
     ("line", "told"), [("", "A form is open. Close it by )), or"), ("q", "and q is taken for a part of it"), ("7", None)]
@@ -407,6 +412,7 @@ def test_many_lines_of_the_log_are_cut_where_a_step_is_shown(typed):
 # ------------------------------------------------------------------------------------------------------------- the size of a step
 
 
+@pytest.mark.soak(all_but=7)
 @pytest.mark.parametrize("language", ["lisp", "hy"])
 @pytest.mark.parametrize("name", contents.NAMES)
 def test_each_step_fits_a_terminal_of_24_rows_of_80_columns_with_the_prompt(name, language):
@@ -514,6 +520,7 @@ def test_a_keyword_in_the_place_of_a_text_is_told_in_hy(typed):
     assert 'In Hy a word behind a colon says which argument comes next. Write a text if it is a value: "right"' in shown
 
 
+@pytest.mark.soak
 def test_a_package_of_names_that_was_not_chosen_is_told(typed):
     place = step_of_form(8, "hy", "(lisp-package :turtlesim-in-hy)")
     plan = "(top-level (with-process-modules-running [turtlesim-navigation] (sleep 0)))"

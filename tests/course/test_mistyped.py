@@ -39,6 +39,7 @@ LISP = {
 }
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(("language", "form"), [("hy", form) for form in HY] + [("lisp", form) for form in LISP])
 def test_a_slip_is_told_with_the_words_of_the_student(typed, language, form):
     told = {"hy": HY, "lisp": LISP}[language][form]
@@ -80,6 +81,7 @@ def test_no_form_of_the_pages_and_no_solution_is_taken_for_a_slip(language):
     assert [form for form in forms_of_all_pages(language) if of_form(form, language)] == []
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(("name", "written"), [("true", "True"), ("false", "False"), ("null", "None"), ("nil", "None")])
 def test_other_names_for_values_are_told_in_hy(typed, name, written):
     assert written in of_name(name, "hy") and of_name(name, "lisp") is None and of_name("truth", "hy") is None
@@ -134,6 +136,7 @@ def test_a_form_that_answers_rightly_on_the_page_has_no_remark(typed):
     assert "stand spaces" not in typed(['(print "4, 5")', ":quit"], language="hy")
 
 
+@pytest.mark.soak
 def test_a_misspelt_name_of_a_package_is_guessed_in_hy(typed):
     begin = ["(import cram-my-beginner-tutorial :as tut)"]
     shown = words(typed([*begin, "(cpm:matching-process-modul 1)", "(exe:perfrom 1)", "(cpm:xyzzy 1)", ":quit"], language="hy"))

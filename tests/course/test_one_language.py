@@ -91,6 +91,7 @@ def strangers(said, language):
             yield f"{match[0]!r} ({why}) in: {line}"
 
 
+@pytest.mark.soak(all_but=8)
 @pytest.mark.parametrize("language", OTHERS)
 @pytest.mark.parametrize("name", contents.NAMES)
 def test_a_page_speaks_the_language_that_is_learnt(name, language):

@@ -42,6 +42,7 @@ OUTSIDE = {
 }
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(("language", "form"), [(language, form) for language, forms in OUTSIDE.items() for form in forms])
 def test_a_plan_function_outside_of_a_plan_names_the_form_of_the_student(typed, language, form):
     shown = words(
@@ -75,6 +76,7 @@ IN_HY = {
 OF_PYTHON = ("cpl.", "hyx_", "missed a comma")
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("form", IN_HY)
 def test_an_error_in_hy_speaks_hy(typed, form):
     shown = words(typed([*form.split("\n"), ":quit"], language="hy"))
@@ -94,6 +96,7 @@ IN_LISP = {
 }
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("form", IN_LISP)
 def test_an_error_in_lisp_speaks_lisp(typed, form):
     shown = words(typed([form, "q", ":quit"]))
@@ -124,6 +127,7 @@ def test_type_writes_nothing_over_a_solved_task_unless_asked_again(typed, langua
     assert "\n5\n" in shown.split(told)[1]
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("language", ["lisp", "hy"])
 def test_a_check_shows_no_log_and_no_warning_of_its_own_facts(typed, language):
     begin = (

@@ -27,6 +27,7 @@ SAMPLE = {"right": 1, "wrong": 2}
 """So many tries of a task in a language are typed, if not all of them are."""
 
 
+@pytest.mark.soak(all_but=19)
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("task", TASKS)
 def test_each_task_has_right_and_wrong_tries_of_different_kinds(task, language):
@@ -53,6 +54,7 @@ def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("course")
 
 
+@pytest.mark.soak
 @needs_processes
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("name", contents.NAMES)

@@ -41,6 +41,7 @@ def nothing_runs():
     return [task for task in kernel.active().tasks if task is not kernel.current()] == []
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.law(79)
 @pytest.mark.parametrize("form", PLAN_FORMS)
 def test_a_plan_form_outside_of_a_plan_says_so_in_its_own_name(plan_text, form):
@@ -49,6 +50,7 @@ def test_a_plan_form_outside_of_a_plan_says_so_in_its_own_name(plan_text, form):
     assert plan_text.run(f"(defun drive ()\n  {text})\n(drive)") == OUTSIDE.format(name, text + ")", name.lower())
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.law(79)
 @pytest.mark.parametrize(
     "form, value",
@@ -106,6 +108,7 @@ def test_an_unknown_step_in_an_ordering_is_named_and_starts_nothing(plan_text):
     assert plan_text("*notes*") == "(:CLOSED)" and nothing_runs()
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "ordering, value, wanted, more",
     [
@@ -204,6 +207,7 @@ def test_a_ring_through_a_step_of_a_step_is_reported_as_a_deadlock_with_what_eve
     assert plan_text("*notes*") == "NIL" and nothing_runs()
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("form", ["(par)", "(pursue)", "(try-all)", "(partial-order ())"])
 def test_a_parallel_form_without_branches_closes_the_plan_in_order(plan_text, form):
     assert (
@@ -225,6 +229,7 @@ def test_a_parallel_form_without_branches_closes_the_plan_in_order(plan_text, fo
     assert plan_text("*notes*") == "(:BRANCH-CLOSED :CLOSED)" and nothing_runs()
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("ordering", ["(:before a b)", "(:order a)", "(:order a b c)", "a"])
 def test_a_malformed_ordering_is_an_error_of_the_expansion(plan_text, ordering):
     shown = ordering.upper()
@@ -288,6 +293,7 @@ def test_a_goal_without_a_body_for_its_arguments_names_the_patterns_that_it_has(
     assert plan_text.error("(declare-goal off (x)) (top-level (off 1))").endswith("  No body is defined: write (def-goal (off ...) ...).\n")
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "form, name, advice",
     [
@@ -341,6 +347,7 @@ def test_a_function_of_the_user_may_have_the_name_of_a_marker(plan_text):
     plan_text("(fmakunbound 'goal-context)")
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "form, message",
     [
@@ -365,6 +372,7 @@ def _needs_parts(operator):
         return True
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("shape", [operator.shape for operator in PLAN_LANGUAGE.values() if _needs_parts(operator)])
 def test_a_macro_that_is_called_in_another_shape_says_how_it_is_written(plan_text, shape):
     name = shape.split()[0].strip("(")
@@ -372,6 +380,7 @@ def test_a_macro_that_is_called_in_another_shape_says_how_it_is_written(plan_tex
     assert "  at <repl>:2:3\n" in shown and shown.endswith(f"\n  It is written {shape}.\n")
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "form",
     [
@@ -390,6 +399,7 @@ def test_so_does_one_with_a_forgotten_pair_of_parentheses(plan_text, form):
     assert shown.startswith(f"cramhy: CRAMHY::COMPILE-ERROR\n  The {name[1:].upper()} form ") and f"\n  It is written {name} (" in shown
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("tag", ["(:tag 5 1)", "(:tag nil 1)", "(:tag t 1)", "(:tag :key 1)", "(:tag (a) 1)", "(:tag)"])
 def test_a_tag_that_cannot_be_a_variable_is_told_at_its_place(plan_text, tag):
     assert (
@@ -408,6 +418,7 @@ def test_par_loop_and_try_each_in_order_take_lists_only(plan_text):
         assert "The value\n    #(1 2)\n  is not of type\n    LIST\n" in plan_text.error(f"(top-level ({form} (x #(1 2)) x))")
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "form, value, wanted",
     [

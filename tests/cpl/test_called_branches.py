@@ -24,6 +24,7 @@ FORMS = {
 }
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("form", FORMS)
 def test_a_value_in_the_place_of_a_function_says_what_to_write(form):
     role, written, call = FORMS[form]

@@ -191,6 +191,7 @@ WRONG = [
 ]  # fmt: skip
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("form, text", WRONG)
 def test_wrong_arguments_have_the_texts_of_the_original_and_a_place(told, form, text):
     lines = told(form)
@@ -199,6 +200,7 @@ def test_wrong_arguments_have_the_texts_of_the_original_and_a_place(told, form, 
     assert rest.splitlines()[1] == f"    {form}" and rest.splitlines()[2].endswith("^")
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     "form",
     [
@@ -218,6 +220,7 @@ KINDS = {"FLUENT-": "(make-fluent)", "FN-FL+": "(+ f 1)", "FN-FL-AND": "(fl-and 
          "FN-FL-FUNCALL": "(fl-funcall #'1+ f)", "FN-FL-EQ": "(eq f 1)"}  # fmt: skip
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("name", KINDS)
 def test_fluents_are_printed_as_in_the_original(answer, name):
     text = answer(f"(let ((f (make-fluent :value 1))) {KINDS[name]})")

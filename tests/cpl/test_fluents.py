@@ -219,6 +219,7 @@ def test_a_net_in_the_middle_lives_as_long_as_the_net_above_it():
     assert net.value is True
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     "mode, before, expected",
     [

@@ -54,6 +54,7 @@ class Broken(ValueFluent):
         return self.no_such_slot
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("kind, factor", [(ValueFluent, 1), (Doubled, 2), (DoubledBelow, 2), (DoubledBeside, 2), (AsBefore, 1)])
 def test_the_read_of_a_class_counts_everywhere(kind, factor):
     fluent = kind(value=4)
@@ -70,6 +71,7 @@ def test_an_attribute_that_a_read_misses_does_not_make_the_fluent_its_own_value(
         cpl.value(Broken())
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("old, new, pulses", [(1, 1, 0), (1, 1.0, 1), (0.0, -0.0, 1), (False, None, 0), (None, False, 0), (True, 1, 1)])
 def test_what_is_the_same_for_eql_is_no_change(old, new, pulses):
     fluent = cpl.make_fluent(value=old)

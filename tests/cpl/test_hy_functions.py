@@ -24,6 +24,7 @@ def run(text):
     return value
 
 
+@pytest.mark.soak
 def test_import_gives_the_functions_as_values():
     assert run("(import cramhy *) (list (map value [(make-fluent :value 1) (make-fluent :value 2)]))") == [1, 2]
     assert run("(import cramhy [v-dist]) (setv f v-dist) (f (make-3d-vector 1 0 0) (make-3d-vector 3 0 0))") == 2
@@ -38,17 +39,20 @@ def test_what_a_star_imports_hides_nothing_of_python():
     assert all(callable(getattr(cramhy, name)) for name in names)
 
 
+@pytest.mark.soak
 def test_a_function_of_the_users_is_called_and_a_value_of_that_name_is_not_in_the_way():
     assert run("(defn value [x] (* 2 x)) (value 4)") == 8
     assert run("(setv value 5) (value (make-fluent :value value))") == 5
     assert run("(defn f [fluent] (setv value (value fluent)) value) (f (make-fluent :value 6))") == 6
 
 
+@pytest.mark.soak
 def test_all_with_one_argument_is_the_function_of_python():
     assert run("(all (gfor x [1 2] (> x 0)))") is True and run("(all [1 0])") is False
     assert run("(str (all objects (type cup)))") == run("(str (desig:all objects (type cup)))")
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize(
     "name, hint",
     [
@@ -65,6 +69,7 @@ def test_a_handler_of_a_type_that_nobody_has_defined_is_told(name, hint):
     assert run('(top-level (with-failure-handling [[simple-plan-failure [e] (leave 1)]] (fail "no")))') == 1
 
 
+@pytest.mark.soak
 def test_a_rule_calls_a_class_of_hy_with_keywords():
     text = """
     (import dataclasses [dataclass])
@@ -126,6 +131,7 @@ def test_functions_of_hy_named_like_those_of_lisp_leave_lisps_alone():
     assert isinstance(sym("SPEED").function, UndefinedFunction)
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("values", "first"), [("(values nil 1)", None), ("(values 0 1)", 0), ('(values "" 1)', ""), ("(values 2 nil)", 2), ("(values)", None)]
 )

@@ -110,6 +110,7 @@ def kinds(symbol):
     return found
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("kind, names", [("function", FUNCTIONS), ("macro", MACROS), ("variable", VARIABLES), ("class", CLASSES)])
 def test_both_packages_export_every_name_of_the_language_and_it_has_its_meaning(kind, names):
     for name in names.upper().split():

@@ -106,6 +106,7 @@ PLANS = {
 }
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("tag", PLANS)
 def test_the_runtime_tells_the_events_of_each_tag_and_no_others(lisp, log, tag):
     body, said = PLANS[tag]

@@ -52,6 +52,7 @@ def test_two_kernel_tasks_may_each_run_a_top_level():
     assert results == [0, 1] and kernel.now() == 1
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     "form, call",
     [
@@ -73,6 +74,7 @@ def test_a_plan_form_outside_of_a_plan_says_so(form, call):
     assert (problem.value.format_control, problem.value.format_arguments) == ("'~a' form not inside a plan.", (form,))
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("form", [operators.par, operators.pursue, operators.try_all, lambda: cpl.partial_order([], [])])
 def test_parallel_forms_without_branches_are_errors(form):
     with pytest.raises(Error) as problem:
@@ -370,6 +372,7 @@ def test_everything_below_a_top_level_that_is_left_is_dead():
     assert task[0].status is EVAPORATED and kernel.now() == 1 and SUCCEEDED in DEAD
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "form",
     [
@@ -405,6 +408,7 @@ def test_every_form_passes_all_values_through(plan_text, form):
     assert plan_text(form.format("(values)")) == ""
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("form", ["(block out {0} :after)", "(tagbody {1} out)", "(catch 'out {2} :after)", "(dolist (x '(1)) {3})"])
 @pytest.mark.parametrize("branch", ["(par {} 2)", "(pursue (sleep 9) {})", "(with-tags (:tag a {}))", "(par-loop (x '(1)) {})"])
 def test_no_exit_leaves_a_branch_silently(plan_text, form, branch):
@@ -414,6 +418,7 @@ def test_no_exit_leaves_a_branch_silently(plan_text, form, branch):
     assert "A branch of a plan tried to leave a form around it" in shown or "attempt to THROW to a tag that does not exist: OUT" in shown
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "form",
     [
@@ -439,6 +444,7 @@ def shuffled(request, fresh_kernel):
     return kernel.start(clock="virtual", backend=fresh_kernel.backend.name, seed=request.param, time_limit=3600)
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.law(97)
 @pytest.mark.parametrize("form", [cpl.par, cpl.pursue, cpl.try_all])
 def test_in_whatever_order_tasks_run_all_branches_have_started_before_the_first_decision(shuffled, form):
@@ -451,6 +457,7 @@ def test_in_whatever_order_tasks_run_all_branches_have_started_before_the_first_
     assert sorted(started) == list(range(1, 8))
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.law(84)
 def test_in_whatever_order_tasks_run_the_last_of_the_immediate_failures_is_reported(shuffled):
     assert failure_of(lambda: cpl.par(*[failing(str(n)) for n in range(6)])).format_control == "5"
@@ -458,6 +465,7 @@ def test_in_whatever_order_tasks_run_the_last_of_the_immediate_failures_is_repor
     assert plan(lambda: cpl.try_all(*[lambda n=n: n for n in range(6)])) == 0
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.law(92)
 def test_in_whatever_order_tasks_run_a_constrained_step_does_not_begin_while_its_plan_is_ended(shuffled):
     log = []

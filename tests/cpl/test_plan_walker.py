@@ -41,6 +41,7 @@ def test_quoted_data_and_declarations_are_not_entered(plan_text):
     assert plan_text(TAGS + "(tags '(let ((x '(:tag a 1))) (declare (:tag b 2)) #'(:tag c 3) (quote (:tag d 4)) (:tag e x)))") == "((E X))"
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "form, found",
     [
@@ -200,6 +201,7 @@ def test_a_plan_tree_node_prints_itself_and_what_is_below(plan_text):
 # --------------------------------------------------------------------------------------------- what with-tags does with the walk
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     "form, message, place",
     [
@@ -231,6 +233,7 @@ def test_a_with_tags_in_a_with_tags_is_not_walked_again_and_again(plan_text):
     assert int(plan_text("*expansions*")) <= 3
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     "body, value",
     [

@@ -44,6 +44,7 @@ def printed(function, *arguments, **options):
     return out.getvalue()
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("backend", ["threads", "greenlet"])
 @pytest.mark.parametrize("seed", [None, *range(8)])
 def test_the_example_tells_the_same_story_each_time(backend, seed):

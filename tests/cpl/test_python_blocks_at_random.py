@@ -110,6 +110,7 @@ def outcome(number, backend, order):
     return ending, program.events
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("first", range(0, 120, 20))
 def test_programs_of_blocks_keep_the_laws_on_both_back_ends_in_every_order(first):
     for number in range(first, first + 20):

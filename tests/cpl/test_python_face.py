@@ -70,6 +70,7 @@ def test_run_without_a_kernel_starts_one_in_virtual_time_and_stops_it():
         assert kernel.active() is None
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("way", ["run", "plan"])
 @pytest.mark.parametrize(
     "problem",
@@ -193,6 +194,7 @@ def test_an_interrupt_ends_the_plan_and_is_pythons():
 # -------------------------------------------------------------------------------------------------------------- exceptions
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     "form",
     [
@@ -266,6 +268,7 @@ def test_a_failure_class_of_python_has_text_and_attributes():
         cpl.run(lambda: cpl.fail(cpl.TimedOut, seconds=4))
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     ("arguments", "text"), [((), "Plan failure."), (("100% of ~ 3",), "100% of ~ 3"), (("~a of ~a", 1, 2), "1 of 2"), (("~",), "~")]
 )
@@ -415,6 +418,7 @@ def test_several_lisp_values_are_a_tuple_and_no_values_the_empty_one():
     assert cpl.run(main) == [(), None]
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(("value", "counts"), [(0, True), ("", True), ([], True), (0.0, True), (None, False), (False, False)])
 def test_waiting_is_for_what_is_not_none_and_not_false(value, counts):
     fluent = cpl.make_fluent(value=value)

@@ -27,11 +27,13 @@ class Tensor:
         return self.answer
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("value", [*NO, Tensor(False)], ids=lambda each: type(each).__name__)
 def test_what_is_not_true(value):
     assert not truth(value)
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("value", [*YES, Tensor(True)], ids=lambda each: type(each).__name__)
 def test_what_is_true(value):
     assert truth(value)
@@ -48,6 +50,7 @@ def test_values_of_python_are_true_unless_none_or_false(value):
     assert plain_truth(value) is value
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("make", [lambda f: f < 1.0, lambda f: ~(f >= 1.0), lambda f: (f < 1.0) & True, lambda f: False | (f < 1.0),
                                   lambda f: cpl.fl_funcall(lambda d: d < 1.0, f), lambda f: cpl.fl_and(f < 1.0, f > -1.0)])  # fmt: skip
 def test_a_wait_goes_on_while_numpy_says_no(make, backend):
@@ -92,6 +95,7 @@ def test_a_policy_is_not_met_by_a_no_of_numpy():
         cpl.sleep(1)
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     "form",
     ["(if (numpy:less 3 2) 1 2)", "(cond ((numpy:any (numpy:zeros 3)) 1) (t 2))", "(if (py:call \"numpy.bool_\" 0) 1 2)",
@@ -107,6 +111,7 @@ def test_lisp_takes_what_python_gives_for_what_it_is(form):
 COLLECTIONS = [[1], {1: 2}, {1}, bytearray(b"a"), np.array([1])]
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("collection", COLLECTIONS, ids=lambda each: type(each).__name__)
 def test_a_collection_of_python_that_is_stored_once_more_pulses(collection):
     things = cpl.make_fluent(value=collection)

@@ -25,6 +25,7 @@ OF_FUNCTIONS = (
 OF_VALUES = "Write cpl.wait_for(f) with a fluent f, not with f.value, and cpl.make_fluent(value=...) to make one."
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     "thing, advice",
     [(f.value < 5, OF_COMPARISONS.format(True)), (f == 3, OF_COMPARISONS.format(False)), (f != 3, OF_COMPARISONS.format(True)),
@@ -45,6 +46,7 @@ def test_lisp_waits_for_any_object_as_the_original_does():
     assert Session(time="virtual").evaluate_text("(cpl:top-level (cpl:wait-for 5))")[-1] == 5
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("wait", [cpl.sleep, lambda time: cpl.wait_for(cpl.make_fluent(), timeout=time)], ids=["sleep", "wait_for"])
 @pytest.mark.parametrize("time", [float("nan"), "3", None, True, [1]], ids=repr)
 def test_a_time_that_is_not_a_number_is_an_error(wait, time):
@@ -66,6 +68,7 @@ def generator(*arguments):
     yield
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("wrong", [asynchronous, generator, functools.partial(asynchronous, 3)], ids=["async", "generator", "partial"])
 @pytest.mark.parametrize("run", [lambda plan: plan(), lambda plan: cpl.par(plan, lambda: 1), lambda plan: cpl.pursue(plan),
                                  lambda plan: cpl.with_task(plan)], ids=["run", "par", "pursue", "with_task"])  # fmt: skip
@@ -80,6 +83,7 @@ def test_a_generator_expression_is_a_value_like_others():
     assert list(cpl.run(lambda: (n for n in [1, 2]), clock="virtual")) == [1, 2]
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("decorate", [prolog_test, function, process_module, motion_grounding], ids=lambda each: each.__name__)
 def test_a_decorator_refuses_what_would_not_run(decorate):
     with pytest.raises(TypeError, match="asynchronous is an `async def`, and cannot be .*: its call would return at once, and run nothing"):
@@ -90,6 +94,7 @@ def test_predicates_yield_their_solutions():
     assert predicate(generator) and Motion
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("form", [cpl.try_all, cpl.try_in_order, lambda *ways: cpl.try_each_in_order(ways, lambda way: way())], ids=FORMS)
 @pytest.mark.parametrize("error", [AssertionError, NameError, SyntaxError, MemoryError])
 def test_a_mistake_in_the_program_is_not_tried_another_way(form, error):
@@ -100,6 +105,7 @@ def test_a_mistake_in_the_program_is_not_tried_another_way(form, error):
         cpl.run(lambda: form(wrong, lambda: cpl.sleep(1)), clock="virtual")
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("form", [cpl.try_all, cpl.try_in_order, lambda *ways: cpl.try_each_in_order(ways, lambda way: way())], ids=FORMS)
 def test_other_exceptions_are_failures_of_an_attempt(form):
     def fails():

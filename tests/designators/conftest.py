@@ -7,7 +7,7 @@ import re
 import pytest
 from cramhy_runtime.session import Image
 from lisp_text import LispLine
-from systems import BACKENDS
+from systems import ONE_BACKEND
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
@@ -29,7 +29,7 @@ PRELUDE = """
 _numbers = itertools.count(1)
 
 
-@pytest.fixture(params=BACKENDS, autouse=True)
+@pytest.fixture(params=ONE_BACKEND, autouse=True)
 def fresh_kernel(request):
     with Image(as_now=True):
         yield kernel.start(clock="virtual", backend=request.param, time_limit=3600)

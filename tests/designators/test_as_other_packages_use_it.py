@@ -89,6 +89,7 @@ UNDECLARED = (
 )
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     ("form", "name"),
     [
@@ -108,6 +109,7 @@ def test_a_property_name_that_is_no_keyword_is_warned_of(lisp, form, name):
     assert lisp(f"(handler-case (force-ll {form}) (simple-warning (w) (princ-to-string w)))") == UNDECLARED.format(name)
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     "form",
     [

@@ -3,6 +3,7 @@
 import pytest
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "form, text, hint",
     [
@@ -111,6 +112,7 @@ def test_a_generator_that_nobody_defined(lisp):
     assert lisp.error("(reference (a location))") == "Unable to resolve designator `#<A LOCATION>'"
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "generator, validator",
     [("(loop)", ":accept"), ("(lazy-list ((i 0)) (cont i (1+ i)))", ":reject"), ("(lazy-list ((i 0)) (next (1+ i)))", ":accept")],

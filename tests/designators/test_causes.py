@@ -18,6 +18,7 @@ def hint(lisp, form="(reference (a motion (type driving)))"):
     return condition.hint.splitlines()
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     ("goals", "kind"),
     [

@@ -2,6 +2,7 @@
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from systems import SOAK
 
 import pytest
 
@@ -51,7 +52,8 @@ def shown(value):
     )
 
 
-@settings(max_examples=150, deadline=None)
+@pytest.mark.soak
+@settings(max_examples=150 if SOAK else 50, deadline=None)
 @given(clauses, descriptions)
 def test_the_index_changes_no_answer(made, described):
     kernel.start(clock="virtual", backend="greenlet")
@@ -101,6 +103,7 @@ def test_a_redefined_group_is_used_at_once(lisp):
     assert lisp("(reference (a motion (type driving)))") == "(TWO)"
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("description", ["5", "'(:type :driving)", "'((:type) (:speed 1 2))", '\'(("type" :driving) (5 5))', "#'car"])
 def test_a_description_may_be_anything(lisp, description):
     lisp(

@@ -15,6 +15,7 @@ def compiled(text):
     return module
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("code", "kind", "value"),
     [
@@ -40,6 +41,7 @@ def test_code_in_a_designator_is_refused(form, code, kind, value):
     ) in str(told.value)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("code", "text"),
     [
@@ -68,6 +70,7 @@ def test_variables_lists_and_templates_are_as_before():
     assert module.found == 2 and module.goal == [1, 4]
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("form", "one", "other"),
     [

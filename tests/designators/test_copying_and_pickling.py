@@ -46,6 +46,7 @@ def command(motion):
     return motion
 
 
+@pytest.mark.soak(all_but=4)
 def test_a_copy_of_a_designator_is_another_one_with_the_same_properties(copied):
     cup = Object(type=kw.cup, color="red")
     motion = Motion(("goal", 1), ("goal", 2), type=kw.driving, towards=cup, then=[1, [2.5, "a"]], call=command)
@@ -56,6 +57,7 @@ def test_a_copy_of_a_designator_is_another_one_with_the_same_properties(copied):
     assert made.effective is None and not desig_equal(made, motion)
 
 
+@pytest.mark.soak(all_but=4)
 def test_a_resolved_designator_stays_resolved_and_knows_the_solutions_that_were_asked_for(copied):
     motion_grounding(Going)(lambda motion: iter([["go", 1], ["go", 2], ["go", 3]]))
     location_generator(Beside)(lambda place: [place.x + 1, place.x + 2])
@@ -81,6 +83,7 @@ def test_a_designator_that_contains_itself_and_a_chain_of_equated_ones_are_pickl
     assert deep.data["where"] is not first_one and deep.data["where"].type is kw.cup
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     "name", [kw.cup, P.cup, V.x, V._, V, P, kw, UNBOUND, P.cup.symbol, names("CRAM-PROLOG")], ids=lambda each: type(each).__name__
 )
@@ -89,6 +92,7 @@ def test_names_are_the_same_after_all_ways_of_copying(name, copied):
     assert made is name or made == name or repr(made) == repr(name) and made.member == name.member
 
 
+@pytest.mark.soak(all_but=1)
 def test_goals_answers_and_lists_are_equal_after_copying(copied):
     assert repr(copied(P.parent(V.x, "tom") & P.old(V.x))) == repr(P.parent(V.x, "tom") & P.old(V.x))
     answer = copied(first(P.member(V.x, [1, [2, 3]])))
@@ -139,6 +143,7 @@ FAILURES = {
 }
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("plan", FAILURES.values(), ids=FAILURES)
 def test_failures_keep_class_text_slots_and_hint(plan, copied):
     failure = failure_of(plan)

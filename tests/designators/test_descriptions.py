@@ -30,6 +30,7 @@ def test_a_variable_is_evaluated_where_the_form_stands():
     ]
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "text, shown",
     [

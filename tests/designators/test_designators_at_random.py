@@ -5,6 +5,7 @@ An internal error of Python (an attribute that is missing, a wrong type) in any 
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from systems import SOAK
 
 import pytest
 
@@ -102,7 +103,7 @@ def driving():
         remove_fact_group(group)
 
 
-@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=200 if SOAK else 60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.sampled_from(KINDS), descriptions)
 def test_nothing_but_lisp_conditions(kind, description):
     designator = classes.make_designator(keyword(kind), description)
@@ -119,7 +120,8 @@ WORDS = st.sampled_from("?x a an the when t nil type driving :key 1 2.5 \"s\" #'
 forms = st.recursive(WORDS, lambda inner: st.lists(inner, max_size=4).map(lambda parts: f"({' '.join(parts)})"), max_leaves=8)
 
 
-@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@pytest.mark.soak
+@settings(max_examples=100 if SOAK else 50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     st.sampled_from(["a", "an", "all"]),
     st.sampled_from(["motion", '"motion"', "objects", "(x)", "5", "nil", ""]),

@@ -32,6 +32,7 @@ MADE = {
 }
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("kind", MADE)
 @pytest.mark.parametrize("name", ["speed", "angle", "colour"])
 def test_an_assignment_says_what_to_write(kind, name):
@@ -61,6 +62,7 @@ def test_items_and_augmented_assignments_are_refused_too():
     assert motion.speed == 1.0
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("kind", MADE)
 def test_the_slots_of_cram_can_be_set(kind):
     made = MADE[kind]()

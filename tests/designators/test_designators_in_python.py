@@ -335,6 +335,7 @@ def test_a_grounding_may_wait_in_a_plan():
 # ---------------------------------------------------------------------------------------------------------------------- errors
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     "mistake, kind, text",
     [

@@ -53,6 +53,7 @@ def compiled(text):
     return module
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "made",
     [

@@ -34,6 +34,7 @@ def lisp():
         PACKAGE.value = COMMON_LISP_USER
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize(
     ("form", "values"),
     [

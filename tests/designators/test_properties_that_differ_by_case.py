@@ -20,6 +20,7 @@ def inherited():
         X: float = 0.0
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     ("make", "one", "other", "of"),
     [

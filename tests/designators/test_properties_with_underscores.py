@@ -45,6 +45,7 @@ def compiled(text):
     return module
 
 
+@pytest.mark.soak
 def test_each_way_of_writing_meets_each_way_of_reading():
     rule = """(def-fact-group speeds [motion-grounding]
       (<- (motion-grounding ?d [drive ?s]) (desig-prop ?d (type driving)) (desig-prop ?d (max_speed ?s))))"""

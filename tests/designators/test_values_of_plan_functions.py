@@ -21,6 +21,7 @@ def tidy(*values):
 VALUES = [False, True, None, [], (), 0, 0.0, "", {}, [1, 2], [False, [], None], {"a": []}, set()]
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("value", VALUES, ids=repr)
 def test_an_argument_arrives_as_it_was_given(session, value):
     def how(action):

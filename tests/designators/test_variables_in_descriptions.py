@@ -36,6 +36,7 @@ def lisp(session):
     return LispText(session, "(in-package :variables-in-descriptions)" if find_package("VARIABLES-IN-DESCRIPTIONS") else DEFINED)
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     ("properties", "shown"),
     [

@@ -30,6 +30,7 @@ def test_the_page_has_the_budgets():
     assert [what for key, (what, _, _) in house.ROWS.items() if f"| {KNOWN['budget'][key]:,} |" not in page] == []
 
 
+@pytest.mark.soak
 def test_a_class_counts_what_it_inherits():
     methods, files = house.whole_class(("cramhy_runtime.testing.watched", "WatchedKernel"))
     assert "spawn" in methods  # of the kernel's own class, in another file

@@ -9,9 +9,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from systems import ONE_BACKEND
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from systems import takes_long  # noqa: E402
 
 from . import command_line
 from .pages import COURSE, DOCS, ELSEWHERE, KITCHEN, PAGES, ROOT, Block, Page, balanced, exchanges, play
@@ -44,7 +44,7 @@ PICTURES_FROM_ELSEWHERE = {"bricks.png", "page.png", "architecture.svg", "spiral
 PICTURES_FROM_ELSEWHERE |= {f"notebook-{name}.png" for name in ("live", "values", "fluents", "failure")}  # `notebook_pictures.py`
 
 
-@pytest.fixture(scope="module", params=["threads", "greenlet"])
+@pytest.fixture(scope="module", params=ONE_BACKEND)
 def plays(request, tmp_path_factory):
     """What has happened on all pages, on either back end: (texts of the blocks, folder) by the path of the page."""
     if request.param == "greenlet":
@@ -91,7 +91,7 @@ def test_what_happens_is_what_the_page_shows(path, plays):
     shows(path, plays)
 
 
-@pytest.mark.parametrize("path", [pytest.param(path, marks=[] if path in SHORT else takes_long) for path in KITCHEN], ids=name_of)
+@pytest.mark.parametrize("path", [pytest.param(path, marks=[] if path in SHORT else pytest.mark.soak) for path in KITCHEN], ids=name_of)
 def test_what_happens_in_the_kitchen_is_what_the_page_shows(path, tmp_path):
     pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
     plays = play([path], tmp_path)
@@ -101,6 +101,7 @@ def test_what_happens_in_the_kitchen_is_what_the_page_shows(path, tmp_path):
         assert pixels(folder / "table.png") == pixels(folder / "table-in-hy.png"), "Lisp and Hy set the same table"
 
 
+@pytest.mark.soak(all_but=14)
 @pytest.mark.parametrize("path", PAGES + KITCHEN, ids=name_of)
 def test_code_that_a_page_quotes_stands_in_the_course(path):
     files = [file for folder in PACKAGES for kind in ("*.hy", "*.lisp") for file in sorted(folder.rglob(kind))]
@@ -155,6 +156,7 @@ def test_the_python_of_readme_runs():
     subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
 
 
+@pytest.mark.soak
 def test_the_tests_of_the_page_about_pytest_pass(tmp_path):
     for block in Page(DOCS / "how-to" / "pytest.md").blocks:
         if block.kind == "file":

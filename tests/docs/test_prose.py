@@ -41,6 +41,7 @@ def faults(text):
             yield f"{sentence!r}: {len(sentence.split())} words"
 
 
+@pytest.mark.soak(all_but=16)
 @pytest.mark.parametrize("page", PAGES, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_the_sentences_are_plain(page):
     assert not list(faults(page.read_text(encoding="utf-8")))

@@ -12,6 +12,8 @@ import pytest
 
 from .pages import DOCS, ROOT
 
+pytestmark = pytest.mark.soak
+
 PAGES = [*sorted(ROOT.glob("*.md")), *sorted(DOCS.rglob("*.md")), ROOT / "tutorials" / "README.md"]
 LINK = re.compile(r"\]\((?![a-z]+:)([^)\s#]*)(?:#([^)\s]+))?\)")
 CODE = re.compile(r"^```.*?^```$", re.M | re.S)

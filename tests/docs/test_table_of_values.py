@@ -251,6 +251,7 @@ def table():
     return BEGIN + "\n".join(lines) + "\n" + END
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("border, given, lisp, back", ROWS)
 def test_each_row_is_so(node, border, given, lisp, back):
     in_lisp, in_python = BORDERS[border](eval(given, MEANS))

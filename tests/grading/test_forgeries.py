@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from systems import linux, takes_long
+from systems import linux
 
 from cramhy_runtime.grading import Grader
 from cramhy_runtime.grading.exercise import find, own_exercises
@@ -91,7 +91,7 @@ def test_one_attack_of_each_kind_wins_nothing():
     assert tried([each for each in attacks() if each.name in SHORT]) == {}
 
 
-@takes_long
+@pytest.mark.soak
 @pytest.mark.timeout(3000)
 def test_no_attack_wins_anything():
     assert tried(attacks()) == {}

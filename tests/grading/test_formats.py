@@ -63,6 +63,7 @@ def test_missing_locks_are_named_if_something_has_run():
     assert formats.missing_locks(REPORT._replace(held=[])) == []
 
 
+@pytest.mark.soak
 @linux
 def test_a_cell_of_nbgrader_gets_the_points(capsys):
     answer = "(in-package :tut) (defun distance (x1 y1 x2 y2) (sqrt (+ (expt (- x2 x1) 2) (expt (- y2 y1) 2))))"

@@ -30,6 +30,7 @@ def grader():
         yield made
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("case", [case for case in cases() if case.name in NAMES], ids=lambda case: case.name)
 def test_the_points_are_the_same(case, grader):
     exercise = find(case.exercise)
@@ -48,6 +49,7 @@ with Grader(apart=False) as grader:
 """
 
 
+@pytest.mark.soak
 @needs_processes
 def test_nothing_is_asked_for_that_a_tab_does_not_have():
     done = subprocess.run([sys.executable, "-c", IN_A_TAB], capture_output=True, text=True)

@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
-from systems import linux, takes_long
+from systems import linux
 
 import cramhy_runtime
 from cramhy_runtime.cli import grading_commands
@@ -115,6 +115,7 @@ def place(sandbox, tmp_path_factory):
 # ------------------------------------------------------------------------------------------------------------------ what is seen
 
 
+@pytest.mark.soak
 def test_a_submission_finds_nothing_of_others_in_its_memory(place):
     mark = "mark" + secrets.token_hex(8)
     other = place.grader.grade_texts(place.exercise, {"attack.py": f"print('{mark}')\nkept = '{mark}' * 10"})
@@ -126,6 +127,7 @@ def test_a_submission_finds_nothing_of_others_in_its_memory(place):
     assert "ESCAPED" not in report.output
 
 
+@pytest.mark.soak
 def test_a_submission_reads_no_file_of_others(place):
     mark = "mark" + secrets.token_hex(8)
     submitted = place.folder / "submitted"
@@ -144,6 +146,7 @@ def test_a_submission_reads_no_file_of_others(place):
     assert "ESCAPED" not in report.output, report.output
 
 
+@pytest.mark.soak
 def test_an_exercise_that_lies_where_modules_are_is_out_of_sight(sandbox, tmp_path, monkeypatch):
     """As in an installed wheel, where exercises lie in a package."""
     package = tmp_path / "site-packages" / "a_course"
@@ -200,6 +203,7 @@ FILLINGS = {
 }
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("which", FILLINGS, ids=lambda which: which.replace(", ", " "))
 def test_a_submission_leaves_no_folder_and_no_megabyte(place, which):
     free = os.statvfs(place.temporary)
@@ -221,7 +225,8 @@ TAKING = {
 SHORT = ("threads", "after_the_main_thread", "deaf")
 
 
-@pytest.mark.parametrize("which", [each if each in SHORT else pytest.param(each, marks=takes_long) for each in TAKING])
+@pytest.mark.soak(all_but=1)
+@pytest.mark.parametrize("which", [each if each in SHORT else pytest.param(each, marks=pytest.mark.soak) for each in TAKING])
 def test_a_submission_takes_no_more_than_it_may_wherever_it_takes_it(place, which):
     report = place.attack("takes_much", WHICH=which)
     assert any(words in report.text() for words in TAKING[which]), report.text()
@@ -259,8 +264,9 @@ def session_of(leader):
     return found - {leader}
 
 
-@pytest.mark.parametrize("end", [each if each == signal.SIGKILL else pytest.param(each, marks=takes_long) for each in ENDS])
-@pytest.mark.parametrize("stays", [1, pytest.param(2, marks=takes_long)], ids=["sleeping", "awake"])
+@pytest.mark.soak
+@pytest.mark.parametrize("end", [each if each == signal.SIGKILL else pytest.param(each, marks=pytest.mark.soak) for each in ENDS])
+@pytest.mark.parametrize("stays", [1, pytest.param(2, marks=pytest.mark.soak)], ids=["sleeping", "awake"])
 def test_nothing_is_left_when_the_grader_is_ended(sandbox, tmp_path, end, stays):
     mark = "m" + secrets.token_hex(5)
     temporary = tmp_path / "temporary"
@@ -283,6 +289,7 @@ def test_nothing_is_left_when_the_grader_is_ended(sandbox, tmp_path, end, stays)
         grading.wait()
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("whom", ["watcher", "fork server"])
 def test_nothing_but_a_folder_is_left_when_a_part_of_the_grader_is_killed(place, tmp_path, whom):
     """As the kernel does it when the machine's memory is over."""
@@ -394,6 +401,7 @@ def test_the_command_says_why_it_grades_nothing_or_not_in_bubblewrap(monkeypatch
 # ------------------------------------------------------------------------------------------------------------------- the parts
 
 
+@pytest.mark.soak
 def test_a_folder_is_removed_whatever_is_in_it(tmp_path):
     outside = tmp_path / "outside"
     outside.mkdir()

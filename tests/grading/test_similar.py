@@ -144,6 +144,7 @@ COPIES = {
 }
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("way", COPIES)
 def test_a_copy_that_was_worked_over_is_found_and_the_other_authors_solution_is_not(tmp_path, way):
     copy = RACE
@@ -202,6 +203,7 @@ HARD = {
 """Texts that stop a parser, take all of its stack, or double its work with each level."""
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("name", HARD)
 @pytest.mark.filterwarnings("error")
 def test_a_text_that_no_parser_likes_is_compared_and_looked_through(name):

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from systems import linux, takes_long
+from systems import linux
 
 from cramhy_runtime.grading import Grader
 from cramhy_runtime.grading.exercise import Exercise, own_exercises
@@ -50,6 +50,7 @@ def check(case, exercise, report):
     assert case.points == 0 or report.held, "nothing has run"
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("case", [case for case in cases() if case.name in SHORT], ids=lambda case: case.name)
 def test_a_submission_gets_its_points(case, grader, exercises, tmp_path):
     if case.name == "deletes the exercise":
@@ -68,7 +69,7 @@ def test_the_lists_of_cases_are_whole():
     assert len(own_exercises()) >= 15
 
 
-@takes_long
+@pytest.mark.soak
 @pytest.mark.timeout(3000)  # on a busy machine the wall clock says little; the processor time is checked below
 def test_sixty_submissions_are_graded_twice_alike_in_two_minutes(exercises, tmp_path):
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -85,6 +86,7 @@ def test_sixty_submissions_are_graded_twice_alike_in_two_minutes(exercises, tmp_
     assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 240  # of two processors in two minutes
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("at_once", [1, 3])
 def test_many_are_graded_at_once_each_as_if_it_were_alone_and_in_their_order(exercises, tmp_path, at_once):
     names = ["no text", "solution of dry-pen", "exit of the process", "start of dry-pen", "solution of first-lisp", "empty"]
@@ -97,6 +99,7 @@ def test_many_are_graded_at_once_each_as_if_it_were_alone_and_in_their_order(exe
         assert grader.grade_all([]) == []
 
 
+@pytest.mark.soak
 def test_a_fork_server_that_is_lost_costs_one_submission_only(exercises, tmp_path, monkeypatch):
     chosen = [next(case for case in cases() if case.name == name) for name in ("empty", "solution of dry-pen")]
     handed_in = [(Exercise.read(exercises / case.exercise), hand_in(case, tmp_path)) for case in chosen]
@@ -143,6 +146,7 @@ def test_a_link_to_somewhere_else_is_not_followed(tmp_path, exercises, grader):
     assert report.points == 0 and "The file square.lisp is not there." in report.text() and "secret" not in report.text()
 
 
+@pytest.mark.soak
 def test_a_place_that_is_odd_costs_its_own_points_and_the_class_goes_on(tmp_path, exercises):
     places = [tmp_path / name for name in ("nothing", "pipe", "folder", "circle", "empty")]
     for place in places[2:]:

@@ -51,6 +51,7 @@ def exercise(library, folder, more=""):
     return ending, Exercise.read(folder)
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("library", TESTS)
 def test_right_and_wrong_functions(library, grader, tmp_path):
     ending, made = exercise(library, tmp_path)
@@ -63,6 +64,7 @@ def test_right_and_wrong_functions(library, grader, tmp_path):
     assert "doubles" not in report.text().replace("doubles (", "")
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("library", CHANGES)
 def test_changed_libraries_are_seen(library, grader, tmp_path):
     ending, made = exercise(library, tmp_path)

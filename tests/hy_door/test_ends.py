@@ -31,6 +31,7 @@ def interrupted(hy, plan, begun, prompt):
     return hy.expect(prompt).removeprefix("^C")
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("clock", ["virtual", "wall"])
 @pytest.mark.parametrize("plan", [PRINTS, BUSY], ids=["waiting", "busy"])
 def test_ctrl_c_ends_a_plan_through_its_cleanup(hy_terminal, clock, plan):
@@ -41,6 +42,7 @@ def test_ctrl_c_ends_a_plan_through_its_cleanup(hy_terminal, clock, plan):
             assert hy.ask("(+ 1 2)") == "3\nCPL-USER> "
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("plan", HY_PLANS)
 @pytest.mark.parametrize("lisp_before", [False, True])
 def test_ctrl_c_ends_a_plan_in_hy_through_its_cleanup(hy_terminal, lisp_before, plan):
@@ -57,6 +59,7 @@ def test_ctrl_c_ends_a_plan_in_hy_through_its_cleanup(hy_terminal, lisp_before, 
             assert hy.ask("(+ 1 2)") == "3\n=> "
 
 
+@pytest.mark.soak
 def test_a_second_ctrl_c_gives_the_cleanup_up(hy_terminal):
     with hy_terminal() as hy:
         hy.begin_lisp(":cram-user")
@@ -69,6 +72,7 @@ def test_a_second_ctrl_c_gives_the_cleanup_up(hy_terminal):
         assert hy.ask("(+ 1 2)") == "3\nCPL-USER> "
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("clock", ["virtual", "wall"])
 def test_ctrl_c_is_heard_as_soon_as_the_prompt_is_there(hy_terminal, clock):
     """Python's readline missed one of ten when the key was a signal, which came before it waited for keys."""
@@ -83,6 +87,7 @@ def test_ctrl_c_is_heard_as_soon_as_the_prompt_is_there(hy_terminal, clock):
             hy.ask("(in-package :cl-user)")
 
 
+@pytest.mark.soak
 def test_ctrl_c_forgets_the_line_and_the_form_that_are_typed(hy_terminal):
     with hy_terminal() as hy:
         hy.expect("=> $")
@@ -100,6 +105,7 @@ def test_ctrl_c_forgets_the_line_and_the_form_that_are_typed(hy_terminal):
             hy.ask("(in-package :cl-user)")
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("typed", [b"", b"(list 1", b"(list 1\x1b"], ids=["nothing", "in insert mode", "in command mode"])
 def test_ctrl_c_with_the_keys_of_vi(hy_terminal, tmp_path, typed):
     (tmp_path / "inputrc").write_text("set editing-mode vi\n")
@@ -110,6 +116,7 @@ def test_ctrl_c_with_the_keys_of_vi(hy_terminal, tmp_path, typed):
         assert hy.ask("(+ 1 2)") == "3\nCL-USER> "
 
 
+@pytest.mark.soak
 def test_ctrl_c_in_the_debugger_stays_there(hy_terminal):
     with hy_terminal() as hy:
         hy.begin_lisp()
@@ -130,6 +137,7 @@ def test_ctrl_c_in_the_debugger_of_a_plans_task_ends_the_plan(hy_terminal):
         assert hy.ask("(+ 1 2)") == "3\nCPL-USER> "
 
 
+@pytest.mark.soak
 def test_ctrl_d_leaves(hy_terminal):
     with hy_terminal() as hy:
         hy.begin_lisp()
@@ -137,6 +145,7 @@ def test_ctrl_d_leaves(hy_terminal):
         assert hy.text.endswith("CL-USER> \nnow exiting REPL...\n")
 
 
+@pytest.mark.soak
 def test_ctrl_d_in_an_unfinished_form_is_told(hy_terminal):
     with hy_terminal() as hy:
         hy.begin_lisp()
@@ -149,6 +158,7 @@ def test_ctrl_d_in_an_unfinished_form_is_told(hy_terminal):
         assert hy.end() == 0
 
 
+@pytest.mark.soak
 def test_exit_gives_the_status(hy_terminal):
     with hy_terminal() as hy:
         hy.begin_lisp()
@@ -156,6 +166,7 @@ def test_exit_gives_the_status(hy_terminal):
         assert hy.status() == 7
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP], ids=["SIGTERM", "SIGHUP"])
 def test_a_signal_ends_a_plan_through_its_cleanup(hy_terminal, number):
     with hy_terminal() as hy:
@@ -167,6 +178,7 @@ def test_a_signal_ends_a_plan_through_its_cleanup(hy_terminal, number):
         assert hy.text.rstrip().endswith("\n:CLEANED")
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("running", [False, True])
 def test_a_closed_terminal_ends_the_session_through_the_cleanup_of_its_plans(hy_terminal, tmp_path, running):
     note = tmp_path / "note"
@@ -181,6 +193,7 @@ def test_a_closed_terminal_ends_the_session_through_the_cleanup_of_its_plans(hy_
     assert not running or note.read_text() == "CLEANED"
 
 
+@pytest.mark.soak
 def test_a_signal_ends_a_piped_plan_through_its_cleanup(tmp_path):
     program = subprocess.Popen([str(HY)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment(), cwd=tmp_path, text=True)
     program.stdin.write(f"{REQUIRE}\n(in-package :cram-user)\n{PRINTS.replace('(print :running)', '(print :running) (finish-output)')}\n")

@@ -75,6 +75,7 @@ def lecture(request, shared):
     return steps, answers
 
 
+@pytest.mark.soak(all_but=1)
 def test_common_lisp_at_the_prompt_of_hy_is_answered_as_by_roslisp_repl(lecture):
     steps, answers = lecture
     for step, answer, expected in zip(steps, answers["lisp"], answers["roslisp_repl"]):
@@ -135,6 +136,7 @@ def alike(text):
     return re.sub(*DIFFERENCES[-1][2:], text)
 
 
+@pytest.mark.soak
 def test_common_lisp_that_is_piped_into_hy_is_answered_as_by_roslisp_repl(lecture, tmp_path, roslisp):
     steps, answers = lecture
     lines = []
@@ -146,6 +148,7 @@ def test_common_lisp_that_is_piped_into_hy_is_answered_as_by_roslisp_repl(lectur
     assert answered == alike('CL-USER> #<PACKAGE "COMMON-LISP-USER">\n' + roslisp(text).stdout)
 
 
+@pytest.mark.soak
 def test_plain_hy_that_is_piped_into_a_prompt_of_hy_is_answered_as_if_it_was_typed(lecture, tmp_path):
     steps, answers = lecture
     typed = [(step.hy, answer) for step, answer in zip(steps, answers["hy"]) if step.hy is not None]
@@ -154,6 +157,7 @@ def test_plain_hy_that_is_piped_into_a_prompt_of_hy_is_answered_as_if_it_was_typ
     assert answered.split("=> ", 2)[2] == f"{expected}\nnow exiting REPL...\n"
 
 
+@pytest.mark.soak
 def test_plain_hy_that_is_piped_into_hy_prints_what_the_plans_print(lecture, tmp_path):
     """``hy < FILE`` shows no values, so ``roslisp_repl`` is asked for none. An error would end the text, so there is none in it.
 

@@ -54,6 +54,7 @@ def test_it_is_answered_as_roslisp_repl_answers(answers, name):
     assert answer.strip() != "CPL-USER>", "it is answered"
 
 
+@pytest.mark.soak
 def test_some_answers_as_they_stand_there(answers):
     assert answers["a number that is printed"][0] == "\n7 \n7\nCPL-USER> "
     assert answers["a list of a double float"][0] == "(1 2.0d0)\nCPL-USER> "
@@ -75,6 +76,7 @@ MISTAKES = {
 }
 
 
+@pytest.mark.soak
 def test_mistakes_open_the_debugger_as_in_roslisp_repl(hy_terminal, roslisp_terminal):
     with hy_terminal() as hy, roslisp_terminal() as roslisp:
         roslisp.expect("> $")
@@ -87,6 +89,7 @@ def test_mistakes_open_the_debugger_as_in_roslisp_repl(hy_terminal, roslisp_term
             assert hy.ask("(+ 1 2)") == roslisp.ask("(+ 1 2)") == "3\nCPL-USER> ", name
 
 
+@pytest.mark.soak
 def test_mistakes_in_a_pipe_are_told_as_by_roslisp_repl(hy, roslisp):
     text = "(in-package :cram-user)\n" + "\n".join(text for texts in MISTAKES.values() for text in texts) + "\n(list 1\n"
     answered, expected = hy(input=f"{REQUIRE}\n{text}"), roslisp(text)
@@ -99,6 +102,7 @@ def test_read_line_in_a_pipe_reads_the_next_line(hy):
     assert done.stdout == 'CL-USER> #<PACKAGE "COMMON-LISP-USER">\nCL-USER> ("words of the user")\nCL-USER> 3\nCL-USER> '
 
 
+@pytest.mark.soak
 def test_a_package_that_is_not_there_leaves_the_prompt_in_hy(hy_terminal):
     with hy_terminal() as hy:
         answer = hy.begin_lisp(":nowhere")
@@ -108,6 +112,7 @@ def test_a_package_that_is_not_there_leaves_the_prompt_in_hy(hy_terminal):
         assert hy.ask("(in-package :cl-user) (list 1)").endswith('#<PACKAGE "COMMON-LISP-USER">\n(1)\nCL-USER> ')
 
 
+@pytest.mark.soak
 def test_a_package_that_is_defined_at_the_prompt(hy_terminal):
     with hy_terminal() as hy:
         hy.begin_hy()
@@ -116,12 +121,14 @@ def test_a_package_that_is_defined_at_the_prompt(hy_terminal):
         assert hy.ask("'inner") == "INNER\nDOOR> "
 
 
+@pytest.mark.soak
 def test_the_rest_of_the_line_is_lisp_and_may_go_on_in_the_next(hy_terminal):
     with hy_terminal() as hy:
         hy.begin_hy()
         assert hy.ask("(in-package :cl-user) (print 1) (list 'a\n 'b)") == '#<PACKAGE "COMMON-LISP-USER">\n\n1 \n1\n(A B)\nCL-USER> '
 
 
+@pytest.mark.soak
 def test_back_to_hy_and_to_lisp_again(hy_terminal):
     with hy_terminal() as hy:
         hy.begin_lisp()
@@ -136,6 +143,7 @@ def test_back_to_hy_and_to_lisp_again(hy_terminal):
         assert hy.ask("(in-hy)") == "=> "
 
 
+@pytest.mark.soak
 def test_a_pipe_back_to_hy_and_to_lisp_again(hy):
     lines = [REQUIRE, "(in-package :cl-user)", "(list 1)", "(in-hy) (setv x 5)", "(print x)", "(in-package :cram-user)", "(list 2)"]
     done = hy(input="\n".join(lines) + "\n")
@@ -145,6 +153,7 @@ def test_a_pipe_back_to_hy_and_to_lisp_again(hy):
     assert (done.returncode, done.stderr) == (0, "")
 
 
+@pytest.mark.soak
 def test_a_macro_of_the_user_may_lead_to_lisp(hy_terminal):
     with hy_terminal() as hy:
         hy.begin_hy()
@@ -152,11 +161,13 @@ def test_a_macro_of_the_user_may_lead_to_lisp(hy_terminal):
         assert hy.ask("(lisp) (list 1)") == '#<PACKAGE "COMMON-LISP-USER">\n(1)\nCL-USER> '
 
 
+@pytest.mark.soak
 def test_warnings_are_where_they_were_after_the_way_back(hy):
     form = '(hy.I.cramhy_runtime/languages/commonlisp/streams/streams.ERROR-OUTPUT.value.write "warned")'
     assert hy("-i", input=f"{REQUIRE}\n(in-package :cl-user)\n(in-hy)\n{form}\n").stderr.count("warned") == 1
 
 
+@pytest.mark.soak
 def test_a_kernel_that_is_stopped_at_the_prompt(hy_terminal):
     with hy_terminal() as hy:
         hy.begin_hy()
@@ -169,6 +180,7 @@ SUBSCRIBE = (
 )
 
 
+@pytest.mark.soak
 def test_the_turtle_goes_on_while_the_prompt_waits_in_wall_time(hy_terminal):
     with hy_terminal(time="wall") as hy:
         hy.begin_lisp(":cram-user")
@@ -181,6 +193,7 @@ def test_the_turtle_goes_on_while_the_prompt_waits_in_wall_time(hy_terminal):
 PASTED = "(list 1\n 2)\n(read-line)\nhello you\n(list 3)\n(car 1)\n0\n(in-hy)\n[1 2]\n(in-package :cl-user)\n'the-end"
 
 
+@pytest.mark.soak
 def test_many_lines_that_are_pasted_are_all_answered(hy_terminal):
     with hy_terminal() as hy:
         hy.begin_lisp()
@@ -215,6 +228,7 @@ HALVING = """(def-fact-group halving [motion-grounding] (<- (motion-grounding ?d
   (desig-prop ?desig (type halving)) (lisp-fun Half ?number))) None"""
 
 
+@pytest.mark.soak
 def test_values_of_plans_print_in_hy_as_lisp_prints_them_and_others_as_hy_does(hy_terminal):
     with hy_terminal() as hy:
         hy.expect("=> $")
@@ -226,6 +240,7 @@ def test_values_of_plans_print_in_hy_as_lisp_prints_them_and_others_as_hy_does(h
         assert hy.ask("None") == hy.ask("(setv door 5)") == "=> "
 
 
+@pytest.mark.soak
 def test_who_has_chosen_how_values_are_shown_keeps_it(hy):
     assert (
         hy("--repl-output-fn", "repr", "-i", input=f'{REQUIRE}\n(make-msg "std_msgs/String" :data "a")\n').stdout
@@ -247,6 +262,7 @@ TOGETHER = {
 }
 
 
+@pytest.mark.soak
 def test_each_of_several_forms_that_are_entered_at_once_is_answered(hy_terminal):
     with hy_terminal() as hy:
         hy.expect("=> $")
@@ -255,6 +271,7 @@ def test_each_of_several_forms_that_are_entered_at_once_is_answered(hy_terminal)
             assert hy.ask(text).endswith(answer), text
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("beginning, define", [(REQUIRE, "(defn f [x]\n  (+ x 1))"), ("(in-package :cl-user)", "(defun f (x)\n  (+ x 1))")])
 def test_each_form_is_answered_that_a_terminal_marks_as_pasted(hy_terminal, beginning, define):
     with hy_terminal(variables={"TERM": "xterm"}) as hy:
@@ -286,6 +303,7 @@ BACK_IN_HY = {
 }
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("what", BACK_IN_HY)
 def test_an_error_in_a_pipe_that_is_back_in_hy_has_its_place(hy, what):
     text, begins, place = BACK_IN_HY[what]

@@ -77,6 +77,7 @@ def test_tab_completes(lines, prompt, name):
     assert f"{whole}{rest}" in lines[prompt, name]
 
 
+@pytest.mark.soak
 def test_a_second_tab_lists_what_there_is(hy_terminal):
     with hy_terminal() as repl:
         repl.expect("=> $")

@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
+from systems import ONE_BACKEND
 from plain_hy import hy_module, hy_value
 
 from cramhy_runtime import kernel
@@ -286,7 +287,7 @@ NOT_IN_HY = {41: "a Hy program has no debugger that stops before the stack unwin
 _numbers = itertools.count(1)
 
 
-@pytest.fixture(params=["threads", "greenlet"])
+@pytest.fixture(params=ONE_BACKEND)
 def plain_hy(request):
     """A function of a Hy text: what its last form gives, and what was noted."""
     with Image(as_now=True):
@@ -305,6 +306,7 @@ def test_each_trap_is_tried_in_plain_hy_or_has_a_reason():
     assert len(TRAPS) == 42
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("number", TRAPS)
 def test_trap(plain_hy, number):
     text, (value, noted) = TRAPS[number]

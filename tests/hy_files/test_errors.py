@@ -149,6 +149,7 @@ TOLD = {
 }
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("way", ["hy", "run"])
 @pytest.mark.parametrize("what", TOLD)
 def test_it_is_told(write, program, tmp_path, what, way):
@@ -161,6 +162,7 @@ def test_it_is_told(write, program, tmp_path, what, way):
     assert (done.returncode, done.stdout, shown) == (1, printed, told.replace("{folder}", str(tmp_path)))
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("way", ["hy", "run"])
 def test_a_form_of_hy_in_common_lisp_is_taken_for_a_call(write, program, way):
     write("plan.hy", LISP + "(print 1)\n(defn drive [x] x)\n")
@@ -175,6 +177,7 @@ def test_a_form_of_hy_in_common_lisp_is_taken_for_a_call(write, program, way):
         assert done.stderr.startswith(f"{error}{called}  defn is Hy. In Common Lisp it is written (defun") and "caught" not in done.stderr
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("way", ["hy", "run"])
 def test_the_error_of_an_imported_module_has_its_place_there(write, program, way):
     write("broken.hy", "(require cramhy *)\n(defn drive []\n  (with-task-suspended 5))\n")
@@ -185,6 +188,7 @@ def test_the_error_of_an_imported_module_has_its_place_there(write, program, way
     assert "\n  at broken.hy:3:3\n      (with-task-suspended 5))\n      ^\n" in done.stderr
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("way", ["hy", "run"])
 def test_the_exceptions_behind_one_are_shown_as_python_shows_them(write, program, way):
     write(
@@ -197,6 +201,7 @@ def test_the_exceptions_behind_one_are_shown_as_python_shows_them(write, program
     assert "cramhy_runtime" not in told and "runpy" not in told
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(("word", "shown"), [("lisp", "calls, the innermost last:"), ("1", "Python frames:"), ("none", None), ("", None)])
 @pytest.mark.parametrize("way", ["hy", "run"])
 def test_a_variable_asks_for_the_calls(write, program, way, word, shown):
@@ -206,11 +211,13 @@ def test_a_variable_asks_for_the_calls(write, program, way, word, shown):
     assert program("run", "plan.hy", "--backtrace", "none", CRAMHY_BACKTRACE=word).stderr == TOLD["a plan in Common Lisp that fails"][2]
 
 
+@pytest.mark.soak
 def test_all_frames_are_shown_when_they_are_asked_for(write, program):
     write("plan.hy", TOLD["an exception of Python's in Hy"][0])
     assert "cpl/failures/python_exceptions.py" in program("hy", "plan.hy", CRAMHY_BACKTRACE="python").stderr
 
 
+@pytest.mark.soak
 def test_a_program_with_a_hook_of_its_own_keeps_it(write, program):
     write(
         "plan.hy",
@@ -220,6 +227,7 @@ def test_a_program_with_a_hook_of_its_own_keeps_it(write, program):
     assert (done.returncode, done.stdout, done.stderr) == (1, "mine: Lost.\n", "")
 
 
+@pytest.mark.soak
 def test_what_python_does_not_call_an_error_has_its_own_status(write, program):
     write("plan.hy", PLAIN + "(import sys)\n(sys.exit 7)\n")
     assert [program(way, "plan.hy").returncode for way in ("hy", "run")] == [7, 7]
@@ -236,6 +244,7 @@ IN_HY = [
 ]
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("what", IN_HY)
 def test_what_is_piped_and_what_stands_in_the_command_line_is_told_as_a_file_is(python, tmp_path, what):
     """What follows ``(in-package ...)`` in a pipe is answered as by ``roslisp_repl``: see tests/hy_door."""
@@ -247,12 +256,14 @@ def test_what_is_piped_and_what_stands_in_the_command_line_is_told_as_a_file_is(
         assert (done.returncode, done.stdout, shown) == (1, printed, expected)
 
 
+@pytest.mark.soak
 def test_common_lisp_in_the_command_line_shows_the_line_of_its_error(python):
     done = python("-m", "hy", "-c", "(require cramhy *) (in-package :cram-user) (print 1) (car 2)")
     assert (done.returncode, done.stdout) == (1, "\n1 \n")
     assert "at <string>:1:54\n    (require cramhy *) (in-package :cram-user) (print 1) (car 2)\n" in done.stderr
 
 
+@pytest.mark.soak
 def test_a_function_of_a_lisp_package_is_named_with_its_module(write, program):
     write("parts.lisp", "(defpackage :parts (:use :cl))\n(in-package :parts)\n(defun drive-on (x) x)\n(defvar *speed* 1)\n")
     write("plan.hy", "(require cramhy *)\n(import cramhy)\n(import parts)\n(print (parts.drive-on 5))\n(drive-on 5)\n")
@@ -265,6 +276,7 @@ def test_a_function_of_a_lisp_package_is_named_with_its_module(write, program):
     )
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     "text, told",
     [
@@ -280,6 +292,7 @@ def test_a_name_of_hy_is_told_in_words_of_hy(write, program, text, told):
     assert shown.splitlines()[-1] == told and "hyx_" not in shown
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     "text, operator",
     [
@@ -298,6 +311,7 @@ def test_an_operator_that_was_not_required_is_told_of(write, program, text, oper
     )
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("text", ["(require cramhy *)\n(print par)\n", "(print unknown-word)\n", "(defn f [] (return 1))\n(return)\n"])
 def test_other_names_are_not_told_to_be_required(write, program, text):
     write("plan.hy", text)

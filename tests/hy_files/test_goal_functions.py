@@ -26,6 +26,7 @@ QUERIES = {
 }  # fmt: skip
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("case", QUERIES)
 def test_a_query_calls_what_a_name_means_there(load, case):
     text, answer = QUERIES[case]
@@ -43,6 +44,7 @@ GROUPS = {
 }  # fmt: skip
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("case", GROUPS)
 def test_a_rule_calls_what_a_name_means(load, case):
     rule, then, answer = GROUPS[case]
@@ -109,6 +111,7 @@ MADE = """
 """
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("way", ["query", "rule", "inserted"])
 @pytest.mark.parametrize("case", CALLABLES)
 def test_keywords_in_a_goal_are_arguments_with_names_of_anything_that_is_called(load, case, way):
@@ -123,6 +126,7 @@ def test_keywords_in_a_goal_are_arguments_with_names_of_anything_that_is_called(
     assert module.answer == wanted
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("form", ["(def-fact-group g [] (<- (at pose.x)))", "(prolog '(member ?x (pose.x)))", "(lisp pose.x)"])
 def test_an_attribute_that_is_data_is_refused(load, form):
     with pytest.raises(SyntaxError) as told:

@@ -1,5 +1,6 @@
 """The macros of `hyrule` around plan forms and inside of them."""
 
+import pytest
 import hy
 
 FORMS = {
@@ -66,6 +67,7 @@ def test_each_macro_of_hyrule_is_tried_or_has_a_reason():
     assert set(FORMS) | set(NO_EXPRESSION) == names
 
 
+@pytest.mark.soak
 def test_the_macros_of_hyrule_work_around_plan_forms_and_inside(write, program):
     beginning = f"(require cramhy *)\n(require hyrule [{' '.join(FORMS)}])\n(import hyrule [inc recur])\n"
     write("all.hy", beginning + "\n".join(f'(print (hy.repr {form}) "{name}")' for name, (form, _) in FORMS.items()))

@@ -15,6 +15,7 @@ def empty_memory():
 NONE = "(prolog '(member 9 (1 2)))"
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "call",
     [
@@ -48,6 +49,7 @@ def test_one_answer_without_variables_is_one_answer(load):
     assert len(load("(setv found (prolog '(member 1 (1 2))))").found) == 1
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("form", "value"),
     [(f"(lazy-car {NONE})", None), (f"(lazy-elt {NONE} 1)", None), (f"(lazy-list-p {NONE})", None), ("(lazy-append [] [])", [])],
@@ -82,6 +84,7 @@ def test_no_answers_are_nil_to_lisp(load):
     assert found.here == [] and found.said == [True, None]
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("inserted", "answers"),
     [
@@ -105,6 +108,7 @@ def test_a_collection_in_a_goal_is_a_list(load, inserted, answers):
     assert found.found == answers and found.facts == [answers] and found.again == 1
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("inserted", "text"),
     [

@@ -30,6 +30,7 @@ def test_a_response_has_several_fields(load):
     assert (module.answer.success, module.answer.message) == (False, "off")
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "call",
     [

@@ -27,6 +27,7 @@ def test_a_file_asks_for_the_package_once(load, tmp_path):
         assert text.count(f"_cramhy.{part}") == 1, part
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("text", "value"),
     [
@@ -65,6 +66,7 @@ def test_a_function_that_is_defined_after_the_first_call_is_called_from_then_on(
 HANDLER = "(top-level (with-failure-handling [[simple-plan-failure [e] (leave (type e))]] (fail {})))"
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "text",
     [
@@ -94,6 +96,7 @@ def test_a_block_is_left_from_a_function_and_what_comes_behind_it_is_not_run(loa
     assert list(map(module.run, [1, 2, 3])) == [("left", 1), ("left", 2), None] and len(module.notes) == 3
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "form",
     [
@@ -126,12 +129,14 @@ def test_the_variables_of_a_block_stay_its_own(load):
     assert module.run(3) == 3
 
 
+@pytest.mark.soak
 def test_macros_of_another_file_use_plans_where_they_are_expanded(load):
     plans = load("(defmacro both [#* forms] `(hy.R.cramhy.top-level (hy.R.cramhy.par ~@forms)))  (defn helper [] (top-level (par 3 4)))")
     text = f"(require {plans.__name__} [both]) (import {plans.__name__} [helper]) (defn run [] [(both 1 2) (helper)])"
     assert load(text).run() == [1, 3]
 
 
+@pytest.mark.soak
 def test_a_macro_may_run_a_plan_while_the_file_is_compiled(load):
     text = "(eval-and-compile (defn planned [] (top-level (par 1 (value (make-fluent :value 2))))))"
     assert load(f"{text} (defmacro at-compile-time [] (planned)) (defn run [] [(planned) (at-compile-time)])").run() == [1, 1]

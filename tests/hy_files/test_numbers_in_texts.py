@@ -88,6 +88,7 @@ def test_python_sees_numbers_as_python_writes_them(python, tmp_path):
     assert done.stderr == "WARNING: speed 1.5\n"
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize(
     "form, text",
     [
@@ -127,6 +128,7 @@ TYPED = """(require cramhy *)
 """
 
 
+@pytest.mark.soak
 def test_a_prompt_of_both_languages_changes_with_the_language(python):
     done = python("-m", "cramhy_runtime.cli", "repl", "--hy", input=TYPED)
     told = re.findall(r"#<FLUENT .*?>|at 1.5.*", done.stdout + done.stderr)

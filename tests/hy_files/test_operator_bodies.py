@@ -42,6 +42,7 @@ ASSIGNING = {
 }
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("case", ASSIGNING)
 def test_a_body_assigns_the_variables_of_the_function_around(load, case):
     text, value = ASSIGNING[case]
@@ -62,6 +63,7 @@ MODULES = {
 }
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("case", MODULES)
 def test_a_body_assigns_the_variables_of_the_module(load, case):
     module = load(MODULES[case])
@@ -85,6 +87,7 @@ RETURNING = {
 }
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("case", RETURNING)
 def test_return_break_and_yield_mean_what_is_around_them(load, case):
     text, value = RETURNING[case]
@@ -120,6 +123,7 @@ REFUSED = {
 }
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("text", REFUSED)
 def test_what_would_end_the_body_alone_is_refused_when_the_file_is_compiled(load, text):
     with pytest.raises(SyntaxError) as told:

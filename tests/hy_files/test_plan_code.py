@@ -31,6 +31,7 @@ LOOPS = """\
 """
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("way", ["hy", "run"])
 def test_a_loop_that_never_waits_can_be_ended(write, program, way):
     write("loops.hy", LOOPS)
@@ -38,6 +39,7 @@ def test_a_loop_that_never_waits_can_be_ended(write, program, way):
     assert (done.stdout, done.stderr) == ("won\n" * 5, "")
 
 
+@pytest.mark.soak
 def test_loops_of_a_module_that_python_imports_are_checkpoints_too(write, python):
     write("loops.hy", LOOPS)
     for _ in ("compiled", "kept"):
@@ -45,11 +47,13 @@ def test_loops_of_a_module_that_python_imports_are_checkpoints_too(write, python
         assert (done.stdout, done.stderr) == ("won\n" * 5, "")
 
 
+@pytest.mark.soak
 def test_one_operator_alone_may_be_required(write, program):
     write("loops.hy", LOOPS.replace("cramhy *", "cramhy [top-level pursue sleep]"))
     assert program("hy", "loops.hy").stdout == "won\n" * 5
 
 
+@pytest.mark.soak
 def test_loops_run_without_a_plan_and_in_other_threads_as_they_always_did(write, program):
     write(
         "loops.hy",
@@ -101,6 +105,7 @@ CTRL_C = """\
 """
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("text", [CTRL_C, CTRL_C.replace("(par (for-ever) (sleep 9))", "(for-ever)")], ids=["in a branch", "alone"])
 def test_ctrl_c_ends_a_loop_that_never_waits(write, tmp_path, text):
     write("plan.hy", text)
@@ -141,6 +146,7 @@ CLEANUP = """\
 """
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("way", ["hy", "run"])
 def test_what_finally_does_runs_to_its_end(write, program, way):
     write("plan.hy", CLEANUP)

@@ -32,6 +32,7 @@ def run_pytest(python):
     return run_pytest
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     "words, passed",
     [
@@ -50,6 +51,7 @@ def test_a_test_file_is_run_however_it_is_named(write, run_pytest, words, passed
     assert code == 0 and f"{passed} passed" in shown, shown
 
 
+@pytest.mark.soak
 def test_a_package_whose_assertions_are_rewritten_may_have_modules_in_hy(write, run_pytest, tmp_path):
     (tmp_path / "robot").mkdir()
     write("robot/__init__.py", "import hy\n")
@@ -65,6 +67,7 @@ def test_a_package_whose_assertions_are_rewritten_may_have_modules_in_hy(write, 
     assert code == 0 and "1 passed" in shown, shown
 
 
+@pytest.mark.soak
 def test_a_form_that_cannot_be_compiled_is_told_without_the_frames_of_the_compiler(write, run_pytest):
     write("test_plan.hy", "(require cramhy *)\n(defn test-a [] (par (if)))\n")
     write("drives.hy", "(require cramhy *)\n(defn drive []\n  (par (if)))\n")
@@ -120,6 +123,7 @@ def collected(shown):
     return sorted(line.split(" ")[0].partition("::")[2] for line in shown.splitlines() if re.match(r"\S+\.hy::\S+ [A-Z]+ ", line))
 
 
+@pytest.mark.soak
 def test_each_test_is_collected_once_under_its_name_in_lisp_and_run(write, run_pytest):
     write("test_odd.hy", ODD)
     code, shown = run_pytest("-v")
@@ -128,6 +132,7 @@ def test_each_test_is_collected_once_under_its_name_in_lisp_and_run(write, run_p
     assert "async def functions are not natively supported" in shown
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     "words, names",
     [
@@ -170,6 +175,7 @@ def test_tests_are_chosen_by_name_or_pattern(write, run_pytest, words, names):
     assert collected(shown) == names, shown
 
 
+@pytest.mark.soak
 def test_a_file_that_is_named_like_one_of_tests_and_has_none_is_an_error(write, run_pytest):
     texts = ["", "(defn helper [] 1)\n", "(defclass TestNone [])\n", "(setv test-data 3)\n", ";; (defn test-x [] 1)\n"]
     names = ["test_empty.hy", "empty_test.hy", "test-empty.hy", "test_data.hy", "test_comment.hy"]
@@ -218,6 +224,7 @@ FAILING = {
 }
 
 
+@pytest.mark.soak
 def test_a_failed_assertion_shows_its_values(write, run_pytest):
     tests = "".join(f"(defn test-{number} []\n  {form})\n" for number, form in enumerate(FAILING))
     write("test_values.hy", f"(require cramhy *)\n(defn double [x] (if (= x 2) 0 3))\n{tests}")
@@ -228,6 +235,7 @@ def test_a_failed_assertion_shows_its_values(write, run_pytest):
         assert shown in part and f"test_values.hy:{4 + 2 * number}: AssertionError" in part, (form, part)
 
 
+@pytest.mark.soak
 def test_helpers_that_are_registered_show_values_and_plain_code_is_kept_apart(write, run_pytest, python):
     write("helper.hy", "(defn check [x]\n  (assert (= x 3)))\n")
     write("conftest.py", "import pytest\npytest.register_assert_rewrite('helper')\n")

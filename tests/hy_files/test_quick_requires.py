@@ -42,11 +42,13 @@ def ran(first):
     return [subprocess.run(command, capture_output=True, text=True, check=True).stdout for _ in range(2)]
 
 
+@pytest.mark.soak
 def test_macros_come_to_the_file_that_requires_them_as_in_hy_alone(folder):
     alone = ran("import hy")
     assert ran("import hy, cramhy") == alone == ["[3, 7] 3 3 ['a_library.three', 'drei'] True\n"] * 2
 
 
+@pytest.mark.soak
 def test_a_module_that_is_required_for_another_one_keeps_the_macros_apart(folder, monkeypatch):
     monkeypatch.syspath_prepend(str(folder))
     wanted = types.ModuleType("wanted")

@@ -10,6 +10,7 @@ BEGINNING = """
 """
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("goal", "answers"),
     [

@@ -12,6 +12,7 @@ PLAIN = """\
 FORMS = {"none": "", "macro": '(cramhy.time "wall")', "import": '(import cramhy)\n(cramhy.time "wall")'}
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("way", ["hy", "run"])
 @pytest.mark.parametrize(
     ("form", "variables", "time"),
@@ -29,6 +30,7 @@ def test_a_file_and_the_variable_choose_it_for_hy_and_for_cramhy_run(write, prog
     assert (done.returncode, done.stdout, done.stderr) == (0, f"{time}\n", "")
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("way", ["hy", "run"])
 def test_a_file_in_common_lisp_chooses_it_by_a_function(write, program, way):
     write(
@@ -39,11 +41,13 @@ def test_a_file_in_common_lisp_chooses_it_by_a_function(write, program, way):
     assert (done.returncode, done.stdout, done.stderr) == (0, 'wall\n"virtual" ', "")
 
 
+@pytest.mark.soak
 def test_the_option_counts_before_the_variable_and_the_file(write, program):
     write("plan.hy", PLAIN.format(form=FORMS["macro"]))
     assert program("run", "plan.hy", "--time", "virtual", CRAMHY_TIME="wall").stdout == "virtual\n"
 
 
+@pytest.mark.soak
 def test_the_variable_counts_for_tests_of_pytest_and_the_option_before_it(write, python):
     write(
         "test_time.py",
@@ -56,6 +60,7 @@ def test_the_variable_counts_for_tests_of_pytest_and_the_option_before_it(write,
     assert python(*words, "--cramhy-time", "wall", CRAMHY_TIME="virtual", **alone).returncode == 0
 
 
+@pytest.mark.soak
 def test_another_word_is_refused(write, program):
     write("plan.hy", PLAIN.format(form='(cramhy.time "slow")'))
     complaint = 'The variable CRAMHY_TIME says "slow". Time is "virtual" or "wall".'
@@ -65,6 +70,7 @@ def test_another_word_is_refused(write, program):
     assert '(cramhy:time ...) says "slow". Time is "virtual" or "wall".' in program("run", "plan.hy").stderr
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(("command", "time"), [("repl", "wall"), ("run", "virtual"), ("eval", "virtual"), ("test", "virtual")])
 def test_the_help_of_each_command_names_its_default(python, command, time):
     text = " ".join(python("-m", "cramhy_runtime.cli", command, "--help").stdout.split())

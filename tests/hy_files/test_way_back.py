@@ -12,6 +12,7 @@ LISP = """(in-package :cl-user)
 (setv answer {})"""
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "more",
     ["", ";; (in-hy)", '(defvar *s* "\n(in-hy)\n")', "#| \n(in-hy)\n|#", "(defvar *t* '(a\n(in-hy)\n))"],

@@ -90,6 +90,7 @@ def test_what_follows_the_load_of_a_system_may_use_its_package(write, program, a
         assert first.stdout.startswith("\n:BEFORE ") and "\n1 \n" in first.stdout
 
 
+@pytest.mark.soak
 def test_hy2py_of_plain_hy_runs(write, program, python):
     write("plan.hy", PLAIN)
     made = python("-c", "from hy.cmdline import hy2py_main; hy2py_main()", "plan.hy", "-o", "made.py")
@@ -106,6 +107,7 @@ def test_a_program_has_its_name_and_its_neighbours(write, program, way):
     assert done.stdout.split()[0].endswith("plan.hy")
 
 
+@pytest.mark.soak
 def test_python_imports_both_kinds(write, python):
     write("plan.hy", PLAIN)
     write("parts.hy", PARTS)
@@ -131,6 +133,7 @@ for lose in (plan.lose, parts.lose):
         assert outcome(done) == (0, "drove 6\n2 6 Drive.\n2 3\nLost.\nLost.\n", "")
 
 
+@pytest.mark.soak
 def test_pytest_imports_both_kinds(write, python):
     write("plan.hy", PLAIN)
     write("parts.hy", PARTS)
@@ -162,6 +165,7 @@ def test_failures(name):
     assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.soak
 def test_pytest_shows_the_place_of_a_form_that_cannot_be_compiled(write, python):
     write("plan.hy", "(require cramhy *)\n(defn drive []\n  (let ((x 1)) x))\n")
     write("test_plans.py", "import hy\nimport plan\n\ndef test_it():\n    pass\n")
@@ -171,6 +175,7 @@ def test_pytest_shows_the_place_of_a_form_that_cannot_be_compiled(write, python)
     assert "The let form is malformed: a part of it has another shape; expected: List" in shown
 
 
+@pytest.mark.soak
 def test_the_prompt_of_lisp_shows_that_place_too(write, python):
     write("plan.hy", "(require cramhy *)\n(defn drive []\n  (let ((x 1)) x))\n")
     shown = python("-m", "cramhy_runtime.cli", "repl", input='(load "plan.hy")\n0\n(+ 1 2)\n').stdout

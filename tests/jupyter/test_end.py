@@ -22,6 +22,7 @@ def test_a_kernel_that_is_shut_down_ends_its_plan_through_its_cleanup(tmp_path):
     assert not notebook.manager.is_alive()
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("code", "status"),
     [("(progn (print 1) (exit :code 3))", 3), ("%%hy\n(print 1)\n(import sys)\n(sys.exit)", 0)],

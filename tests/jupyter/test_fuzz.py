@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from systems import takes_long  # noqa: E402
 
 KINDS = """execute_request complete_request inspect_request is_complete_request history_request comm_info_request kernel_info_request
 connect_request comm_open comm_msg comm_close input_reply interrupt_request debug_request usage_request create_subshell_request
@@ -84,7 +83,7 @@ def lives(cells, code):
     return answer.text
 
 
-@pytest.mark.parametrize("count", [400, pytest.param(10_000, marks=takes_long)])
+@pytest.mark.parametrize("count", [400, pytest.param(10_000, marks=pytest.mark.soak)])
 def test_whatever_frames_come_the_kernel_lives_and_answers(cells, count):
     lot = random.Random(19)
     session = cells.client.session

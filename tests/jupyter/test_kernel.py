@@ -54,6 +54,7 @@ def test_the_debugger_asks_if_it_is_told_to(cells):
     assert "42" in answer.printed and "There is no choice 9" in answer.printed and "Take five." in answer.printed
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("form", ["(cpl:wait-for (cpl:make-fluent :value nil))", "(loop (cpl:sleep 1))", "(loop)"])
 def test_an_interrupt_ends_a_cell_through_the_cleanup_of_its_plan(cells, form):
     def stop(kind, content):
@@ -66,6 +67,7 @@ def test_an_interrupt_ends_a_cell_through_the_cleanup_of_its_plan(cells, form):
     assert cells.run("(+ 2 2)").text == "4"
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize(
     "form", ["(while True)", "(for [i (range (** 10 12))])", "(wait-for (make-fluent :value None))", "(while True (sleep 1))"]
 )
@@ -150,6 +152,7 @@ def test_completion(cells):
     assert cells.client.complete("(zzzzzz", reply=True, timeout=60)["content"]["matches"] == []
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize(
     ("text", "offered"), [("(cp", ["cpl:", "cpm:"]), ("(top", ["top-level"]), ("(make-fluent :na", [":name"]), ("(defn f [", [])]
 )

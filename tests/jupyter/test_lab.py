@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from systems import takes_long  # noqa: E402
 
 for module in ("jupyterlab", "nbformat", "ipywidgets"):
     pytest.importorskip(module, reason=f"JupyterLab is driven with it: pip install {module}")
@@ -29,7 +28,7 @@ CELLS = [
 ]
 
 
-@takes_long
+@pytest.mark.soak
 def test_a_user_drives_a_notebook_in_jupyterlab(tmp_path):
     with lab.opened(tmp_path, CELLS) as shown:
         assert shown.run(0).endswith("(1 7)")

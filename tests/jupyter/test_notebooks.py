@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from systems import takes_long  # noqa: E402
 
 for module in ("ipykernel", "nbclient", "nbformat"):
     pytest.importorskip(module, reason=f"notebooks are run with it: pip install {module}")
@@ -55,7 +54,7 @@ def test_the_notebook_of_lecture_34_runs_and_shows_the_turtle(jupyter):
     assert (place / "lecture-34.svg").read_text() == (notebooks.TUTORIALS / "lecture-34.svg").read_text()  # as the site shows it
 
 
-@takes_long
+@pytest.mark.soak
 @pytest.mark.parametrize("language", ["lisp", "hy"])
 def test_the_notebooks_of_all_lectures_run_one_after_the_other(jupyter, language):
     place = jupyter / "ros" / "src"
@@ -64,7 +63,7 @@ def test_the_notebooks_of_all_lectures_run_one_after_the_other(jupyter, language
         executed(page, str(place), language)  # a cell that fails, and is not said to, ends it
 
 
-@takes_long
+@pytest.mark.soak
 @pytest.mark.parametrize("language", ["lisp", "hy"])
 @pytest.mark.parametrize("page", notebooks.MORE, ids=lambda page: page.stem)
 def test_the_notebooks_of_the_other_pages_run(jupyter, page, language):
@@ -82,6 +81,7 @@ def test_the_notebooks_of_the_other_pages_run(jupyter, page, language):
         assert any("image/png" in output["data"] for output in shown), "the robot's world has changed"
 
 
+@pytest.mark.soak
 def test_all_pages_of_the_tutorials_are_notebooks(tmp_path):
     written = {path.relative_to(tmp_path).as_posix() for path in notebooks.write(tmp_path)}
     pages = {path.stem for path in notebooks.TUTORIALS.rglob("*.md")} - {"index", "the-package"}

@@ -7,7 +7,7 @@ import time
 
 import pytest
 from outside_world import in_a_thread
-from systems import IN_WEBASSEMBLY, SOAK, takes_long
+from systems import IN_WEBASSEMBLY, SOAK
 
 from cramhy_runtime import kernel
 from cramhy_runtime.kernel import reports
@@ -166,7 +166,7 @@ def test_the_collector_runs_while_five_hundred_stacks_are_parked(k):
 # -------------------------------------------------------------------------------------------------------------------- how many
 
 
-@pytest.mark.parametrize("most, asked", [(150, 200), pytest.param(jspi.MOST, 10_000, marks=takes_long)])
+@pytest.mark.parametrize("most, asked", [(150, 200), pytest.param(jspi.MOST, 10_000, marks=pytest.mark.soak)])
 def test_more_tasks_than_there_is_room_for_are_refused_and_the_others_go_on(k, monkeypatch, most, asked):
     monkeypatch.setattr(jspi, "MOST", most)
     room = most - jspi._stacks

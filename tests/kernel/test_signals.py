@@ -59,12 +59,14 @@ kernel.sleep(20)
 """
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_callback_that_takes_long_does_not_cost_the_request(backend, number):
     status, output, _ = run(CALLBACK.format(number=int(number)), backend)
     assert output == "cleaned up\n" and status == (128 + number if number == signal.SIGTERM else -number)
 
 
+@pytest.mark.soak
 def test_two_interrupts_during_a_message_that_takes_long(backend):
     status, output, complaints = run(
         """
@@ -82,6 +84,7 @@ kernel.stop()
     assert output.startswith("True\n") and "IndexError" not in complaints and status in (0, -signal.SIGINT)
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("seconds", [0.3, 1.6])
 def test_what_serves_plans_is_closed_to_the_end_and_the_signal_is_not_lost(backend, seconds):
     status, output, complaints = run(
@@ -207,6 +210,7 @@ kernel.yield_()
     assert (status, sorted(output.split())) == (0, ["a", "b", "c", "cleaned", "up"]), complaints
 
 
+@pytest.mark.soak
 @needs(signal, "pthread_kill")  # a write that waits is broken off by a second signal to its thread
 def test_output_that_nobody_reads_does_not_hold_up_the_end(tmp_path):
     """A full pipe, to which a branch prints and complaints go, too."""

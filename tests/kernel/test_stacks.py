@@ -43,6 +43,7 @@ def test_endless_recursion_is_an_error_of_that_task_alone(k):
     assert isinstance(task.exception, RecursionError)
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("point", ["park", "sleep", "yield_", "run_blocking", "checkpoint", "unpark", "spawn"])
 def test_a_task_that_runs_out_of_stack_at_a_park_point_harms_nobody(k, point):
     """Whatever line of the kernel the recursion limit strikes, the queue stays whole."""

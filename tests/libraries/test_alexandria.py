@@ -16,6 +16,7 @@ def recorded():
     return list(zip(lines[::2], lines[1::2], strict=True))
 
 
+@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize(("form", "answer"), recorded())
 def test_a_form_has_the_values_of_the_library(values, form, answer):
     try:

@@ -12,7 +12,6 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from systems import takes_long
 
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.streams import streams
@@ -71,7 +70,7 @@ def test_the_parts_without_cram_give_what_sbcl_gives(barista, part):
         assert value == wanted.rstrip("\n").removesuffix("\n="), prin1_to_string(form)
 
 
-@takes_long
+@pytest.mark.soak
 @pytest.mark.skipif(shutil.which("sbcl") is None, reason="sbcl is not installed")
 @pytest.mark.parametrize("part", ["pure", "object"])
 def test_the_answers_are_those_of_sbcl(tmp_path, part):
@@ -122,6 +121,7 @@ class TestFramesAndCostmaps:
     def test_frames(self, barista, form, answer):
         assert barista(f"(init-frames) (set-base-pose (list->pose '((1 2 0)))) {form}", "BARISTA-TF") == answer
 
+    @pytest.mark.soak(all_but=3)
     @pytest.mark.parametrize(
         "form, answer",
         [
@@ -221,6 +221,7 @@ class TestThreads:
         barista.session.load("barista-threads")
         return barista
 
+    @pytest.mark.soak(all_but=1)
     @pytest.mark.parametrize(
         "form, answer",
         [

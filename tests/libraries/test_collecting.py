@@ -73,6 +73,7 @@ def run_pytest(*arguments):
     return subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"})
 
 
+@pytest.mark.soak
 def test_pytest_reports_form_values_and_line(project):
     done = run_pytest("tests", "other", "--lisp-limit", "1")
     assert done.returncode == 1
@@ -116,6 +117,7 @@ SUMS-TESTS::MAXIMUM ______________________________
         assert text in done.stdout.replace(" \n", "\n")
 
 
+@pytest.mark.soak
 def test_a_file_that_cannot_be_loaded_is_an_error_of_collection(project):
     done = run_pytest("broken", "good")
     assert done.returncode == 2
@@ -130,6 +132,7 @@ def test_a_file_that_cannot_be_loaded_is_an_error_of_collection(project):
     )
 
 
+@pytest.mark.soak
 def test_an_asd_file_named_on_the_command_line(project):
     assert "3 failed, 2 passed, 1 skipped" in run_pytest("proj.asd").stdout
 
@@ -166,6 +169,7 @@ def command(project, session, capsys, monkeypatch):
         systems.forget_system(name)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("path", ["proj", "proj.asd", "tests"])
 def test_cramhy_test_prints_the_libraries_summaries(command, path):
     status, printed, _ = command(path)
@@ -212,6 +216,7 @@ def test_what_is_wrong(command, path, text):
     assert status == 1 and text in problem
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("name", "text"),
     [
@@ -324,6 +329,7 @@ MACRO = """(defpackage :by-macro (:use :cl :lisp-unit))
 """
 
 
+@pytest.mark.soak
 def test_pytest_finds_tests_of_macros_and_tells_of_lisp_files_without_any(project):
     (project / "odd").mkdir()
     for name in ("empty-test.lisp", "test-empty.lisp", "tests.lisp"):
@@ -338,6 +344,7 @@ def test_pytest_finds_tests_of_macros_and_tells_of_lisp_files_without_any(projec
         assert NONE.format(name) in done.stdout
 
 
+@pytest.mark.soak
 def test_a_helper_of_a_system_that_has_tests_may_be_named_like_tests(project):
     asd = (project / "proj.asd").read_text()
     (project / "tests" / "test-helper.lisp").write_text("(defpackage :helps (:use :cl))\n")

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import pytest
 from systems import posix
 
 from cramhy_runtime.lisp_core.classes import class_name
@@ -10,6 +11,7 @@ from cramhy_runtime.lisp_core.conditions import Condition
 LINES = [line for line in (Path(__file__).parent / "contributions.txt").read_text().splitlines() if not line.startswith("; ")]
 
 
+@pytest.mark.soak
 @posix
 def test_forms_have_the_values_of_sbcl(values):
     """One after the other, since tests of SB-RT are defined by some and run by others."""

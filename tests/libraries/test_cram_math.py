@@ -18,6 +18,7 @@ def polygon(*points):
     return f"(make-instance 'cma:polygon :vertices (list {corners}))"
 
 
+@pytest.mark.soak(all_but=14)
 @pytest.mark.parametrize(
     ("form", "value"),
     [

@@ -15,6 +15,8 @@ from cramhy_runtime.lisp_core.data import Cons
 from cramhy_runtime.languages.commonlisp.systems.systems import find_asd
 from cramhy_runtime.prolog.engine import database
 
+pytestmark = pytest.mark.soak
+
 pytest.importorskip("numpy", reason="needs numpy")
 
 SYSTEMS = """cram-location-costmap cram-robot-pose-gaussian-costmap cram-occupancy-grid-costmap cram-btr-visibility-costmap

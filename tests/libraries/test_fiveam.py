@@ -301,6 +301,7 @@ def test_running_again_and_when_defined(printed):
     assert "Running test NOW ." in printed("(let ((*run-test-when-defined* t)) (eval '(test now (is (= 1 1)))))")
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize(
     "form, text",
     [

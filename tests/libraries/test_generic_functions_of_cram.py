@@ -21,6 +21,7 @@ NAMES = [
 ]
 
 
+@pytest.mark.soak
 def test_each_of_them_is_a_generic_function(values):
     pytest.importorskip("mujoco", reason="the costmaps need the extra robot")
     names = " ".join(NAMES)

@@ -268,6 +268,7 @@ AS_IN_THE_ORIGINAL = [
 ]
 
 
+@pytest.mark.soak(all_but=13)
 @pytest.mark.parametrize(("form", "shown"), AS_IN_THE_ORIGINAL)
 def test_numbers_are_compared_by_generic_functions_as_in_the_original(session, form, shown):
     session.evaluate_text("(asdf:load-system :lisp-unit) (in-package :lisp-unit)")

@@ -18,6 +18,8 @@ from cramhy_runtime.languages.commonlisp.evaluation.symbols import fboundp
 from cramhy_runtime.languages.commonlisp.objects.classes import find_class
 from cramhy_runtime.prolog.engine import database, fact_groups
 
+pytestmark = pytest.mark.soak
+
 pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
 
 NAMES = json.loads((Path(__file__).parent / "names_of_cram.json").read_text())

@@ -96,6 +96,7 @@ def passed_over(name, ours, theirs):
     )
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("name", ["cram-math", "cl-urdf", "cffi-ros-utils"])
 def test_a_system_of_the_workspace_that_is_not_taken_is_told(lisp, workspace, name):
     theirs = workspace(name) / name.replace("-", "_") / f"{name}.asd"

@@ -22,6 +22,7 @@ def answers(values):
     return values
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     ("goal", "found"),
     [

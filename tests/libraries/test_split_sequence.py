@@ -5,6 +5,7 @@ import pytest
 from cramhy_runtime.lisp_core.conditions import Condition
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     "arguments, parts",
     [
@@ -30,6 +31,7 @@ def test_the_parts(values, arguments, parts):
     assert values(f"(split-sequence:split-sequence {arguments})") == parts
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "form, value",
     [

@@ -39,6 +39,7 @@ def found(session, monkeypatch):
         systems.forget_system(name)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("system", "counts"), [("cram-tray-delivery", (15, 38)), ("cram-tray-delivery-tests", (15, 38)), ("cram-cup-counter/test", (6, 19))]
 )
@@ -51,6 +52,7 @@ def test_all_tests_of_the_system_pass(found, system, counts, capsys, tmp_path):
     assert (suite.get("tests"), suite.get("failures"), suite.get("errors")) == (str(tests), "0", "0")
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("system", "summary"),
     [
@@ -83,6 +85,7 @@ def wrong(tmp_path_factory):
     return folder
 
 
+@pytest.mark.soak
 def test_the_exit_code_says_whether_all_passed(wrong):
     done = run(wrong, "cramhy_runtime.cli", "test", "cram-tray-delivery-tests", "--features", "sbcl")
     assert done.returncode == 1, done.stdout + done.stderr
@@ -90,6 +93,7 @@ def test_the_exit_code_says_whether_all_passed(wrong):
     assert "HANGS hangs" in done.stdout and "plan-tests.lisp:" in done.stdout
 
 
+@pytest.mark.soak
 def test_pytest_runs_them_too_and_finds_the_system_beside_that_of_the_tests(wrong, tmp_path):
     package = wrong / "cram_tray_delivery"
     files = package / "cram-tray-delivery-tests.asd", package / "tests" / "time-tests.lisp"

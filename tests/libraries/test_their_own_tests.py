@@ -29,6 +29,7 @@ def load(session):
     return loaded
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("system", "file", "suite"),
     [
@@ -40,6 +41,7 @@ def test_a_library_passes_the_tests_of_the_real_one(load, system, file, suite):
     assert load(system, file, f"(5am:run! {suite})") == [True]
 
 
+@pytest.mark.soak
 def test_split_sequence_passes_the_tests_of_the_real_one(load):
     """All but a million random cases, of which it takes a thousand."""
     run = """(progn (split-sequence/tests::fuzz :repetitions 1000 :verbose nil)
@@ -48,6 +50,7 @@ def test_split_sequence_passes_the_tests_of_the_real_one(load):
     assert load("split-sequence", "cl-split-sequence/tests.lisp", run) == [True]
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("part", ["alexandria-1", "alexandria-2"])
 def test_alexandria_passes_the_tests_of_the_real_one(load, part):
     assert load("alexandria", f"alexandria/{part}/tests.lisp", "(progn (sb-rt:do-tests) (sb-rt:pending-tests))", RT) == [None]

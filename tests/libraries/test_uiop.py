@@ -12,6 +12,7 @@ from cramhy_runtime.languages.commonlisp.python.python_calls import watch
 LINES = [line for line in (Path(__file__).parent / "uiop.txt").read_text().splitlines() if not line.startswith("; ")]
 
 
+@pytest.mark.soak(all_but=23)
 @posix
 @pytest.mark.parametrize(("form", "answer"), list(zip(LINES[::2], LINES[1::2], strict=True)))
 def test_a_form_has_the_values_of_sbcl(values, form, answer):

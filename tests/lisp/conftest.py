@@ -7,6 +7,8 @@ import pytest
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.languages.commonlisp.systems import systems
 
+collect_ignore = ["systems"]  # their own tests run in test_plan_system.py; collected here, they would define theirs for all tests
+
 
 @pytest.fixture
 def write(tmp_path, session, monkeypatch):

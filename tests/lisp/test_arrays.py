@@ -18,6 +18,7 @@ def a_kernel():
     kernel.start(clock="virtual")
 
 
+@pytest.mark.soak(all_but=17)
 @pytest.mark.parametrize("form, expected", recorded("arrays.txt"))
 def test_arrays_answer_as_in_sbcl(form, expected):
     assert answer(form) == expected

@@ -182,6 +182,7 @@ def test_what_cannot_be_had_says_why(write, run):
     assert caught.value.hint.startswith("osicat cannot be had in cramhy: it calls functions of C")
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("name", sorted(systems.LEFT_OUT))
 def test_systems_of_cram_that_are_left_out_are_empty(write, run, name):
     write("lists.asd", f'(defsystem "lists" :depends-on ("{name}"))')
@@ -241,6 +242,7 @@ FUNCTIONS_WITH_METHODS = """component-name component-pathname component-version 
     version-satisfies""".split()
 
 
+@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize("name", FUNCTIONS_WITH_METHODS)
 def test_the_functions_of_asdf_take_methods(run, name):
     """For a class of the program's own; what they say of systems stays as it was."""

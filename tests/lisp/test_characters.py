@@ -17,6 +17,7 @@ def a_kernel():
     kernel.start(clock="virtual")
 
 
+@pytest.mark.soak(all_but=24)
 @pytest.mark.parametrize("form, expected", recorded("characters.txt"))
 def test_characters_answer_as_in_sbcl(form, expected):
     assert answer(form) == expected

@@ -95,6 +95,7 @@ def short_slices(monkeypatch):
     budget.budget.renew()
 
 
+@pytest.mark.soak(all_but=16)
 @pytest.mark.parametrize("form", ENDLESS)
 def test_a_walk_along_a_circular_list_can_be_ended(session, form):
     text = f"""(let ((l '#1=(1 . #1#)) (k '#2=(1 . #2#)) (pairs '#3=((1 . 2) . #3#)))

@@ -174,6 +174,7 @@ def values(session, text):
     return [prin1_to_string(value) for value in session.evaluate_text(text)]
 
 
+@pytest.mark.soak(all_but=16)
 @pytest.mark.parametrize("name", FORMS)
 def test_a_macro_expands_to_what_every_walker_knows(session, name):
     wanted = values(session, FORMS[name])

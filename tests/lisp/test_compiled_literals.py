@@ -56,6 +56,7 @@ DEFINITIONS = """
 """
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("kind", LITERALS)
 def test_a_compiled_file_makes_its_literals_again(answer, tmp_path, kind):
     form = LITERALS[kind].replace("\\\\", "\\")

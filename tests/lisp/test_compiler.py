@@ -72,6 +72,7 @@ MALFORMED = [
 ]
 
 
+@pytest.mark.soak(all_but=15)
 @pytest.mark.parametrize(("text", "report"), MALFORMED)
 def test_a_malformed_form_is_a_compile_error_with_its_place(session, text, report):
     session.package = "CL-USER"
@@ -241,6 +242,7 @@ def nested(depth, around, body):
     return body
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "around",
     [

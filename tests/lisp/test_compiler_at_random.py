@@ -459,7 +459,7 @@ def lists(value):
 _session = []
 
 
-@settings(max_examples=150 if SOAK else 50, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=150 if SOAK else 25, deadline=None, suppress_health_check=list(HealthCheck))
 @given(programs())
 def test_the_compiler_and_the_interpreter_agree(program):
     if not _session:

@@ -21,6 +21,7 @@ def lisp(session):
     return lambda form: prin1_to_string(session.evaluate_text(form)[0])
 
 
+@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize(
     ("form", "answer"),
     [

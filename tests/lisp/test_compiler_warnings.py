@@ -324,6 +324,7 @@ def test_the_answers_of_cramhy_eval_have_them_apart_from_the_output(lisp):
     }
 
 
+@pytest.mark.soak
 def test_a_type_that_nobody_defines(lisp):
     assert re.findall(
         "caught (.*)|;   (und.*)", lisp.said("(defun f (x) (handler-case (typep x 'no-such-type) (no-such-error () 1)))")

@@ -48,6 +48,7 @@ def definition(slots, constructor):
     return f"(defstruct (s {constructor} {named}) {rest.replace('()', '')})"
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(("slots", "constructor", "call", "printed"), CASES)
 def test_each_call_gives_what_the_first_one_gives(lisp, place, slots, constructor, call, printed):
     lisp(definition(slots, constructor))

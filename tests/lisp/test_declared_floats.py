@@ -37,6 +37,7 @@ def lisp():
     return LispText(Session(time="virtual", turtlesim=False), f"(defpackage :df-{(n := next(_numbers))} (:use :cl)) (in-package :df-{n})")
 
 
+@pytest.mark.soak(all_but=8)
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("kind", TYPES)
 def test_a_declared_float_is_checked(lisp, kind, shape):

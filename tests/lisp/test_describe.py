@@ -106,6 +106,7 @@ MY-MAC names a macro:
     assert lisp("(describe 'when)").splitlines()[3:] == ["WHEN names a macro:", "  Lambda-list: (TEST &REST BODY)"]
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("name", "shown"),
     [
@@ -216,6 +217,7 @@ Methods:
     )
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     ("form", "shown"),
     [
@@ -322,6 +324,7 @@ def test_python_objects(lisp, session):
     assert "Documentation:\n  A hand.\nAttributes:\n  width                          = 0.5d0\n" in shown
 
 
+@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize(
     ("form", "text"),
     [

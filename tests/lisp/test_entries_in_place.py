@@ -58,6 +58,7 @@ def session_of_module():
     return Session(time="virtual", turtlesim=False)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("table", TABLES)
 def test_in_place_and_called_they_are_the_same(lisp, table):
     lisp(f"(progn (defvar *one*) (defvar *other*) (setf *one* (make-hash-table {table}) *other* (make-hash-table {table})))")
@@ -71,6 +72,7 @@ def test_in_place_and_called_they_are_the_same(lisp, table):
     assert lisp("(progn (clrhash *one*) (setf (gethash 1.5 *one*) 1 (gethash 1 *one*) 2) (contents *one*))") == "(2 ((1.5 . 1) (1 . 2)))"
 
 
+@pytest.mark.soak
 @given(
     steps=st.lists(st.tuples(st.sampled_from(KEYS[:16]), st.sampled_from(["put", "get", "remove"])), max_size=12),
     table=st.sampled_from(TABLES[:4]),
@@ -112,6 +114,7 @@ def test_what_is_no_table_is_told_alike(lisp, table, form):
     assert told == called and "HASH-TABLE" in told
 
 
+@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize(
     ("form", "answer"),
     [

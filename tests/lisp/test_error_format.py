@@ -350,6 +350,7 @@ def shown(session, tmp_path, monkeypatch):
     return load
 
 
+@pytest.mark.soak(all_but=7)
 @pytest.mark.parametrize(("text", "expected"), [*READING, *EXPANSION, *COMPILATION, *RUNNING])
 def test_an_error_in_a_file(shown, text, expected):
     assert shown(text) == expected

@@ -57,6 +57,7 @@ def session():
     kernel.stop()
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("letters", ["ABCDEF", "GHIJKLMNO", "PQR", "STUVWXYZ*+-/1<=>"])
 def test_the_datum_of_a_type_error_is_not_of_the_expected_type(session, letters):
     (names,) = session.evaluate_text("(asked-functions)")

@@ -3,6 +3,7 @@
 import pytest
 
 
+@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize(
     "form, value",
     [

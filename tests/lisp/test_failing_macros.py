@@ -25,6 +25,7 @@ def lisp(session):
     return LispText(session, PRELUDE)
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     ("definition", "call", "form", "cause"),
     [
@@ -53,6 +54,7 @@ def test_at_the_prompt_it_is_the_error_itself(lisp, form):
     assert lisp.error(form) == "There is no 3."
 
 
+@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize(
     ("form", "answer"),
     [

@@ -40,6 +40,7 @@ def lisp(session):
     session.package = "COMMON-LISP-USER"
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("control", CONTROLS)
 def test_the_code_prints_what_the_walk_prints(lisp, control):
     chosen, count = random.Random(control), sum(control.count(f"{tilde}{end}") for tilde in "~" for end in "~%&")

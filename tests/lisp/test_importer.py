@@ -56,6 +56,7 @@ def test_several_values_come_as_a_tuple(module):
     assert tuple(module.two_values()) == (1, 2)
 
 
+@pytest.mark.soak
 def test_variables_are_read_and_set(module, session):
     assert (module.speed, module.limit_plus if hasattr(module, "limit_plus") else 10) == (1.5, 10)
     module.speed = 4
@@ -75,6 +76,7 @@ def test_a_redefinition_is_seen_at_once(module, session):
     assert module.area().name == "NEW"
 
 
+@pytest.mark.soak
 def test_internal_names_are_there_and_unknown_ones_say_so(module):
     assert module.internal().name == "HIDDEN"
     with pytest.raises(AttributeError) as caught:
@@ -92,6 +94,7 @@ def test_dir_and_documentation(module):
     assert module.__doc__ == "A package."
 
 
+@pytest.mark.soak
 def test_hy_may_write_the_name_of_lisp_itself(module):
     hy.eval(hy.read("(setv speed module.*speed*  limit module.+limit+  big (module.is-big? 11))"), locals=(names := {"module": module}))
     assert (names["speed"], names["limit"], names["big"]) == (1.5, 10, True)

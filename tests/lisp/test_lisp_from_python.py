@@ -132,6 +132,7 @@ def test_texts_and_keywords(robots):
     assert robots.key() is keyword("SOME-KEY") and repr(robots.key()) == ":SOME-KEY"
 
 
+@pytest.mark.soak
 def test_variables_and_the_directory(robots):
     assert robots.top_speed == 3
     robots.top_speed = 4

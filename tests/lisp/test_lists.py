@@ -19,6 +19,7 @@ def a_kernel():
     kernel.start(clock="virtual")
 
 
+@pytest.mark.soak(all_but=22)
 @pytest.mark.parametrize("form, expected", recorded("lists.txt"))
 def test_lists_answer_as_in_sbcl(form, expected):
     assert answer(form) == expected

@@ -18,6 +18,7 @@ def logging(text):
 AS_ASKED = "#+sbcl (push :as-sbcl cl-user::*log*) #-sbcl (push :as-another cl-user::*log*)"
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("text", "read"),
     [
@@ -61,6 +62,7 @@ DEFINITIONS = {
 }
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("case", DEFINITIONS)
 def test_the_definition_of_a_system_is_read_as_its_files_are(write, run, case):
     components, needed, expected = DEFINITIONS[case]

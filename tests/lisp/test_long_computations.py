@@ -80,6 +80,7 @@ def short_slices(monkeypatch):
     budget.budget.renew()
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.usefixtures("short_slices")
 @pytest.mark.parametrize("form", LONG)
 def test_a_long_computation_can_be_ended(session, form):
@@ -90,6 +91,7 @@ def test_a_long_computation_can_be_ended(session, form):
     assert str(winner) == ":WON"
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "form",
     [

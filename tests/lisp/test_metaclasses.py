@@ -12,6 +12,7 @@ for part in (Path(__file__).parent / "metaclasses.lisp").read_text().split(";;;;
     PROGRAMS[name] = text
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_metaclass_does_what_it_does_on_sbcl(session, name, capsys):
     package = "MOP-" + re.sub("[^A-Z]", "-", name.upper())

@@ -188,7 +188,7 @@ def answer(program, arguments, unknown):
 ARGUMENTS = ["2 1", "3 2.5", "1 1.5d0", "3 -2d0"] * 3 + ["2 1/3", "1 #c(1 1)", "2 nil"]
 
 
-@settings(max_examples=500 if SOAK else 60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=500 if SOAK else 30, deadline=None, suppress_health_check=list(HealthCheck))
 @given(programs(), st.sampled_from(ARGUMENTS))
 def test_numbers_are_the_same_when_their_kinds_are_known(program, arguments):
     known, unknown = (answer(program, arguments, each) for each in (False, True))

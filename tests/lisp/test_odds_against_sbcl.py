@@ -32,6 +32,7 @@ def without_addresses(text):
     return re.sub(r"\{[0-9A-F]+\}", "{}", text)
 
 
+@pytest.mark.soak(all_but=18)
 @pytest.mark.parametrize(("form", "wanted"), recorded("odds.txt") + recorded("corners.txt"))
 def test_the_answer_is_that_of_sbcl(session, form, wanted):
     try:
@@ -48,6 +49,7 @@ def undefined(session, form):
     return [each["message"].rpartition(":")[2] for each in warnings if each["message"].startswith("undefined function")]
 
 
+@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize(
     ("form", "names"),
     [

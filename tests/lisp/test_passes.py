@@ -96,18 +96,21 @@ def test_programs_answer_as_in_sbcl_with_all_passes(answer):
     assert wrong(answer, [each for name in NAMES for each in SECTIONS[name]]) == []
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("name", NAMES)
 def test_programs_answer_as_in_sbcl_with_one_pass_off(answer, chapters, with_passes, name):
     with_passes(passes.NAMES - {name})
     assert wrong(answer, [*SECTIONS[name], *chapters[NAMES.index(name) % EVERY :: EVERY]]) == []
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("on", [frozenset(), *(frozenset({name}) for name in NAMES if SOAK)], ids=lambda on: ",".join(on) or "none")
 def test_programs_answer_as_in_sbcl_with_nearly_no_pass(answer, chapters, with_passes, on):
     with_passes(on)
     assert wrong(answer, [*(each for name in NAMES for each in SECTIONS[name]), *chapters]) == []
 
 
+@pytest.mark.soak(all_but=7)
 @pytest.mark.parametrize("name", NAMES)
 def test_a_pass_changes_the_code_of_its_programs(answer, with_passes, name, monkeypatch):
     generated = compiler().generated

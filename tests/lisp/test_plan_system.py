@@ -27,6 +27,7 @@ def test_the_transcript_is_that_of_sbcl(session, monkeypatch):
     assert str(text) == RECORDED.read_text()
 
 
+@pytest.mark.soak
 @pytest.mark.skipif(shutil.which("sbcl") is None, reason="SBCL is not installed")
 def test_the_recorded_transcript_is_what_sbcl_prints(tmp_path):
     translations = f'(:output-translations (t "{tmp_path}/") :ignore-inherited-configuration)'

@@ -219,6 +219,7 @@ def reread(form, values, case, **more):
 PROPERTY = settings(max_examples=FORMS, deadline=None, suppress_health_check=list(HealthCheck))
 
 
+@pytest.mark.soak
 @PROPERTY
 @given(forms(), st.fixed_dictionaries(SETTINGS), st.sampled_from(CASES))
 def test_a_form_that_is_printed_reads_back_as_the_same(form, values, case):

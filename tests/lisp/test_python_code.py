@@ -38,6 +38,7 @@ def session():
     kernel.stop()
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("program", PROGRAMS)
 def test_hy_agrees(session, program):
     unit = evaluator.Unit("<test>")

@@ -24,6 +24,7 @@ def module_session():
     return Session(time="virtual", turtlesim=False)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("name", ["floor", "truncate", "ceiling", "round"])
 def test_both_values_are_those_of_the_function(lisp, name):
     lisp(f"(defun any (x y) (multiple-value-bind (q r) ({name} x y) (list q r)))")
@@ -94,6 +95,7 @@ FLOATS = "0.5 1.5 2.5 -0.5 -1.5 -0.0 0.49999997 8388609.0 1e30 -3.7 0.5d0 2.5d0 
 DECLARED = {"": FLOATS, "single-float": [each for each in FLOATS if "." in each and "d" not in each], "double-float": FLOATS[10:15]}
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("name", ["floor", "truncate", "ceiling", "round"])
 @pytest.mark.parametrize("kind", DECLARED)
 def test_the_quotient_by_one_alone_is_that_of_the_function(lisp, name, kind):

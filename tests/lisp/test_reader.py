@@ -263,6 +263,7 @@ def alike(one, other):
     return one.__class__ is other.__class__ and one == other
 
 
+@pytest.mark.soak
 @settings(max_examples=300, deadline=None)
 @given(data)
 def test_what_is_printed_reads_as_it_was(thing):
@@ -305,6 +306,7 @@ scraps = st.lists(
 ).map("".join)
 
 
+@pytest.mark.soak
 @settings(max_examples=1500 if SOAK else 400, deadline=None)
 @given(scraps | st.text(max_size=20))
 def test_no_text_whatsoever_raises_anything_but_a_condition(text):
@@ -325,6 +327,7 @@ def test_no_text_whatsoever_raises_anything_but_a_condition(text):
         assert incomplete(text) in (True, False)
 
 
+@pytest.mark.soak
 def test_a_thousand_nested_lists_are_read():
     depth, form = 0, first("(" * 100_000 + ")" * 100_000)
     while form is not None:

@@ -42,11 +42,13 @@ def comparable(text):
     return re.sub(r" when binding SB-\S+", "", text)
 
 
+@pytest.mark.soak(all_but=23)
 @pytest.mark.parametrize("form, expected", recorded("reader.txt"))
 def test_the_reader_answers_as_in_sbcl(form, expected):
     assert comparable(answer(form)) == comparable(expected)
 
 
+@pytest.mark.soak(all_but=22)
 @pytest.mark.parametrize("form, expected", recorded("loop.txt"))
 def test_loop_answers_as_in_sbcl(form, expected):
     assert comparable(answer(form)) == comparable(expected)

@@ -93,6 +93,7 @@ def answer(session, stream, text, form):
         return [prin1_to_string(value) for value in values]
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("stream", STREAMS)
 def test_a_text_reads_the_same_from_every_stream(session, stream):
     for text in TEXTS:
@@ -100,6 +101,7 @@ def test_a_text_reads_the_same_from_every_stream(session, stream):
         assert (text, answer(session, STREAMS[stream], text, READ)) == (text, wanted)
 
 
+@pytest.mark.soak(all_but=16)
 @pytest.mark.parametrize("stream", STREAMS)
 @pytest.mark.parametrize(
     ("text", "form"),
@@ -129,6 +131,7 @@ def test_a_stream_stands_behind_what_was_read(session, stream, text, form):
     assert answer(session, STREAMS[stream], text, form) == answer(session, "(make-string-input-stream text)", text, form)
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("slot", "source sink label given closed position text pathname read-byte write-byte symbol stream file".split())
 def test_a_slot_of_a_users_stream_may_have_any_name(session, slot):
     """The runtime asks streams for such attributes of Python."""
@@ -156,6 +159,7 @@ WRITTEN = {
 }
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("form", WRITTEN)
 def test_a_stream_of_the_users_gets_what_was_given_to_the_writing_function(session, form):
     session.package = "CL-USER"

@@ -76,6 +76,7 @@ def session():
     return Session(time="virtual", turtlesim=False)
 
 
+@pytest.mark.soak(all_but=18)
 @pytest.mark.parametrize("form", ANSWERS)
 def test_a_quotient_and_its_rest_are_sbcls(session, form):
     text = f"(handler-case (multiple-value-list {form}) (error (e) (type-of e)))"

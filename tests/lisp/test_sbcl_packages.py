@@ -142,6 +142,7 @@ def test_a_finalizer_runs_in_a_thread_of_its_own(lisp):
     assert lisp("(progn (keep-one) (tg:gc :full t) (sleep 2) *gone*)") == "NIL"
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("form", "value"),
     [
@@ -238,6 +239,7 @@ def test_a_package_may_use_sbcls_packages(lisp):
     )
 
 
+@pytest.mark.soak
 def test_a_program_may_have_a_package_that_is_called_like_a_library(tmp_path):
     # in an image of its own: the tests above have loaded the libraries
     assert process(
@@ -302,6 +304,7 @@ def process(folder, *words):
     return done.stdout.split()
 
 
+@pytest.mark.soak
 def test_kept_code_finds_the_late_names_and_features_are_part_of_it(tmp_path):
     (tmp_path / "program.lisp").write_text(PROGRAM)
     command = ["-m", "cramhy_runtime.cli", "run", "program.lisp"]
@@ -310,6 +313,7 @@ def test_kept_code_finds_the_late_names_and_features_are_part_of_it(tmp_path):
     assert process(tmp_path, *command) == [":CRAMHY", "(T", "NIL)"]
 
 
+@pytest.mark.soak
 def test_a_session_that_names_none_of_it_imports_none_of_it(tmp_path):
     program = """
 import sys

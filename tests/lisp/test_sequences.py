@@ -31,11 +31,13 @@ def a_kernel():
     kernel.start(clock="virtual")
 
 
+@pytest.mark.soak(all_but=19)
 @pytest.mark.parametrize("form, expected", recorded("sequences.txt"))
 def test_sequences_answer_as_in_sbcl(form, expected):
     assert answer(form) == expected
 
 
+@pytest.mark.soak(all_but=24)
 @pytest.mark.parametrize("form, expected", recorded("sequences_at_random.txt"))
 def test_forms_made_at_random_answer_as_in_sbcl(form, expected):
     assert answer(form) == expected

@@ -34,6 +34,7 @@ def check(lisp, call):
     assert lisp("(caller)") == ":NONE"
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     "body",
     [
@@ -95,6 +96,7 @@ def test_what_is_bound_is_what_is_given(lisp, body):
         check(lisp, "(made nil)")
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     ("parameters", "calls"),
     [

@@ -29,6 +29,7 @@ def lisp(session):
     return LispText(session, PRELUDE)
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     ("form", "value"),
     [

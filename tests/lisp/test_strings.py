@@ -20,6 +20,7 @@ def a_kernel():
     kernel.start(clock="virtual")
 
 
+@pytest.mark.soak(all_but=11)
 @pytest.mark.parametrize("form, expected", recorded("strings.txt"))
 def test_strings_answer_as_in_sbcl(form, expected):
     assert answer(form) == expected

@@ -62,6 +62,7 @@ def test_known_names_are_printed_for_the_readtable_of_now(session):
     assert list(found) == [":|ABC|", ":|ABC|"]
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("operator", ["+", "*", "-", "max", "min", "logior", "=", "append"])
 def test_a_form_of_a_thousand_variables_is_compiled(session, operator):
     """The time for this grows with the terms; where it grew with their third power this took minutes."""

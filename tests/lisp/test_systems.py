@@ -83,6 +83,7 @@ def test_the_pathname_of_a_system(workspace):
     assert workspace.load("path") == ["x"]
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     "options",
     [

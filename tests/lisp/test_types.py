@@ -194,6 +194,7 @@ SUBTYPES_OF_COMPOUNDS = """
 """
 
 
+@pytest.mark.soak(all_but=22)
 @pytest.mark.parametrize("line", SUBTYPES_OF_COMPOUNDS.split("\n")[1:-1])
 def test_subtypep_of_intersections_and_complements(line, session):
     """Each line has what SBCL answers."""

@@ -32,6 +32,7 @@ def lisp(session):
     session.package = "COMMON-LISP-USER"
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     ("before", "instance"),
     [

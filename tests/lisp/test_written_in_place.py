@@ -138,6 +138,7 @@ def test_tasks_have_handlers_of_their_own(evaluate):
     assert evaluate(form) == "((1 1) (2 2) (3 3))"
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     "form",
     [
@@ -172,6 +173,7 @@ SEQUENCES = ["'(3 1 4 1 5)", "'#(3 1 4 1 5)", "'()", '"aBc"', "'#*10110", "(make
 CALLS = ["find-if", "position-if", "count-if", "some", "every", "notany", "notevery", "remove-if", "remove-if-not"]
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("name", CALLS)
 def test_in_place_and_called_they_are_the_same(evaluate, name):
     for sequence in SEQUENCES:
@@ -185,6 +187,7 @@ def test_in_place_and_called_they_are_the_same(evaluate, name):
             assert evaluate(f"({name} {test} {sequence})") == called, (test, sequence)
 
 
+@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize("name", CALLS)
 @pytest.mark.parametrize("sequence", ["5", "'(1 2 . 3)", "'a"])
 def test_what_is_no_sequence_is_told_alike(evaluate, name, sequence):
@@ -231,6 +234,7 @@ REDUCED = [
 ]
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("function", REDUCED)
 def test_reduce_is_the_same_in_place(evaluate, function):
     evaluate("(progn (defvar *special* 1) (defun see () *special*))")
@@ -252,6 +256,7 @@ def test_reduce_is_the_same_in_place(evaluate, function):
 ENTRIES = "(let ((h (make-hash-table))) (setf (gethash 1 h) :one (gethash 2 h) :two (gethash 3 h) :three) ~)"
 
 
+@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize(
     ("form", "answer"),
     [
@@ -310,6 +315,7 @@ def test_a_long_walk_over_a_table_passes_checkpoints(evaluate, monkeypatch):
         passed.clear()
 
 
+@pytest.mark.soak
 def test_loops_in_place_are_interrupted(session, evaluate):
     evaluate("(defvar *never* (let ((l (list 1))) (setf (cdr l) l)))")
     for name in ("some", "find-if", "notany"):

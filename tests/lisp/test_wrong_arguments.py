@@ -104,11 +104,13 @@ def complaints(choices):
     return [complaint for complaint in itertools.starmap(wrong, calls) if complaint is not None]
 
 
+@pytest.mark.soak(only=("two",), all_but=1)
 @pytest.mark.parametrize("count, values", [(0, ()), (1, SINGLE), (2, FEW)], ids=["no argument", "one", "two"])
 def test_wrong_arguments_give_conditions_of_lisp(session, quiet, count, values):
     assert complaints(lambda: ([make() for make in makers] for makers in itertools.product(values, repeat=count))) == []
 
 
+@pytest.mark.soak
 def test_three_wrong_arguments_give_conditions_of_lisp(session, quiet):
     assert complaints(lambda: [[first(), second(), first()] for first, second in itertools.combinations(FEW, 2)]) == []
 
@@ -125,6 +127,7 @@ def test_functions_that_change_names_for_good_refuse_what_is_no_name(session, qu
             assert wrong(name, sym(name).function, arguments) is None, (name, value)
 
 
+@pytest.mark.soak
 def test_wrong_values_at_places_give_conditions_of_lisp(session, quiet):
     found = []
     for name in sorted(COMMON_LISP.external):
@@ -204,6 +207,7 @@ WRONG = """
 """
 
 
+@pytest.mark.soak(all_but=21)
 @pytest.mark.parametrize("form", WRONG.strip().splitlines())
 def test_functions_of_cram_refuse_arguments_of_wrong_types_in_lisp(session, form):
     (answer,) = session.evaluate_text(f"(handler-case {form} (type-error (problem) (list :refused (type-error-expected-type problem))))")

@@ -8,7 +8,6 @@ import subprocess
 import sys
 
 import pytest
-from systems import takes_long
 
 URI = "untitled:frames.lisp"
 METHODS = """initialized textDocument/didOpen textDocument/didChange textDocument/didClose textDocument/hover textDocument/completion
@@ -75,7 +74,7 @@ def alive(server, number):
     assert answer_of(server.stdout, number)["result"][0]["endLine"] == 1
 
 
-@pytest.mark.parametrize("seed, count", [(1, 200), pytest.param(2, 10_000, marks=takes_long)])
+@pytest.mark.parametrize("seed, count", [(1, 200), pytest.param(2, 10_000, marks=pytest.mark.soak)])
 def test_random_frames(server, seed, count):
     lot = random.Random(seed)
     for number in range(count):

@@ -11,7 +11,6 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from systems import takes_long
 
 from cramhy_runtime.lsp import answers, documents, surroundings
 from cramhy_runtime.lsp.indentation import indented
@@ -49,7 +48,7 @@ def indented_by_us(file, text, known, bodies):
     return text
 
 
-@pytest.mark.parametrize("which, least", [("lectures", 600), pytest.param("kitchen", 400, marks=takes_long)])
+@pytest.mark.parametrize("which, least", [("lectures", 600), pytest.param("kitchen", 400, marks=pytest.mark.soak)])
 def test_lines_stand_where_emacs_puts_them(tmp_path, shared, which, least):
     if which == "lectures":
         files = [*(ROOT / "cram_my_beginner_tutorial").rglob("*.hy"), ROOT / "spiral.lisp", *(shared / "slides").rglob("*.lisp")]

@@ -38,6 +38,7 @@ def test_which_forms_have_lenses(editor):
     assert lenses(editor, hy_tests) and {title for _, title, _ in lenses(editor, hy_tests)} == {"Test"}
 
 
+@pytest.mark.soak
 def test_one_test_runs_and_is_told(editor):
     lenses(editor, TESTS)
     answer = execute(editor, "cramhy.test", TESTS, "relative-angle-to-look-back")
@@ -45,6 +46,7 @@ def test_one_test_runs_and_is_told(editor):
     assert editor.shown[-1].type == lsp.MessageType.Info and "1 passed" in editor.shown[-1].message
 
 
+@pytest.mark.soak
 def test_a_plan_runs_behind_init(editor):
     lenses(editor, HIGH)
     answer = execute(editor, "cramhy.run", HIGH, "perform-draw-house")
@@ -52,6 +54,7 @@ def test_a_plan_runs_behind_init(editor):
     assert "TurtleSim navigation invoked" in answer["output"]
 
 
+@pytest.mark.soak
 def test_a_plan_of_hy_runs(editor):
     lenses(editor, HY_MODULES)
     answer = execute(editor, "cramhy.run", HY_MODULES, "move-parallel")
@@ -93,6 +96,7 @@ WRITES = """(defun endless ()
 """
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("how", ["SIGTERM", "SIGHUP", "closed", "shutdown"])
 def test_a_plan_is_cleaned_up_when_the_server_ends(tmp_path, how):
     """It may drive a robot."""

@@ -16,6 +16,7 @@ def place(text, offset):
     return lsp.Position(text.count("\n", 0, offset), offset - text.rfind("\n", 0, offset) - 1)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("number", range(len(MISTAKES)), ids=lambda number: MISTAKES[number][5][:40].replace("/", " "))
 def test_mistake(editor, number):
     file, old, new, at, severity, word, fix = MISTAKES[number]
@@ -52,6 +53,7 @@ def test_mistake(editor, number):
 FILES = sorted(ROOT.rglob("*.hy")) + sorted(ROOT.rglob("*.asd")) + sorted(ROOT.rglob("package.xml"))
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("file", FILES, ids=lambda file: f"{file.parent.name}-{file.name}")
 def test_the_course_has_none(editor, file):
     assert [(each.range.start, each.message) for each in editor.checked(file.as_uri(), file.read_text(encoding="utf-8"))] == []

@@ -9,7 +9,6 @@ import sys
 from pathlib import Path
 
 import pytest
-from systems import takes_long
 
 from .mistakes import COURSE
 
@@ -44,7 +43,7 @@ def lines(words, **variables):
     ], output
 
 
-@takes_long
+@pytest.mark.soak
 @pytest.mark.skipif(not shutil.which("emacs"), reason="emacs is missing")
 @pytest.mark.skipif(not EGLOT, reason="eglot is missing")
 def test_emacs_with_eglot(file):
@@ -52,7 +51,7 @@ def test_emacs_with_eglot(file):
     assert found == TOLD, output[-2000:]
 
 
-@takes_long
+@pytest.mark.soak
 @pytest.mark.skipif(not shutil.which("nvim"), reason="nvim is missing")
 def test_neovim(file):
     words = ["nvim", "--headless", "-u", "NONE", "-i", "NONE", "-c", f"luafile {EDITORS / 'neovim.lua'}"]

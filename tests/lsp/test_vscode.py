@@ -11,7 +11,6 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from systems import takes_long
 
 import cramhy_runtime
 
@@ -125,6 +124,7 @@ def scopes(scope, file):
     return [tuple(token) for line in json.loads(done.stdout) for token in line]
 
 
+@pytest.mark.soak
 @node
 @grammars
 def test_the_grammars_colour_the_course(tmp_path):
@@ -154,6 +154,7 @@ def test_the_grammars_colour_the_course(tmp_path):
     assert (":key", "constant.other.keyword.commonlisp") in found and ("nil", "constant.language.commonlisp") in found
 
 
+@pytest.mark.soak
 @node
 @grammars
 def test_no_file_of_the_course_confuses_the_grammars():
@@ -164,7 +165,7 @@ def test_no_file_of_the_course_confuses_the_grammars():
         assert code.count("(") == code.count(")") and code.count("[") == code.count("]")
 
 
-@takes_long
+@pytest.mark.soak
 @node
 @grammars
 def test_it_can_be_packaged(tmp_path):

@@ -23,7 +23,6 @@ if sys.platform == "win32":
 
 from browsers import chromium  # noqa: E402
 from repl import terminal as terminals  # noqa: E402
-from systems import takes_long  # noqa: E402
 
 from .conftest import commands_of_the_readme  # noqa: E402
 
@@ -82,7 +81,7 @@ def test_make_tutorial_types_both_lectures(newcomer):
     assert newcomer.start(".venv/bin/python -c 'import pytest'", stderr=subprocess.DEVNULL).wait(), "the tests' part is not needed"
 
 
-@takes_long
+@pytest.mark.soak
 def test_two_commands_show_the_course_in_a_tab(newcomer):
     if not shutil.which("npm", path=newcomer.variables["PATH"]):
         pytest.skip("npm is not installed")
@@ -112,7 +111,7 @@ def mistakes(prompt):
     assert "TUT> " in prompt.say("(car (list 1 2))", r"\n1\n")
 
 
-@takes_long
+@pytest.mark.soak
 def test_both_lectures_by_hand_with_mistakes_and_a_second_terminal(newcomer, tmp_path):
     lectures = runpy.run_path(str(newcomer.clone / "tutorials" / "lectures.py"))
     forms = [*lectures["LECTURE_34"], *lectures["LECTURE_38"]]

@@ -20,6 +20,7 @@ def run(backend):
         yield lambda text: hy_value(module, text)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("text", "value"),
     [

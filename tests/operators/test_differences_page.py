@@ -63,6 +63,7 @@ def exists(name):
     return any(re.search(words, text, re.S | re.I) for text in TEXTS)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("name", SECTIONS)
 def test_each_name_in_a_row_is_there(session, name):
     session.evaluate_text("(list 'actionlib:call-goal 'actionlib-lisp:state 'cl-tf:transformer)")  # which makes their packages

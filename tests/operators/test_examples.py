@@ -25,12 +25,14 @@ def test_four_operators_have_no_python_way():
     ]
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_hy_does_what_lisp_does(name, backend):
     example = EXAMPLES[name]
     assert in_hy(hy_of(example), backend) == in_lisp(example.lisp, backend)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("name", [name for name, example in EXAMPLES.items() if example.python])
 def test_python_does_what_lisp_does(name, backend):
     example = EXAMPLES[name]

@@ -72,11 +72,13 @@ def refused(module, operator, call):
     assert (problem.value.lineno, problem.value.offset) == (2, 3)
 
 
+@pytest.mark.soak(all_but=20)
 @pytest.mark.parametrize("name", [name for name in BY_NAME if name not in FREE])
 def test_one_part_too_few(module, name):
     refused(module, BY_NAME[name], too_few(BY_NAME[name]))
 
 
+@pytest.mark.soak(all_but=22)
 @pytest.mark.parametrize("name", [name for name, operator in BY_NAME.items() if without_a_list(operator)])
 def test_a_name_where_a_list_must_be(module, name):
     refused(module, BY_NAME[name], without_a_list(BY_NAME[name]))

@@ -2,7 +2,7 @@
 
 import pytest
 from cramhy_runtime.session import Image
-from systems import BACKENDS
+from systems import ONE_BACKEND
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
@@ -12,7 +12,7 @@ from .support import Text
 boot()
 
 
-@pytest.fixture(params=BACKENDS, autouse=True)
+@pytest.fixture(params=ONE_BACKEND, autouse=True)
 def fresh_kernel(request):
     with Image(as_now=True):
         yield kernel.start(clock="virtual", backend=request.param, time_limit=3600)

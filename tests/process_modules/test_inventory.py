@@ -72,6 +72,7 @@ def exported(package, name):
     return symbol
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("package, kind, name", EVERY, ids=lambda value: value)
 def test_every_name_is_exported_and_is_what_the_page_says(package, kind, name):
     symbol = exported(package, name)
@@ -90,6 +91,7 @@ def test_every_name_is_exported_and_is_what_the_page_says(package, kind, name):
         assert isinstance(symbol.function, UndefinedFunction) and symbol.value is UNBOUND
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("name", LAMBDA_LISTS)
 def test_the_lambda_lists_are_those_of_the_page(name):
     package = next(package for package, _, known in EVERY if known == name)

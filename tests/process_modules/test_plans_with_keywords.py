@@ -39,6 +39,7 @@ def lisp(fresh_kernel):
 POUR = "(top-level (perform (desig:an action (type pouring) (object :milk) (amount 3))))"
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize(
     ("plan", "values"),
     [

@@ -85,6 +85,7 @@ def test_the_examples_of_the_page_run_and_print_what_stands_there():
         assert given == wanted, code
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("room, printed", [("prolog", "tom\n"), ("designators", "['drive', 1.5]\n"), ("process_modules", "there\n")])
 def test_the_example_of_a_room_runs(room, printed):
     text = __import__(f"{cramhy_runtime.__name__}.{room}", fromlist=["x"]).__doc__

@@ -21,6 +21,7 @@ WAYS = {
 }
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("way", WAYS.values(), ids=list(WAYS))
 def test_the_caller_gets_the_error_of_the_module(text, way):
     text(BROKEN + f"(setf *breaks* (lambda () {way}))")

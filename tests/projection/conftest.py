@@ -6,6 +6,7 @@ import itertools
 import re
 
 import pytest
+from systems import ONE_BACKEND
 from cramhy_runtime.session import Image
 from lisp_text import LispLine
 
@@ -59,7 +60,7 @@ def no_fluents_of_other_files():
     gc.collect()
 
 
-@pytest.fixture(params=["threads", "greenlet"])
+@pytest.fixture(params=ONE_BACKEND)
 def lisp(request, monkeypatch, tmp_path):
     """What a test defines for all (task variables, environments, fact groups, facts) is forgotten after it."""
     monkeypatch.chdir(tmp_path)

@@ -81,6 +81,7 @@ def test_a_wait_of_zero_returns_at_once_also_on_a_disabled_clock(clocks):
     assert clocks("(with-partially-ordered-clock-disabled *ordered* (clock-wait *ordered* 0)) (cut:current-timestamp)") == "0.0d0"
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("duration", ["-1", ":soon", "#c(1 2)"])
 @pytest.mark.parametrize("clock", ["*linear*", "*ordered*"])
 def test_a_duration_is_a_real_number_not_below_zero(clocks, clock, duration):

@@ -80,6 +80,7 @@ def test_what_cannot_be_saved_leaves_the_old_file_as_it_was(saved, tmp_path):
     assert (tmp_path / "fetch.ek").read_text() == old
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "text",
     [
@@ -216,6 +217,7 @@ def test_a_file_that_was_cut_off_anywhere_is_an_error(saved, tmp_path):
     )
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize(
     "text, line, why",
     [
@@ -234,6 +236,7 @@ def test_a_foreign_file_is_an_error(saved, tmp_path, text, line, why):
     assert saved("(length (cet:episode-knowledge-task-list cet:*last-episode-knowledge*))") == "3"
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     "value, why",
     [

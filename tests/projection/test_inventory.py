@@ -97,6 +97,7 @@ def exported(designator):
     return symbol
 
 
+@pytest.mark.soak(all_but=16)
 @pytest.mark.parametrize("package, kind, name", names(*EXPORTS))
 def test_a_name_is_exported_and_has_its_meaning(package, kind, name):
     symbol = exported(f"{package}:{name}")
@@ -119,6 +120,7 @@ def test_nothing_else_is_exported_and_the_nicknames_are_known(package):
         assert find_package(nickname) is find_package(package)
 
 
+@pytest.mark.soak(all_but=25)
 @pytest.mark.parametrize("designator, lambda_list", LAMBDA_LISTS.items())
 def test_functions_have_the_lambda_lists_of_the_original(designator, lambda_list):
     shown = prin1_to_string(lambda_list_of(exported(designator).function))

@@ -128,6 +128,7 @@ def includes(world, time):
     return world(f"(answers '(duration-includes (throughout 2.0d0 5.0d0) {time}))")
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.law("projection-and-events", 20)
 @pytest.mark.parametrize(
     "time, included",

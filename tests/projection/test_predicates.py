@@ -168,6 +168,7 @@ def test_the_same_questions_to_an_episode_from_a_file(traced):
         assert live == loaded != "NIL", goal
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     "goal, name",
     [

@@ -1,6 +1,7 @@
 """Projection from Python: `projection_environment`, `project`, `projection_variable`."""
 
 import pytest
+from systems import ONE_BACKEND
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.designators import Motion
@@ -9,7 +10,7 @@ from cramhy_runtime.projection.python import project, projection_environment, pr
 from cramhy_runtime.session import Image
 
 
-@pytest.fixture(params=["threads", "greenlet"], autouse=True)
+@pytest.fixture(params=ONE_BACKEND, autouse=True)
 def plan(request):
     with Image(as_now=True):
         with cpl.plan(clock="virtual", backend=request.param):

@@ -1,8 +1,10 @@
 """The engine agrees with a textbook interpreter on random programs, and unification with its laws."""
 
+import pytest
 import textbook
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from systems import SOAK
 from prolog_text import HERE, read
 
 from cramhy_runtime import cpl, kernel
@@ -34,8 +36,9 @@ def canonical(pairs):
     return [normal(term, names) for term in pairs]
 
 
+@pytest.mark.soak
 @given(terms, terms)
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150 if SOAK else 60, deadline=None)
 def test_unification_makes_both_sides_the_same(a, b):
     kernel.start(clock="virtual")
     try:
@@ -142,7 +145,7 @@ def compare_with_textbook(goal, clauses, times=1):
 
 
 @given(programs, goals_over(["P1", "P2", "P3"]))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150 if SOAK else 60, deadline=None)
 def test_random_programs_have_the_answers_of_the_textbook(program, goal):
     """Asked as data, which is interpreted, and as the body of a clause, which is compiled."""
     clauses = [clause for part in program for clause in part]
@@ -173,15 +176,17 @@ def asked(name, arity, arguments):
     return st.lists(arguments, min_size=arity, max_size=arity).map(lambda row: Cons(HERE.intern(name), list_from(row)))
 
 
+@pytest.mark.soak
 @given(
     st.tuples(table("R1", 1, values), table("R2", 2, values), table("R3", 3, values)),
     st.lists(st.one_of(*(asked(f"R{arity}", arity, patterns_of_values) for arity in (1, 2, 3))), min_size=1, max_size=3),
 )
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100 if SOAK else 50, deadline=None)
 def test_facts_have_the_answers_of_the_textbook(tables, goals):
     compare_with_textbook(Cons(read("and"), list_from(goals)), sum(tables, []))
 
 
+@pytest.mark.soak
 @given(
     st.tuples(table("R1", 1, plain_values), table("R2", 2, plain_values), table("R3", 3, plain_values)),
     st.lists(
@@ -190,7 +195,7 @@ def test_facts_have_the_answers_of_the_textbook(tables, goals):
         max_size=4,
     ),
 )
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100 if SOAK else 50, deadline=None)
 def test_joins_that_are_asked_again_have_the_answers_of_the_textbook(tables, goals):
     compare_with_textbook(Cons(read("and"), list_from(goals)) if len(goals) > 1 else goals[0], sum(tables, []), times=3)
 
@@ -205,8 +210,9 @@ def partial_list(tail):
 APPEND = [read("((app () ?l ?l))"), read("((app (?h . ?t) ?l (?h . ?r)) (app ?t ?l ?r))")]
 
 
+@pytest.mark.soak
 @given(partial_list("?x"), partial_list("?y"), partial_list("?z"))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100 if SOAK else 50, deadline=None)
 def test_lists_that_a_loop_builds_are_those_of_the_textbook(a, b, c):
     compare_with_textbook(list_from([read("app"), a, b, c]), APPEND)
 

@@ -1,6 +1,6 @@
 """Random programs have the same answers in the same order here and in SWI-Prolog. Skipped where ``swipl`` is not installed.
 
-With ``CRAMHY_SOAK=1`` there are 5,000 programs instead of 200.
+With ``CRAMHY_SOAK=1`` there are 5,000 programs instead of 100.
 """
 
 import shutil
@@ -21,7 +21,7 @@ from cramhy_runtime.utilities.patterns import ANONYMOUS, var_value, variable, va
 
 LIMIT = 20
 """Answers that are compared."""
-WANTED = 5000 if SOAK else 200
+WANTED = 5000 if SOAK else 100
 
 
 def shown(term, names):

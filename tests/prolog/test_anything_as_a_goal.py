@@ -1,7 +1,9 @@
 """Random Lisp data as goals and as fact groups: a list of solutions, nil, or a Lisp condition; never an error of Python's, never a hang."""
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from systems import SOAK
 from prolog_text import RegisteredWarnings, read
 
 from cramhy_runtime import kernel
@@ -75,12 +77,14 @@ def tried(goal):
             pass
 
 
+@pytest.mark.soak
 @given(goals)
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150 if SOAK else 50, deadline=None)
 def test_anything_can_be_asked(goal):
     tried(goal)
 
 
+@pytest.mark.soak
 @given(
     st.lists(
         st.one_of(
@@ -100,7 +104,7 @@ def test_anything_can_be_asked(goal):
     forms,
     forms,
 )
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100 if SOAK else 50, deadline=None)
 def test_anything_can_be_a_fact_group(clauses, extendable, argument):
     kernel.start(clock="virtual")
     name = read("at-random")

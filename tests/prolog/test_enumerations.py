@@ -31,6 +31,7 @@ def test_the_alternatives_of_a_list_come_from_a_generator():
     assert again not in kinds_of_choices("(mem ?x (1 2))")
 
 
+@pytest.mark.soak(all_but=7)
 @pytest.mark.parametrize(
     "goal, found",
     [
@@ -96,6 +97,7 @@ def test_a_predicate_that_changes_goes_on():
     assert ask("(mem ?x (1))") == "(((?X . DONE)))"
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("backend", ["threads", "greenlet"])
 @pytest.mark.parametrize("rest", ["(== 1 2)", "(mem 2 ?l)"])
 def test_an_endless_enumeration_is_evaporated(backend, rest):

@@ -140,6 +140,7 @@ with ?x = homer, ?y = bart, ?a = 10"""
     )
 
 
+@pytest.mark.soak(all_but=20)
 @pytest.mark.parametrize(
     "goal, reason",
     [
@@ -357,7 +358,7 @@ def with_cut(goals):
 
 
 @given(programs, with_cut(goals_over(["P1", "P2", "P3"])), st.lists(st.integers(0, 20), max_size=4))
-@settings(max_examples=300 if SOAK else 100, deadline=None)
+@settings(max_examples=300 if SOAK else 40, deadline=None)
 def test_an_explained_proof_finds_the_solutions_of_the_engine(program, goal, cuts):
     kernel.start(clock="virtual")
     clauses = [clause for part in program for clause in part]

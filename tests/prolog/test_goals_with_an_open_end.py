@@ -4,6 +4,7 @@ import pytest
 from prolog_text import ask, group
 
 
+@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize(
     "goal, answers",
     [

@@ -30,6 +30,7 @@ def run(functor, *arguments):
     return m
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "start, clauses",
     [
@@ -71,6 +72,7 @@ def test_a_loop_above_an_open_choice_forgets_what_nobody_can_see():
     assert len(m.trail) < 12_000 and len(m.choices) <= 2
 
 
+@pytest.mark.soak
 def test_a_million_goals_wait_for_one_another():
     group("walk", "((walk ()))", "((walk (?h . ?t)) (walk ?t) (seen ?h))", "((seen ?h))")
     run("walk", list_from(range(1_000_000)))
@@ -83,6 +85,7 @@ def test_goals_with_lisp_functions_wait_for_one_another():
     assert n.ref == MANY
 
 
+@pytest.mark.soak
 def test_a_long_list_is_built_measured_and_appended():
     group(
         "lists",
@@ -96,6 +99,7 @@ def test_a_long_list_is_built_measured_and_appended():
     assert len(query.first(list_from([read("app"), many, list_from([1]), read("?l")]), read("?l"))) == 500_001
 
 
+@pytest.mark.soak
 def test_many_choice_points_are_kept_and_taken():
     group("between", "((from ?n ?m ?n) (<= ?n ?m))", "((from ?n ?m ?x) (< ?n ?m) (lisp-fun plus-one ?n ?o) (from ?o ?m ?x))")
     assert ask(f"(and (from 1 {MANY} ?x) (== ?x {MANY}) (cut))") == f"(((?X . {MANY})))"
@@ -179,6 +183,7 @@ def test_a_group_may_be_removed_while_a_query_waits_in_it():
     assert answers == ["(((?X . 1)) ((?X . 2)))"]
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("backend", ["threads", "greenlet"])
 @pytest.mark.parametrize("goal", ["(forever)", "(forever-in-turn 1)", "(and (or-forever) (fail))", "(nothing-ever)"])
 def test_a_proof_that_never_ends_is_evaporated(backend, goal):

@@ -47,6 +47,7 @@ def naive_matches(patterns, facts):
     return sorted(found)
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("seed", range(40))
 def test_matches_are_those_of_a_plain_join_whatever_comes_and_goes(seed):
     rng = random.Random(seed)

@@ -6,6 +6,7 @@ from prolog_text import ask, error_text, first, group, read, show
 from cramhy_runtime.utilities.lazy_lists import lazy_cdr, lazy_list_p
 
 
+@pytest.mark.soak(all_but=24)
 @pytest.mark.parametrize(
     "goal, answer",
     [

@@ -18,6 +18,7 @@ def all_of_lisp():
     boot()
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "goal",
     [
@@ -75,6 +76,7 @@ def nested(depth, innermost, rest=None):
     return term
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("depth", [10, 3_000])
 def test_deeply_nested_terms_are_terms_like_others(depth):
     x, names = read("?x"), {}
@@ -92,6 +94,7 @@ def test_deeply_nested_terms_are_terms_like_others(depth):
     assert count == depth
 
 
+@pytest.mark.soak
 def test_long_lists():
     function("many")(lambda n: list_from([read("a")] * n))
     text = """(and (lisp-fun many 210000 ?l) (append ?l (b) ?m) (length ?m ?n) (once (member b ?m)) (append ?l ?r ?m)

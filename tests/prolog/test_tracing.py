@@ -6,6 +6,7 @@ import pytest
 import textbook
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from systems import SOAK
 from prolog_text import HERE, ask, first, group, read, show
 from test_against_reference import canonical, goals_over, programs
 from test_explain import explained_solutions
@@ -333,6 +334,7 @@ def test_a_task_that_is_ended_leaves_its_goals():
 # -------------------------------------------------------------------------------------------------------------- the same answers
 
 
+@pytest.mark.soak(all_but=7)
 @pytest.mark.parametrize(
     "goal",
     [
@@ -374,7 +376,7 @@ def test_forall_behind_a_cut_works_while_the_goals_that_it_is_made_of_are_traced
 
 
 @given(programs, goals_over(["P1", "P2", "P3"]), st.lists(st.integers(0, 20), max_size=4))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100 if SOAK else 40, deadline=None)
 def test_random_programs_answer_as_ever_when_they_are_traced(program, goal, cuts):
     kernel.start(clock="virtual")
     clauses = [clause for part in program for clause in part]

@@ -40,6 +40,7 @@ def plan(tmp_path):
     (tmp_path / "plan.lisp").write_text(PLAN)
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(("options", "text"), [((), ERROR), (("--backtrace", "none"), ERROR), (("--backtrace", "lisp"), ERROR + CALLS)])
 def test_lisp_calls_are_shown_when_they_are_asked_for(cramhy, plan, options, text):
     assert cramhy("run", "plan.lisp", "--time", "virtual", *options).stderr == text
@@ -56,6 +57,7 @@ def test_the_debugger_shows_them_too(cramhy, plan):
     assert CALLS.replace("last:\n", "last:\n  the form at <repl 1>:1:1\n") + "\nrestarts" in said
 
 
+@pytest.mark.soak
 def test_an_answer_of_cramhy_eval_has_them(cramhy):
     assert (
         '"backtrace": "calls, the innermost last:\\n  the form at <repl 1>:1:1"'

@@ -14,6 +14,7 @@ LISP = f"cramhy {__version__}, the plan language of CRAM\nhelp tells what to typ
 HY = f"cramhy {__version__} in Hy {hy.__version__}\n(in-package :name) leads to Common Lisp\n"
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("editor", [False, True], ids=["plain", "edited"])
 @pytest.mark.parametrize("arguments, expected", [([], LISP), (["--hy"], HY), (["--quiet"], ""), (["--hy", "--quiet"], "")])
 def test_a_terminal_is_greeted_in_two_lines(arguments, expected, editor):
@@ -34,6 +35,7 @@ def test_it_fits_into_forty_columns():
         assert text.count("\n") == 1
 
 
+@pytest.mark.soak
 def test_a_pipe_is_not_greeted(cramhy):
     assert cramhy("repl", input="(+ 1 1)\n").stdout == "CL-USER> 2\nCL-USER> "
     assert "cramhy" not in cramhy("repl", "--hy", input="(+ 1 1)\n").stdout

@@ -25,6 +25,7 @@ BAD_REQUEST = {
 }
 
 
+@pytest.mark.soak
 def test_version(cramhy):
     done = cramhy("--version")
     assert (done.returncode, done.stderr) == (0, "")
@@ -32,11 +33,13 @@ def test_version(cramhy):
 
 
 class TestRun:
+    @pytest.mark.soak
     def test_a_file_that_runs_has_status_0(self, cramhy, tmp_path):
         (tmp_path / "good.lisp").write_text('(format t "hello~%")')
         done = cramhy("run", "good.lisp", "--time", "virtual", "--eval", "(print 5)")
         assert (done.returncode, done.stdout, done.stderr) == (0, "hello\n\n5 ", "")
 
+    @pytest.mark.soak
     def test_an_unhandled_error_has_status_1_and_a_message(self, cramhy, tmp_path):
         (tmp_path / "bad.lisp").write_text('(princ "first")\n(list\n  (car 5))\n(princ "never")')
         done = cramhy("run", "bad.lisp", "--time", "virtual")
@@ -53,6 +56,7 @@ class TestRun:
         assert done.returncode == 1
         assert done.stderr.startswith("cramhy: CRAM-LANGUAGE-IMPLEMENTATION:SIMPLE-PLAN-FAILURE\n  Lost.\n  at bad.lisp:2:12\n")
 
+    @pytest.mark.soak
     def test_hy_files_and_systems_run_too(self, cramhy, tmp_path):
         (tmp_path / "plan.hy").write_text("(require cramhy *)\n(in-package :cram-user)\n(print (top-level (par 1 2)))")
         (tmp_path / "my-system.asd").write_text('(defsystem my-system :components ((:file "plan")))')
@@ -60,6 +64,7 @@ class TestRun:
         assert cramhy("run", "plan.hy", "--time", "virtual").stdout == "\n1 "
         assert cramhy("run", "my-system.asd", "--time", "virtual").stdout == "\n:LOADED "
 
+    @pytest.mark.soak
     @pytest.mark.skipif(not RUNS_HY_FILES, reason=WHY_NO_HY_FILES)
     def test_a_hy_file_that_goes_into_no_package_stays_hy(self, cramhy, tmp_path):
         (tmp_path / "plan.hy").write_text(
@@ -71,10 +76,12 @@ class TestRun:
         assert (done.returncode, done.stdout) == (1, "one [2]\n")
         assert done.stderr.startswith("cramhy: CRAM-LANGUAGE-IMPLEMENTATION:SIMPLE-PLAN-FAILURE\n  Lost.\n  at plan.hy:5:27\n")
 
+    @pytest.mark.soak
     def test_exit_gives_the_status(self, cramhy, tmp_path):
         (tmp_path / "leave.lisp").write_text("(exit :code 7)")
         assert cramhy("run", "leave.lisp").returncode == 7
 
+    @pytest.mark.soak(all_but=1)
     @pytest.mark.parametrize(
         ("name", "message"),
         [
@@ -98,15 +105,18 @@ class TestRun:
         done = cramhy("run", name)
         assert (done.returncode, done.stdout, done.stderr) == (1, "", message.format(folder=tmp_path))
 
+    @pytest.mark.soak
     def test_files_from_windows_are_read(self, cramhy, tmp_path):
         (tmp_path / "bom.lisp").write_bytes(b'\xef\xbb\xbf(princ "a\r\nb")\r\n; end\r\n')
         assert cramhy("run", "bom.lisp").stdout == "a\nb"
 
+    @pytest.mark.soak
     def test_a_file_with_nul_bytes_is_an_error(self, cramhy, tmp_path):
         (tmp_path / "nul.lisp").write_bytes(b"(princ 1)\n\0\0\n(princ 2)")
         done = cramhy("run", "nul.lisp")
         assert done.returncode == 1 and "is unbound" in done.stderr
 
+    @pytest.mark.soak
     def test_a_run_that_never_ends_is_ended_by_its_time_limit(self, cramhy, tmp_path):
         (tmp_path / "endless.lisp").write_text("(in-package :cram-user)\n(top-level (loop (sleep 1)))")
         done = cramhy("run", "endless.lisp", "--time", "virtual", "--time-limit", "60")
@@ -131,12 +141,14 @@ def answers(cramhy):
 
 
 class TestEval:
+    @pytest.mark.soak(all_but=1)
     @pytest.mark.parametrize("line", ["nonsense", '{"form": 3}', '{"from": "3"}', "[1]", '"x"', "null", '{"form": "1"', "[" * 100000])
     def test_a_line_that_is_no_request_gets_an_error_and_the_next_is_read(self, cramhy, line):
         done = cramhy("eval", input=f'{line}\n\n{{"form": "(+ 1 2)"}}\n')
         assert [json.loads(answer) for answer in done.stdout.splitlines()] == [BAD_REQUEST, {"output": "", "values": ["3"], "error": None}]
         assert (done.returncode, done.stderr) == (0, "")
 
+    @pytest.mark.soak
     def test_binary_garbage_gets_an_error_too(self, cramhy):
         done = cramhy("eval", input=b'\xff\xfe\x00\x80 garbage\n{"form": "(+ 1 2)"}\n', text=False)
         assert [json.loads(answer)["values"] for answer in done.stdout.splitlines()] == [[], ["3"]]
@@ -147,6 +159,7 @@ class TestEval:
             == [{"output": "ab", "values": ["1", ":TWO"], "error": None}] + [{"output": "", "values": [], "error": None}] * 2
         )
 
+    @pytest.mark.soak
     def test_a_form_that_prints_and_fails(self, answers):
         (answer,) = answers('(progn (princ "before") (/ 1 0))')
         assert answer["error"]["type"] == "DIVISION-BY-ZERO" and answer["error"]["output"] == "before"
@@ -157,10 +170,12 @@ class TestEval:
         assert first["error"]["type"] == second["error"]["type"] == "END-OF-FILE"
         assert second["error"]["hint"] == "The ( at line 1, column 1 is never closed."
 
+    @pytest.mark.soak
     def test_forms_do_not_read_the_requests(self, answers):
         first, second = answers("(read-line)", "(+ 1 2)")
         assert first["error"]["type"] == "END-OF-FILE" and second["values"] == ["3"]
 
+    @pytest.mark.soak
     def test_huge_forms(self, answers):
         text = "x" * 5_000_000
         length, nested, deep, after = answers(f'(length "{text}")', "'" + "(" * 20000 + ")" * 20000, "(+ 1 " * 20000 + ")" * 20000, "5")
@@ -168,16 +183,19 @@ class TestEval:
         assert nested["error"]["type"] == "STORAGE-CONDITION"
         assert deep["error"]["message"] == "The form is nested too deeply to be compiled."
 
+    @pytest.mark.soak
     def test_a_form_that_never_ends_and_the_next(self, answers):
         first, second, third = answers("(loop)", "(loop (sleep 1))", "(+ 1 2)", options=("--time-limit", "10", "--package", "cram-user"))
         assert first["error"]["type"] == second["error"]["type"] == "CRAMHY::TIME-LIMIT" and third["values"] == ["3"]
         assert "main waits for the time" in second["error"]["message"]
 
+    @pytest.mark.soak
     def test_a_seed_makes_random_numbers_the_same(self, answers):
         forms = ["(list (random 1000000) (random 1000000))"]
         assert answers(*forms, options=("--seed", "5")) == answers(*forms, options=("--seed", "5"))
         assert answers(*forms, options=("--seed", "5")) != answers(*forms, options=("--seed", "6"))
 
+    @pytest.mark.soak(all_but=1)
     @pytest.mark.parametrize(
         ("options", "message"),
         [
@@ -195,6 +213,7 @@ class TestEval:
         assert (done.returncode, done.stdout) == (1, "") and done.stderr.startswith(message)
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(("form", "shown"), [("(print 1)", "\n1 \n"), ('(format t "a~%")', "a\n"), ("(+ 1 2)", "")])
 def test_a_program_in_a_terminal_leaves_the_prompt_a_line_of_its_own_and_a_pipe_what_it_wrote(cramhy, tmp_path, form, shown):
     program = tmp_path / "x.lisp"
@@ -220,6 +239,7 @@ def test_a_folder_that_cannot_be_read_hides_no_packages_elsewhere(tmp_path, monk
 class TestFilesThatAreMissing:
     """A command that is given a file which is not there says so, and does not speak of systems."""
 
+    @pytest.mark.soak(all_but=3)
     @pytest.mark.parametrize(
         "words, told, hint",
         [

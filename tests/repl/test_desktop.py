@@ -51,6 +51,7 @@ def address_in(text):
     return re.search(ADDRESS, text)[0]
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("words", [(), ("--serve",), ("--time", "virtual")])
 def test_the_page_opens_when_the_turtle_appears_at_the_prompt(desktop, words):
     with Terminal("repl", *words, variables=desktop.variables) as repl:
@@ -81,6 +82,7 @@ OFF = {
 }
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("way", OFF)
 def test_no_page_opens_by_itself(desktop, way):
     words, variables = OFF[way]
@@ -112,6 +114,7 @@ def test_where_lines_come_from_a_pipe_nothing_opens_and_nothing_is_said(desktop)
     assert desktop.log.read_text() == ""
 
 
+@pytest.mark.soak
 def test_without_the_extra_the_line_leads_to_what_must_be_installed(desktop, private):
     program = (
         "import sys; sys.modules['uvicorn'] = sys.modules['prompt_toolkit'] = None; from cramhy_runtime.cli import main; main(['repl'])"
@@ -124,6 +127,7 @@ def test_without_the_extra_the_line_leads_to_what_must_be_installed(desktop, pri
         repl.expect("The page needs uvicorn, websockets, and uvicorn is not installed. Type: ")
 
 
+@pytest.mark.soak
 def test_the_page_of_an_option_opens_once(desktop):
     with Terminal("repl", "--view", variables=desktop.variables) as repl:
         address = address_in(repl.expect(f"; The page: {ADDRESS}\n"))
@@ -137,6 +141,7 @@ def test_the_page_of_an_option_opens_once(desktop):
     desktop.shown(address)
 
 
+@pytest.mark.soak
 def test_rosrun_opens_it_and_a_second_one_gives_the_address_only(desktop):
     with Terminal(*SIMULATOR, variables=desktop.variables) as first:
         first.expect(r"Spawning turtle \[turtle1\]")
@@ -155,6 +160,7 @@ def test_rosrun_opens_it_and_a_second_one_gives_the_address_only(desktop):
         assert first.status() == 0
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("turtle_first", [True, False])
 def test_rosrun_looks_on_at_the_turtle_of_the_prompt_whatever_comes_first(desktop, tool, turtle_first):
     """The session's own simulator waits for the first node of the prompt; a second terminal that wants it has it start, and does not own it."""
@@ -188,6 +194,7 @@ def test_rosrun_looks_on_at_the_turtle_of_the_prompt_whatever_comes_first(deskto
         assert repl.end() == 0
 
 
+@pytest.mark.soak
 def test_a_browser_of_a_file_in_the_current_folder_is_not_run(desktop, tmp_path, monkeypatch):
     (tmp_path / "here").mkdir()
     (tmp_path / "here" / "webbrowser.py").write_text(f"open({str(tmp_path / 'wrong')!r}, 'w')")

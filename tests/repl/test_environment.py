@@ -101,27 +101,32 @@ def works(done, printed):
 
 
 class TestStreams:
+    @pytest.mark.soak(all_but=2)
     def test_where_all_is_well_each_prints_what_it_should(self, shell, command):
         before, words, printed = command
         works(shell(before + words), printed)
 
+    @pytest.mark.soak(all_but=3)
     def test_closed_input_has_ended(self, shell, command):
         before, words, printed = command
         done = shell(f"{words} <&-")
         works(done, {"repl": "CL-USER> ", "eval": ""}.get(words.split()[-1], printed) if before else printed)
 
+    @pytest.mark.soak(all_but=3)
     @pytest.mark.parametrize("closed", ["", "<&- ", "2>&- ", "<&- 2>&- "])
     def test_closed_output_is_dropped(self, shell, command, closed):
         before, words, _ = command
         done = shell(f"{before}{words} {closed}>&-")
         assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
+    @pytest.mark.soak
     def test_complaints_do_not_come_out_elsewhere_when_their_stream_is_closed(self, shell):
         done = shell(f"{CRAMHY} ros rostopic list 2>&-")
         assert (done.returncode, done.stdout) == (1, "")
         done = shell(f"{CRAMHY} run missing.lisp 2>&-")
         assert (done.returncode, done.stdout) == (1, "")
 
+    @pytest.mark.soak
     def test_a_file_that_is_opened_does_not_take_the_number_of_a_closed_stream(self, shell, tmp_path):
         from cramhy_runtime import chronicle
 
@@ -131,12 +136,14 @@ class TestStreams:
             recording = chronicle.read(str(tmp_path / "run.mcap"))
             assert not recording.cut and b"out of place" not in (tmp_path / "run.mcap").read_bytes()
 
+    @pytest.mark.soak(all_but=2)
     @linux
     def test_a_full_disk_behind_the_output_is_told_in_one_line(self, shell, command):
         before, words, _ = command
         done = shell(f"{before}{words} >/dev/full")
         assert (done.returncode, done.stderr) == (1, FULL)
 
+    @pytest.mark.soak(all_but=1)
     @linux
     def test_a_full_disk_behind_the_complaints_changes_nothing(self, shell, command):
         before, words, printed = command
@@ -147,6 +154,7 @@ class TestStreams:
         done = shell(f"{CRAMHY} --help >/dev/full")
         assert (done.returncode, done.stderr) == (1, FULL)
 
+    @pytest.mark.soak
     @linux
     def test_a_plan_whose_output_is_lost_still_cleans_up(self, shell, tmp_path, backend):
         """The cleanup forms print, too; none of them is broken off by that."""
@@ -160,6 +168,7 @@ class TestStreams:
         assert (done.returncode, done.stderr) == (1, FULL)
         assert (tmp_path / "cleaned").exists() and not (tmp_path / "went-on").exists()
 
+    @pytest.mark.soak(all_but=1)
     @linux
     @pytest.mark.parametrize("time", ["virtual", "wall"])
     def test_the_branches_beside_it_are_ended_through_their_cleanup(self, shell, tmp_path, backend, time):
@@ -170,21 +179,25 @@ class TestStreams:
         assert (done.returncode, done.stderr) == (1, FULL)
         assert (tmp_path / "one").exists() and (tmp_path / "other").exists()
 
+    @pytest.mark.soak
     @linux
     def test_lost_output_is_no_error_that_a_plan_handles(self, shell, tmp_path):
         (tmp_path / "stubborn.lisp").write_text("(loop (ignore-errors (print 1) (finish-output)))")
         done = shell(f"{CRAMHY} run stubborn.lisp --time virtual >/dev/full")
         assert (done.returncode, done.stderr) == (1, FULL)
 
+    @pytest.mark.soak
     def test_a_reader_that_has_read_enough_ends_it_without_a_word(self, shell):
         for line in ("yes '(print 1)' | %s repl", """yes '{"form": "1"}' | %s eval""", "%s ros rosmsg list"):
             done = shell(f"{line % CRAMHY} | head -n 1; echo ${{PIPESTATUS[@]}} >&2")
             assert done.stdout.count("\n") == 1 and "cramhy" not in done.stderr, done
 
+    @pytest.mark.soak
     def test_the_simulator_needs_no_streams(self, shell):
         done = shell(f"timeout --preserve-status --signal=INT 5 {CRAMHY} turtlesim <&- >&- 2>&-")
         assert done.returncode in (0, 130), done  # it was ended by the signal and by nothing else
 
+    @pytest.mark.soak
     def test_output_that_does_not_wait_is_waited_for(self, shell, tmp_path):
         """A pipe that another program has made one that does not wait, with a slow reader: every line arrives."""
         (tmp_path / "long.lisp").write_text("(dotimes (i 20000) (print i))")
@@ -204,6 +217,7 @@ class TestSigns:
     FORM = '(format t "gr~an ~a~%" (code-char 252) (code-char 8594))'
     SHOWN = {"ascii": b"gr\\xfcn \\u2192\n", "latin-1": b"gr\xfcn \\u2192\n", "utf-8": "grün →\n".encode()}
 
+    @pytest.mark.soak
     @pytest.mark.parametrize(
         "encoding, variables",
         [
@@ -222,6 +236,7 @@ class TestSigns:
         done = shell(f"echo '{self.FORM}' | {CRAMHY} repl", text=False, **variables)
         assert done.returncode == 0 and done.stdout == b"CL-USER> " + self.SHOWN[encoding] + b"NIL\nCL-USER> " and not done.stderr
 
+    @pytest.mark.soak
     def test_answers_as_json_are_the_same_in_every_encoding(self, shell):
         answers = {
             shell(f"echo '{json.dumps({'form': self.FORM})}' | {CRAMHY} eval", PYTHONIOENCODING=encoding).stdout
@@ -236,6 +251,7 @@ class TestSigns:
 
 
 class TestFolders:
+    @pytest.mark.soak(all_but=3)
     def test_a_folder_that_was_removed(self, shell, command, tmp_path):
         before, words, printed = command
         (tmp_path / "gone").mkdir()
@@ -248,6 +264,7 @@ class TestFolders:
         else:
             works(done, printed)
 
+    @pytest.mark.soak(all_but=1)
     @linux  # other systems refuse such names
     def test_names_that_are_no_utf_8(self, shell, command, tmp_path):
         before, words, printed = command
@@ -258,6 +275,7 @@ class TestFolders:
         for _ in range(2):  # the second time with the code that was kept
             works(shell(before + words, folder=folder), printed)
 
+    @pytest.mark.soak
     @linux
     def test_a_file_with_such_a_name(self, shell, tmp_path):
         name = os.fsencode(tmp_path) + b"/b\xff.lisp"
@@ -270,6 +288,7 @@ class TestFolders:
         done = shell(f"echo '(+ 1 2)' | {CRAMHY} repl --record $'r\\xff.mcap' --time virtual", text=False)
         assert (done.returncode, done.stderr) == (0, b"") and os.path.getsize(os.fsencode(tmp_path) + b"/r\xff.mcap") > 100
 
+    @pytest.mark.soak(all_but=2)
     @pytest.mark.parametrize("home", [None, "/nonexistent", "/proc"])
     def test_a_home_is_not_needed(self, shell, command, home):
         before, words, printed = command
@@ -277,6 +296,7 @@ class TestFolders:
 
 
 class TestPython:
+    @pytest.mark.soak(all_but=4)
     @pytest.mark.parametrize(
         "variables",
         [{"PYTHONOPTIMIZE": "2"}, {"PYTHONHASHSEED": "77"}, {"PYTHONUNBUFFERED": "1"}, {"PYTHONDEVMODE": "1", "PYTHONWARNINGS": "error"}],
@@ -285,10 +305,12 @@ class TestPython:
         before, words, printed = command
         works(shell(before + words, **variables), printed)
 
+    @pytest.mark.soak(all_but=2)
     def test_a_safe_path(self, shell, command):
         before, words, printed = command
         works(shell(before + words, PYTHONSAFEPATH="1"), printed)
 
+    @pytest.mark.soak
     def test_without_greenlet_its_back_end_is_refused(self, shell):
         hidden = "import sys; sys.modules['greenlet'] = None; from cramhy_runtime.cli import main; sys.exit(main(sys.argv[1:]))"
         asked = "from cramhy_runtime.extras import install_command; print(install_command('fast'))"
@@ -300,6 +322,7 @@ class TestPython:
 
 
 class TestTerminals:
+    @pytest.mark.soak
     @pytest.mark.parametrize(
         "variables",
         [
@@ -324,6 +347,7 @@ class TestTerminals:
             assert terminal.status() == 0
         assert "Traceback" not in terminal.text
 
+    @pytest.mark.soak
     @pytest.mark.parametrize("size", [(1, 1), (0, 0), (24, 1), (24, 5)])
     def test_a_terminal_of_any_size(self, size):
         with Terminal("repl", size=size) as terminal:
@@ -359,6 +383,7 @@ class TestHeap:
 
 @linux
 class TestLimits:
+    @pytest.mark.soak
     @pytest.mark.parametrize("kilobytes", [25_000, 32_000, 45_000, 60_000, 100_000, 300_000])
     @pytest.mark.parametrize("options", ["", "--serve"])
     def test_little_memory(self, shell, kilobytes, options):
@@ -387,6 +412,7 @@ class TestLimits:
             assert done.returncode == 1, done
             assert any("cramhy: " in line and "memory" in line for line in errors.splitlines()), done
 
+    @pytest.mark.soak(all_but=1)
     @pytest.mark.parametrize("files", [6, 8, 10, 16])
     @pytest.mark.parametrize("options", ["", "--serve"])
     def test_few_files(self, shell, files, options):
@@ -403,6 +429,7 @@ class TestLimits:
     def test_a_small_stack(self, shell, kilobytes):
         works(shell(f"ulimit -s {kilobytes}; echo '(+ 1 2)' | {CRAMHY} repl"), "CL-USER> 3\nCL-USER> ")
 
+    @pytest.mark.soak
     def test_few_processes(self, shell, tmp_path):
         """Root may have as many as it likes, so this is another user's program, who may read everything as root does."""
         if os.geteuid() != 0 or shutil.which("setpriv") is None:

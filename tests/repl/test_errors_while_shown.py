@@ -70,6 +70,7 @@ def in_a_run(session, form, capsys):
 DOORS = [at_the_prompt, in_eval, in_a_run]
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("door", DOORS, ids=lambda door: door.__name__)
 @pytest.mark.parametrize("what", FORMS)
 def test_an_error_is_shown_though_something_in_it_cannot_be_printed(session, door, what, capsys):

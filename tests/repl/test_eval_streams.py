@@ -77,6 +77,7 @@ def test_forms_read_nothing_of_the_requests(answers, form):
     assert answer["error"]["type"] == READS[form] if answer["error"] else READS[form] in answer["values"][0]
 
 
+@pytest.mark.soak
 @posix
 def test_a_child_that_lives_on_writes_into_the_next_answer(tmp_path):
     found, errors, _ = ran(
@@ -88,6 +89,7 @@ def test_a_child_that_lives_on_writes_into_the_next_answer(tmp_path):
     assert [answer["output"] for answer in found] == ["", "1", "late\n2"] and errors == ""
 
 
+@pytest.mark.soak(all_but=1)
 @posix
 @pytest.mark.parametrize(("form", "status"), [("(exit :code 3)", 3), ("(quit)", 0), ('(py:call "sys.exit" 4)', 4)])
 def test_a_form_that_ends_the_program_is_answered_before(tmp_path, form, status):

@@ -44,6 +44,7 @@ def evaluates(terminal):
     return terminal.expect(PROMPT).endswith(f"\n3\n{PROMPT}")
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
 def test_ctrl_c_ends_a_form_through_its_cleanup(terminal, form):
     def attempt():
@@ -74,6 +75,7 @@ def test_a_second_ctrl_c_gives_the_cleanup_up(terminal):
     within_soon(attempt)
 
 
+@pytest.mark.soak
 def test_ctrl_c_ends_a_ros_command_and_nothing_else():
     with Terminal("repl", "--time", "wall", "--package", "cram-user") as terminal:
         terminal.expect(PROMPT)
@@ -87,6 +89,7 @@ def test_ctrl_c_ends_a_ros_command_and_nothing_else():
             assert evaluates(terminal)
 
 
+@pytest.mark.soak(all_but=1)
 def test_ctrl_c_at_the_prompt_gives_a_new_prompt(terminal):
     for _ in range(3):
         terminal.control_c()
@@ -94,6 +97,7 @@ def test_ctrl_c_at_the_prompt_gives_a_new_prompt(terminal):
     assert evaluates(terminal)
 
 
+@pytest.mark.soak(all_but=1)
 def test_ctrl_c_forgets_what_was_typed(terminal):
     terminal.type("(list 1")
     terminal.expect(r"\(list 1\n")
@@ -113,10 +117,12 @@ def test_ctrl_c_in_the_debugger_stays_in_the_debugger(terminal):
     assert evaluates(terminal)
 
 
+@pytest.mark.soak(all_but=2)
 def test_ctrl_d_leaves(terminal):
     assert terminal.end() == 0
 
 
+@pytest.mark.soak
 def test_ctrl_c_with_the_editor_of_prompt_toolkit():
     pytest.importorskip("prompt_toolkit")
     with Terminal("repl", "--time", "virtual", "--package", "cram-user", editor=True) as terminal:
@@ -142,6 +148,7 @@ def test_ctrl_c_ends_a_program_that_is_run(tmp_path):
         assert terminal.status() == 130
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("way, prompt", [([], PROMPT), (["--hy"], "=> ")], ids=["Lisp", "Hy"])
 def test_ctrl_c_in_a_form_of_the_command_line_leads_to_the_prompt(way, prompt):
     with Terminal("repl", *way, "--package", "cram-user", "--eval", FORMS["a loop"], "--eval", "(print :never)") as terminal:

@@ -153,6 +153,7 @@ def test_a_launch_file_that_cannot_be_used(tmp_path, text, message):
     assert str(caught.value) == message.format(path=path)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("words", "message"),
     [

@@ -37,6 +37,7 @@ def prompt(request):
     return prompt
 
 
+@pytest.mark.soak
 def test_the_prompt_of_a_line_that_goes_on_says_what_is_open(prompt):
     with prompt() as terminal:
         terminal.expect("CL-USER> ")
@@ -61,6 +62,7 @@ def test_the_prompt_of_a_line_that_goes_on_says_what_is_open(prompt):
         assert terminal.end() == 0
 
 
+@pytest.mark.soak
 def test_a_form_of_several_lines_is_one_entry_which_the_next_session_has_too(prompt, tmp_path):
     form = "(list 'once\n  'upon)"
     with prompt(CRAMHY_HISTORY=str(tmp_path)) as terminal:
@@ -107,6 +109,7 @@ def test_tab_completes_the_name_of_a_file_in_a_string(prompt, tmp_path):
         terminal.expect('\n"my only plan.lisp"\n')
 
 
+@pytest.mark.soak
 def test_tab_as_the_first_key_knows_the_names_of_all_rooms(prompt):
     """A prompt without options begins with Common Lisp alone."""
     with prompt() as terminal:
@@ -117,6 +120,7 @@ def test_tab_as_the_first_key_knows_the_names_of_all_rooms(prompt):
         terminal.expect(r"#<FLUENT FLUENT-1 \[17\]>")
 
 
+@pytest.mark.soak
 def test_hy_says_what_is_open_and_keeps_forms_in_a_file_of_ours_alone(tmp_path):
     pytest.importorskip("readline")
     history = tmp_path / "hy"
@@ -150,6 +154,7 @@ def test_hy_says_what_is_open_and_keeps_forms_in_a_file_of_ours_alone(tmp_path):
 # ------------------------------------------------------------------------------------------------- a terminal that cannot draw
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("arguments", [["repl"], ["repl", "--hy"]], ids=["lisp", "hy"])
 def test_on_a_dumb_terminal_nothing_is_echoed_and_no_escape_sequence_is_written(arguments, tmp_path):
     """Emacs switches the echo of the terminal off, and shows what is typed itself."""
@@ -202,6 +207,7 @@ EMACS = """
 """
 
 
+@pytest.mark.soak
 def test_run_lisp_of_emacs_shows_what_was_typed_once_and_the_answers(tmp_path):
     emacs = shutil.which("emacs")
     if emacs is None:
@@ -297,6 +303,7 @@ def test_the_pairs_of_a_text():
     assert pairs("[a]", hy=True) == {0: 2, 2: 0}
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("cursor, marked", [(0, {0, 8}), (9, {0, 8}), (6, {3, 5}), (5, {3, 5}), (2, set())])
 def test_the_parenthesis_at_the_cursor_and_its_partner_are_marked(cursor, marked):
     pytest.importorskip("prompt_toolkit")

@@ -53,6 +53,7 @@ def workspace(tmp_path, monkeypatch):
     return folder
 
 
+@pytest.mark.soak
 def test_the_lines_of_a_cmake_file(workspace):
     assert lisp_executables(workspace) == {
         "talker": LispExecutable("tin-talk", "tin-talk:talker"),
@@ -63,6 +64,7 @@ def test_the_lines_of_a_cmake_file(workspace):
     assert lisp_executables(workspace / "src") == lisp_executables(None) == {}
 
 
+@pytest.mark.soak
 def test_a_talker_and_a_listener_in_two_terminals(private, workspace):
     """The first is a session, which the second joins. Ctrl-C ends the one, the other returns."""
     pytest.importorskip("uvicorn")
@@ -99,6 +101,7 @@ LAUNCHES = {
 }
 
 
+@pytest.mark.soak
 def test_launch_files_start_lisp_programs(private, workspace):
     """The first file's terminal is a session, which its programs join, and those of the second terminal. What cannot run says why."""
     pytest.importorskip("uvicorn")
@@ -125,6 +128,7 @@ def test_launch_files_start_lisp_programs(private, workspace):
         os.kill(says, 0)
 
 
+@pytest.mark.soak
 def test_lisp_programs_end_with_a_launcher_that_is_killed(private, workspace):
     """By SIGKILL, of which roslaunch hears nothing itself. They leave as when their terminal is closed: the node, too."""
     pytest.importorskip("uvicorn")

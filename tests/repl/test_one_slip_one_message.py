@@ -160,6 +160,7 @@ PLAN = """\
 """
 
 
+@pytest.mark.soak
 def test_whatever_parenthesis_is_missing_or_too_many_there_are_few_messages(said):
     counts = []
     for place in (found.start() for found in re.finditer(r"[()]", PLAN)):

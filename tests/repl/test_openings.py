@@ -49,6 +49,7 @@ def rooms(monkeypatch):
     return done
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     ("words", "expected"),
     [
@@ -143,6 +144,7 @@ def test_a_replay_needs_two_extras(monkeypatch):
     )
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("words", "message"),
     [
@@ -182,6 +184,7 @@ def test_a_port_is_a_number_of_16_bits(cramhy):
     assert done.returncode == 2 and done.stderr.endswith("cramhy repl: error: argument --port: invalid port value: '65536'\n")
 
 
+@pytest.mark.soak
 def test_a_picture_of_the_whole_way(cramhy, tmp_path):
     (tmp_path / "plan.lisp").write_text('(roslisp:start-ros-node "x") (turtlesim:press :up) (sleep 1.5)')
     done = cramhy("run", "plan.lisp", "--time", "virtual", "--picture", "way.replay.svg")
@@ -199,6 +202,7 @@ def test_a_picture_without_a_turtle_is_a_problem_that_is_told(cramhy, tmp_path):
     )
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("words", ["repl --serve", "turtlesim"])
 def test_a_port_that_is_taken_ends_the_command_with_the_reason(cramhy, private, words):
     pytest.importorskip("uvicorn")

@@ -25,6 +25,7 @@ OPTIONS = [
 ]
 
 
+@pytest.mark.soak(all_but=24)
 @pytest.mark.parametrize(("command", "action"), OPTIONS, ids=lambda value: value if isinstance(value, str) else value.dest)
 def test_help_tells_the_default(command, action):
     text, _, default = action.help.removesuffix(")").rpartition("(")
@@ -57,6 +58,7 @@ def test_a_wrong_time_in_the_environment_is_told(command, monkeypatch, capsys):
     assert capsys.readouterr().err == 'cramhy: The variable CRAMHY_TIME says "slow". Time is "virtual" or "wall".\n'
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("option", "variable", "found"),
     [(None, None, (False, 1.0)), ("virtual", None, (True, 1.0)), (None, "virtual", (True, 1.0)), ("wall", "virtual", (False, 1.0))],

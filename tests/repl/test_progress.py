@@ -137,6 +137,7 @@ def test_it_fits_into_a_line_of_the_terminal(text, columns, shown):
     assert fitting(text, columns) == shown
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("arguments", [["repl"], ["repl", "--hy"]], ids=["lisp", "hy"])
 def test_at_a_terminal_it_comes_and_ctrl_c_leaves_nothing_of_it(arguments):
     pytest.importorskip("termios", reason="a pseudo-terminal needs termios, which this system lacks")

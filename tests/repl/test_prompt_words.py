@@ -82,6 +82,7 @@ class TestHelp:
         for form in forms:
             assert "debugger" not in type_in(form), form
 
+    @pytest.mark.soak(all_but=4)
     @pytest.mark.parametrize("form", ["(help par)", "(help 'par)", "(help #'par)", "(help cpl:par)"])
     @pytest.mark.parametrize("package", [":cpl-user", ":cl-user"])
     def test_with_a_name_it_tells_what_that_means(self, type_in, form, package):

@@ -132,6 +132,7 @@ def test_an_address_is_shown_without_its_token(url, seen):
     assert shown(url) == seen
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("ways", ["@file", "token file", "CRAMHY_ROS", "CRAMHY_ROS_TOKEN"])
 def test_a_session_joins_another_one_and_no_argument_of_a_process_has_the_token(tmp_path, monkeypatch, ways):
     pytest.importorskip("roslibpy")

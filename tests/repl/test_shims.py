@@ -82,6 +82,7 @@ def typed(shell, text, tmp_path, folder=None):
     return done.stdout, done.stderr, done.returncode
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(("shell", "clone"), IN_FOLDERS, indirect=["clone"])
 def test_the_functions_work_where_nothing_is_on_the_path(shell, clone, tmp_path):
     language, status, where = LANGUAGES.get(shell, "sh"), STATUS.get(shell, "echo $?"), WHERE.get(shell, "pwd")
@@ -115,6 +116,7 @@ roscd no_such_package
     )
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("shell", SHELLS)
 def test_roslisp_repl_serves_so_that_other_terminals_find_it(shell, clone, tmp_path):
     pytest.importorskip("uvicorn")
@@ -173,6 +175,7 @@ def test_in_powershell_roscd_changes_the_folder_only_when_there_is_one(clone, tm
     assert line.endswith(" 'ros' 'roscd' @args; if ($LASTEXITCODE -eq 0) { Set-Location -LiteralPath $to } }")
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("shell", shells.FUNCTIONS)
 def test_each_command_is_a_line_of_its_own(clone, tmp_path, shell):
     """`Invoke-Expression` and `source` may read them one by one."""
@@ -198,6 +201,7 @@ def test_the_hint_is_a_line_of_the_users_shell(monkeypatch, system, shell, line)
 # ------------------------------------------------------------------------------------------------------- without ``ros``
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("words", "meant"),
     [
@@ -219,6 +223,7 @@ def test_a_ros_command_without_ros_is_told_its_right_shape(cramhy, monkeypatch, 
     )
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("words", [["rosbag"], ["rosnothing", "list"], ["catkin"]])
 def test_another_word_is_refused_with_the_commands_that_there_are(cramhy, words):
     done = cramhy(*words)

@@ -115,6 +115,7 @@ def value(terminal, form):
     return int(re.search(r"\(:VALUE (-?\d+)\)\nCPL-USER> $", terminal.expect(r"\(:VALUE (-?\d+)\)\nCPL-USER> ")).group(1))
 
 
+@pytest.mark.soak(all_but=1)
 def test_the_session_lives_through_a_storm(storm):
     lots = random.Random(storm.way)
     calm(storm)
@@ -133,6 +134,7 @@ def test_the_session_lives_through_a_storm(storm):
     assert "Traceback" not in storm.text
 
 
+@pytest.mark.soak(all_but=2)
 def test_no_line_that_is_typed_is_lost(storm, tmp_path):
     """Ctrl-C before a line, or after it, or while a form runs and lines are typed ahead."""
     if storm.way == "sent":
@@ -154,6 +156,7 @@ def test_no_line_that_is_typed_is_lost(storm, tmp_path):
     assert "Traceback" not in storm.text
 
 
+@pytest.mark.soak(all_but=1)
 def test_ctrl_c_right_after_enter_interrupts_the_form(storm, tmp_path):
     for number in range(5 if not SOAK else 50):
         if storm.way == "typed":

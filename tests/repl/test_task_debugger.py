@@ -88,6 +88,7 @@ MODULE = """
       (list (drive :fast) (sleep 1) (if (cpm:get-running-process-module 'debugged) (drive 2) :gone)))))"""
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "answer, result",
     [

@@ -27,6 +27,7 @@ def nodes():
         graph.close()
 
 
+@pytest.mark.soak
 def test_the_simulator_goes_to_the_repl_and_comes_back(private, tool):
     simulator = "ros", "rosrun", "turtlesim", "turtlesim_node"
     with Terminal(*simulator) as first:
@@ -56,6 +57,7 @@ def test_the_simulator_goes_to_the_repl_and_comes_back(private, tool):
     assert not list(private.rglob("session*"))
 
 
+@pytest.mark.soak
 def test_the_arrow_keys_drive_the_turtle_and_leave_the_terminal_as_it_was(private):
     with Terminal("repl", "--serve") as repl:
         repl.expect("CL-USER> ")
@@ -131,6 +133,7 @@ NODES
         assert repl.end() == 0
 
 
+@pytest.mark.soak
 def test_two_simulators_from_a_launch_file(private):
     with Terminal("ros", "roslaunch", "turtlesim", "multisim.launch") as terminal:
         terminal.expect(
@@ -156,6 +159,7 @@ FOLLOW = """<launch>
 """
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("elsewhere", [False, True])
 def test_a_launch_file_with_keys_and_a_turtle_that_follows_and_programs_that_do_not_start(private, tmp_path, elsewhere):
     (tmp_path / "follow.launch").write_text(FOLLOW)
@@ -192,6 +196,7 @@ def test_a_launch_file_with_keys_and_a_turtle_that_follows_and_programs_that_do_
                 assert termios.tcgetattr(terminal.master) == before
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize(
     ("words", "output", "complaint", "status"),
     [

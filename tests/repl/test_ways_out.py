@@ -149,6 +149,7 @@ def check(process, folder, status, *, recorded=True):
     return output, complaints
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("number", SIGNALS, ids=lambda number: number.name)
 @pytest.mark.parametrize(
     ("clock", "backend", "waits"),
@@ -183,6 +184,7 @@ def test_a_signal_ends_a_program_through_its_cleanup(folder, number, clock, back
         check(process, folder, 128 + number)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("command", ["repl", "eval"])
 @pytest.mark.parametrize(("clock", "backend", "number"), SESSIONS, ids=named)
 def test_a_signal_ends_a_session_that_runs_a_plan(folder, number, command, backend, clock):
@@ -195,6 +197,7 @@ def test_a_signal_ends_a_session_that_runs_a_plan(folder, number, command, backe
         check(process, folder, 128 + number)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("options", [(), ("--serve",)], ids=["alone", "serving"])
 @pytest.mark.parametrize("command", ["repl", "eval"])
 @pytest.mark.parametrize(("clock", "backend", "number"), SESSIONS, ids=named)
@@ -216,6 +219,7 @@ LEAVING = {
 }
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("way", LEAVING)
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize("clock", CLOCKS)
@@ -238,6 +242,7 @@ def test_a_session_is_left_and_what_runs_beside_the_prompt_is_cleaned_up(folder,
 IN_A_PLAN = {"exit": ("(sb-ext:exit :code 3)", 3), "sys.exit": ("(py-exit)", 4), "an error": ('(error "lost")', 1)}
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("way", IN_A_PLAN)
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize("clock", CLOCKS)
@@ -301,6 +306,7 @@ ENDS = {
 }
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("number", SIGNALS, ids=lambda number: number.name)
 @pytest.mark.parametrize("end", [end for end, (_, status) in ENDS.items() if status is None])
 @pytest.mark.parametrize("backend", BACKENDS)
@@ -310,6 +316,7 @@ def test_a_signal_ends_a_python_script(folder, number, end, backend):
     assert found == (-signal.SIGINT if number == signal.SIGINT else 128 + number)  # Python itself ends by SIGINT
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("end", [end for end, (_, status) in ENDS.items() if status is not None])
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize("clock", CLOCKS)
@@ -344,6 +351,7 @@ def script(folder, end, clock, backend, number=None):
 # ---------------------------------------------------------------------------------------------------------------- terminals
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("editor", [False, True], ids=["plain", "edited"])
 @pytest.mark.parametrize("where", ["at the prompt", "in a plan", "in the debugger"])
 @pytest.mark.parametrize("backend", BACKENDS)
@@ -386,6 +394,7 @@ def wait_for(condition, pause=0.01):
         time.sleep(pause)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("editor", [False, True], ids=["plain", "edited"])
 @pytest.mark.parametrize("way", ["exit", "signal", "end of input"])
 @pytest.mark.parametrize("backend", BACKENDS)
@@ -433,6 +442,7 @@ STUCK = """
 """
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(("clock", "backend"), [("virtual", "threads"), ("wall", "greenlet"), ("wall", "threads")])
 def test_a_second_signal_gives_cleanup_up_and_says_whose(folder, clock, backend):
     pytest.importorskip(backend if backend == "greenlet" else "mcap")
@@ -463,6 +473,7 @@ def test_a_second_signal_gives_cleanup_up_and_says_whose(folder, clock, backend)
     assert complaints.startswith("cramhy: The cleanup of ") and "[PAR-CHILD-#1/2]" in complaints and "Traceback" not in complaints
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("how", ["(loop)", "(loop (sleep 0.1))", "(wait-for (make-fluent))", "(py-sleep 100)"])
 @pytest.mark.parametrize(("clock", "backend"), [("virtual", "threads"), ("wall", "greenlet"), ("wall", "threads")])
 def test_cleanup_has_a_limit(folder, how, clock, backend):
@@ -494,6 +505,7 @@ def test_cleanup_has_a_limit(folder, how, clock, backend):
     assert commands(folder / "run.mcap") == []
 
 
+@pytest.mark.soak
 def test_a_process_that_does_not_listen_is_ended_by_force(folder):
     (folder / "deaf.py").write_text("def compute():\n    while True:\n        pass\n")
     (folder / "deaf.lisp").write_text(
@@ -513,6 +525,7 @@ def test_a_process_that_does_not_listen_is_ended_by_force(folder):
 # ---------------------------------------------------------------------------------------------------------------- nobody reads
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(("clock", "backend"), [("virtual", "threads"), ("wall", "greenlet")])
 def test_output_that_nobody_reads_any_more_does_not_cost_the_cleanup(folder, clock, backend):
     pytest.importorskip(backend if backend == "greenlet" else "mcap")
@@ -536,6 +549,7 @@ def test_output_that_nobody_reads_any_more_does_not_cost_the_cleanup(folder, clo
 # ---------------------------------------------------------------------------------------------------------------- requests, keys
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("options", [(), ("--serve",)], ids=["alone", "serving"])
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize("clock", CLOCKS)
@@ -564,6 +578,7 @@ def test_interrupts_do_not_end_a_program_that_answers_requests(folder, clock, ba
         assert process.end()[0] == 0
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("editor", [False, True], ids=["plain", "edited"])
 def test_the_key_that_ends_the_input_ends_one_read(folder, editor):
     with Terminal(

@@ -46,6 +46,7 @@ def test_objects_come_go_and_are_moved(kitchen):
     assert kitchen.names() == ["cup-2", "full-milk"]
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     ("wrong", "error", "text"),
     [
@@ -78,6 +79,7 @@ def test_a_cup_is_carried_to_the_table(kitchen):
     assert kitchen.place("cup-1") == (-0.95, 1.5, 0.9) and kitchen.held() == {}
 
 
+@pytest.mark.soak
 def test_without_arm_and_grasp_rules_choose(kitchen):
     robot.pick_up(at_the_cup())
     assert list(kitchen.held()) == ["cup-1"]
@@ -88,6 +90,7 @@ def test_functions_are_plans_of_their_own(kitchen):
     assert kitchen.place() == (0.8, 0.6, 0.0) and round(kitchen.yaw()) == 10
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("plan", "failure", "text"),
     [
@@ -130,6 +133,7 @@ def test_a_plan_copes_with_failures(kitchen):
     assert robot.run(plan) == "CUP-1"
 
 
+@pytest.mark.soak
 def test_transporting_chooses_places_arms_and_grasps(kitchen):
     kitchen.spawn("spoon", SPOON)
     kitchen.settle()
@@ -146,6 +150,7 @@ def test_places_to_stand_are_free_and_turned_to_the_target(kitchen):
     assert kitchen.place() == (0.0, 0.0, 0.0)
 
 
+@pytest.mark.soak
 def test_without_the_extra_one_line_names_it():
     code = "import sys; sys.modules['mujoco'] = None\nfrom cramhy import robot\nrobot.world()"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
@@ -158,6 +163,7 @@ def test_another_mode_is_told():
         robot.world(mode="dreamt")
 
 
+@pytest.mark.soak
 def test_in_a_physical_world_time_passes_and_friction_holds(session):
     made = robot.world(mode="physical")
     made.spawn("bottle", (1.45, 0.6, 0.96))

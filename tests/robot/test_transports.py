@@ -11,7 +11,6 @@ from cramhy import robot  # noqa: E402  it starts a kernel, which must not be th
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parent))
-from systems import takes_long  # noqa: E402
 from transports import transported  # noqa: E402
 
 CUP, OTHER, IN_THE_AIR = (1.45, 0.6, 0.9), (1.45, 1.0, 0.9), (1.15, 0.9, 0.96)
@@ -38,6 +37,7 @@ def a_cup():
     return robot.detect("cup")
 
 
+@pytest.mark.soak
 def test_what_falls_from_its_place_is_not_delivered(kitchen):
     text = told("ObjectUndeliverable", lambda: robot.transport("cup", CUP, IN_THE_AIR))
     assert text.startswith("cup-1 was to stand at (1.15, 0.9, 0.96), and it lies at (1.1")
@@ -90,6 +90,7 @@ def test_a_thing_that_no_grasp_is_known_for_is_a_failure_of_cram(kitchen, kind, 
     assert told(failure, lambda: robot.transport(kind, OTHER, TABLE)).startswith(text)
 
 
+@pytest.mark.soak
 def test_the_nearest_thing_of_the_type_is_fetched(kitchen):
     kitchen.spawn("cup", OTHER)
     kitchen.settle()
@@ -104,6 +105,7 @@ def test_places_are_finite(kitchen, place):
             call()
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(("mode", "seed"), [("kinematic", 1), ("physical", 0)])
 def test_a_success_is_one_in_mujoco_too(session, mode, seed):
     """Before the world was looked at, the physical one said success, and the box of cereal had fallen over."""
@@ -111,7 +113,7 @@ def test_a_success_is_one_in_mujoco_too(session, mode, seed):
     assert near or said
 
 
-@takes_long
+@pytest.mark.soak
 @pytest.mark.parametrize("mode", ["kinematic", "physical"])
 def test_of_fifty_transports_none_says_success_wrongly(session, mode):
     outcomes = {seed: transported(mode, seed) for seed in range(2000, 2050)}

@@ -13,6 +13,8 @@ pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
 from cramhy import robot  # noqa: E402  it starts a kernel, which must not be there when nothing can be tested
 from cramhy_runtime.robot import libraries  # noqa: E402
 
+pytestmark = pytest.mark.soak
+
 ROOT = Path(__file__).parents[2]
 FOUND = (
     f"Descriptions that were found: cram-porter-description ({ROOT}/tutorials/kitchen/cram_porter_description), "

@@ -10,6 +10,8 @@ from cramhy_runtime.repl.session import Session
 
 from test_pick_and_place import FRESH, SYSTEMS, simulated
 
+pytestmark = pytest.mark.soak
+
 pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
 
 PORTER = Path(__file__).parents[2] / "tutorials" / "kitchen" / "cram_porter_description"

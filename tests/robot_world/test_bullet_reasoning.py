@@ -41,6 +41,7 @@ def ask(session):
     return asked
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("form", "answer"),
     [
@@ -84,6 +85,7 @@ def test_what_a_world_answers(ask, form, answer):
     assert ask(form) == answer
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("change", "question", "answer"),
     [
@@ -170,6 +172,7 @@ def test_a_picture_of_the_current_world_is_written(session, ask, tmp_path):
     assert ask('(btr:save-picture "kitchen.jpg")').startswith("What kind of picture is kitchen.jpg to be?")
 
 
+@pytest.mark.soak
 def test_with_movie_gives_the_values_of_its_body_and_writes_a_gif_also_when_it_fails(session, ask, tmp_path):
     body = "(setf (btr:pose (named 'cup)) (btr:ensure-pose '((-1.8 0 1.2) (0 0 0 1))))"
     path, other = tmp_path / "run.gif", tmp_path / "failed.gif"
@@ -189,6 +192,7 @@ def test_contact_gives_the_links_of_both_where_both_have_links(ask, one, other):
     assert set(of_robot) == {True, False} and of_robot == sorted(of_robot, reverse=one == "pr2")
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("relation, name, robot, bare", [
     ("above", "bottle-1", ":kitchen", "sink_area_footprint"), ("below", "bottle-1", "pr2", "r_gripper_tool_frame"),
     ("above", "bottle-1", "pr2", "base_footprint"), ("below", "pr2", ":kitchen", "sink_area_footprint"),

@@ -109,6 +109,7 @@ USED = {
 """Section 1: the packages that a package uses."""
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("name", USED)
 def test_a_package_uses_what_the_page_says(loaded, ask, name):
     ask(f"(asdf:load-system :{name})")
@@ -144,6 +145,7 @@ def test_each_name_is_called_by_a_test():
     assert [f"{package}:{name}" for package, name, *_ in NAMES if not is_called(package, name.lstrip(":"))] == []
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     ("form", "answer"),
     [
@@ -221,6 +223,7 @@ def test_what_is_called_answers(ask, form, answer):
     assert found == answer or found == ask(answer)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("form", "answer"),
     [

@@ -27,6 +27,7 @@ def test_all_names_are_exported(ask):
     assert ask(f"(remove-if (lambda (n) (eq :external (nth-value 1 (find-symbol n :btr)))) '({quoted}))") == "NIL"
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     ("form", "answer"),
     [
@@ -170,6 +171,7 @@ object-pose-in-frame publish-environment-joint-state"""
 OF_BELIEF_VARIABLES = "*robot-urdf* *kitchen-urdf* *robot-parameter* *kitchen-parameter* *spawn-debug-window*"
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("package", "names", "there"),
     [

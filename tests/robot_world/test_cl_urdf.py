@@ -53,6 +53,7 @@ def test_the_exported_names_are_the_original_s(lisp):
     assert sorted(names.replace('"', " ").strip("()").split()) == sorted(NAMES)
 
 
+@pytest.mark.soak(all_but=12)
 @pytest.mark.parametrize(
     ("form", "value"),
     [

@@ -156,6 +156,7 @@ VALUES = {
 }
 
 
+@pytest.mark.soak(all_but=25)
 @pytest.mark.parametrize("form", VALUES)
 def test_values(lisp, form):
     assert lisp(form) == VALUES[form]
@@ -274,6 +275,7 @@ def test_a_size_that_is_not_a_number_is_an_error(lisp):
     assert "WIDE" in lisp.error("(costmap-metadata)", "type-error")
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "goal, result, value",
     [
@@ -414,6 +416,7 @@ MESSAGES = """
 """
 
 
+@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize(
     "form, value",
     [

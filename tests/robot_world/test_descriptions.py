@@ -83,6 +83,7 @@ def nearly(frame):
     return [pytest.approx(frame.position), pytest.approx(frame.rotation, abs=1e-9)]
 
 
+@pytest.mark.soak
 @given(descriptions())
 def test_what_is_written_is_read_as_it_was(description):
     read = urdf.read_text(urdf.text_of(description))

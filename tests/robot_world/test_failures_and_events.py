@@ -100,6 +100,7 @@ EVENTS = {
 }
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("name", EVENTS)
 def test_an_event_has_what_it_needs(lisp, name):
     slots = [slot.split() for slot in EVENTS[name]]
@@ -127,6 +128,7 @@ def test_a_changed_robot_needs_nothing_and_a_removed_object_has_a_name(lisp):
     assert lisp("(cpoe:event-object-name (make-instance 'cpoe:object-removed-event))") == ":OBJECT-NAME"
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     "occasion",
     ["object-in-hand ?x", "object-placed-at ?x ?y", "object-picked ?x", "object-put ?x", "loc ?x ?y", "looking-at ?x", "arms-parked"],

@@ -8,6 +8,8 @@ from cramhy_runtime import kernel
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.repl.session import Session
 
+pytestmark = pytest.mark.soak
+
 pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
 
 PLANS = Path(__file__).parent / "kitchen_plans.lisp"

@@ -86,6 +86,7 @@ PACKAGES = {
 }
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("name", PACKAGES)
 def test_a_package_is_there_when_it_is_named(lisp, name):
     nickname, used, exported = PACKAGES[name]
@@ -99,6 +100,7 @@ def test_a_package_is_there_when_it_is_named(lisp, name):
     assert sorted(there.strip('"').split()) == sorted(exported.split())
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("name", PACKAGES)
 def test_a_system_is_loaded_as_those_of_a_workspace_are(lisp, name):
     assert lisp(f"(asdf:load-system '#:{name})") == "T"
@@ -106,6 +108,7 @@ def test_a_system_is_loaded_as_those_of_a_workspace_are(lisp, name):
     assert lisp(f"(stringp (asdf:system-description (asdf:find-system '#:{name})))") == "T"
 
 
+@pytest.mark.soak
 def test_a_system_that_depends_on_them(session, tmp_path):
     (tmp_path / "tea.asd").write_text('(defsystem "tea" :depends-on (cram-mobile-pick-place-plans cram-tf) :components ((:file "tea")))')
     (tmp_path / "tea.lisp").write_text("(defpackage :tea (:use :cl :cram-tf)) (in-package :tea) (defun rest-arms () (pp-plans:park-arms))")

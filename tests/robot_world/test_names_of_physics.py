@@ -7,6 +7,8 @@ from lisp_text import LispText
 
 from cramhy_runtime.lisp_core.packages import find_package
 
+pytestmark = pytest.mark.soak
+
 pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
 
 PRELUDE = """

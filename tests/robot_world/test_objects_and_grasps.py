@@ -85,6 +85,7 @@ def moved(place, offset):
     return "(" + " ".join(f"{number:g}" for number in numbers) + ")"
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("kind", dict.fromkeys(row[0] for row in TABLE))
 def test_where_the_gripper_is(objects, kind):
     for _, arm, grasp, place, rotation, pregrasp, second, lift in (row for row in TABLE if row[0] == kind):
@@ -106,6 +107,7 @@ def test_the_frames_of_a_grasp_are_those_of_the_object_and_of_the_tool(objects):
     ) == ('("cup_1" "left_tool_frame")')
 
 
+@pytest.mark.soak(all_but=7)
 @pytest.mark.parametrize(
     "kind, effort, opening, grasps",
     [

@@ -85,6 +85,7 @@ def test_what_is_seen_is_told_with_name_type_and_pose(ask):
     assert ask(simulated("(at-counter)", frame)) == "base_footprint"
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("forms", "failure"),
     [
@@ -141,6 +142,7 @@ def test_a_recovery_with_another_place_succeeds(ask):
     assert ask(simulated(plan)) == "BOTTLE-1"
 
 
+@pytest.mark.soak
 def test_the_same_plan_gives_the_same_world_to_the_bit(ask, session):
     places = []
     for _ in range(2):

@@ -35,6 +35,7 @@ def poses(*heights):
     return "(" + " ".join(f",(pose 0 0 {height})" for height in heights) + ")"
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "entries, commands",
     [
@@ -60,6 +61,7 @@ def test_an_action_of_one_motion(robot, told, entries, commands):
     assert told() == (f"({commands})", [MOVED])
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("kind", ["pulling", "pushing", "putting", "grasping", "reaching", "retracting", "lifting"])
 def test_arms_go_along_their_poses(robot, told, kind):
     robot(perform(f":type :{kind}", f":left-poses {poses(1, 2, 3)}", f":right-poses {poses(4)}"))
@@ -72,6 +74,7 @@ def test_nowhere_to_go_is_no_motion(robot, told):
     assert told() == ("NIL", [])
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "entries", [(":type :looking", ":direction :up", ":camera :wrist"), (":type :gripping",), (":type :going",), (":type :dusting",)]
 )
@@ -85,6 +88,7 @@ def failing(command, count, failure):
     return f"(setf *failures* (list (list '{command} {count} 'common-fail:{failure} {' '.join(arguments)})))"
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "action, command, failure, tries, outcome",
     [
@@ -172,6 +176,7 @@ CARRYING, PARKING = (
 )
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize(
     "call, first_angles",
     [
@@ -292,6 +297,7 @@ def test_a_plate_is_taken_with_one_hand(robot, told):
     assert told()[0].startswith("((MOVE-GRIPPER-JOINT 0.02 :LEFT NIL) (MOVE-TCP 0.965 NIL NIL)")
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "thing",
     [

@@ -54,6 +54,7 @@ PROPERTIES = {
 LISTED = [(kind, key, value) for kind, values in PROPERTIES.items() for value, keys in values.items() for key in keys.split()]
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("kind", PROPERTIES)
 def test_a_listed_property_gives_its_value_and_a_known_one_is_found_twice(motions, kind):
     motions("(setf prolog:*break-on-lisp-errors* t)")
@@ -98,6 +99,7 @@ def test_what_is_no_designator_has_no_properties(motions):
     assert "[PROPERTY-MEMBER]: 5 had to be of type" in motions("(values-of 5 :type)")
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize(
     "entries, solution",
     [
@@ -153,6 +155,7 @@ def test_a_motion_that_lacks_something_is_not_resolved(motions, entries):
     assert motions(f"(desig:reference (motion {entries}))").startswith('"DESIGNATOR-ERROR: Cannot resolve motion designator')
 
 
+@pytest.mark.soak
 def test_opening_is_another_thing_as_a_motion_than_as_an_action(motions):
     motions("(asdf:load-system :cram-mobile-pick-place-plans)")
     description = "'((:type :opening) (:gripper :left))"

@@ -54,6 +54,7 @@ def test_places_are_drawn_as_often_as_from_the_whole_map(cost):
     assert np.abs(blocks[0] - blocks[1]).max() < 0.012
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("part", [0.05, 0.1, 0.6])
 def test_what_is_above_a_part_of_the_greatest_value_is_as_in_the_whole_map(part):
     def cost(x, y):

@@ -55,6 +55,7 @@ def ask():
     kernel.stop()
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize(
     ("place", "test"),
     [

@@ -40,6 +40,7 @@ CARTON = (Shape("box", (0.06, 0.14, 0.22)),)
 ON_COUNTER = 0.855  # metres
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize(
     "places",
     [
@@ -67,6 +68,7 @@ def test_items_that_are_inside_of_each_other_are_parted_and_none_falls(world, pl
 SHELF, BOARD_TOP = (-2.0, 1.0), 0.51  # a board with a low wall along y
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("shape", [CARTON, BOTTLE], ids=["a carton", "a bottle"])
 @pytest.mark.parametrize(
     "into_wall, into_board, aside, raised",

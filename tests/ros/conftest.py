@@ -4,6 +4,7 @@ import itertools
 import re
 
 import pytest
+from systems import ONE_BACKEND
 from lisp_text import LispLine
 
 from cramhy_runtime import kernel
@@ -110,7 +111,7 @@ class Lisp(LispLine):
         return " ".join(ERRORS.value.take().split())
 
 
-@pytest.fixture(params=["threads", "greenlet"])
+@pytest.fixture(params=ONE_BACKEND)
 def lisp(request, session):
     from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER
     from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE

@@ -64,6 +64,7 @@ def workspace_with_links(tmp_path):
     closed.chmod(0o700)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("form, answer", [
     ('(roslisp:start-ros-node "x")', "Node startup complete"),
     ('(make-instance (quote mine-msg:mine) :x 7)', "MINE"),
@@ -90,6 +91,7 @@ def test_a_session_among_closed_folders_starts_and_finds_what_is_open(workspace_
     assert done.returncode == 0
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "words, shown",
     [("rospack list", "mine "), ("rosmsg packages", "mine"), ("rosmsg show mine/Mine", "int32 x"), ("rospack find mine", "/mine")],
@@ -135,6 +137,7 @@ SEARCHES = [
 ]
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("search", SEARCHES)
 @pytest.mark.parametrize("number", ERRORS)
 def test_whichever_look_at_a_file_fails_the_search_goes_on(tmp_path, monkeypatch, search, number):

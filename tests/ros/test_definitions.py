@@ -217,6 +217,7 @@ class TestOnesOwn:
         expected = hashlib.md5(f"uint8 BIG=7\n{point} where\nstring name".encode()).hexdigest()
         assert type_texts.md5_of(messages.message_class("own_msgs/Thing")) == expected
 
+    @pytest.mark.soak(all_but=3)
     @pytest.mark.parametrize(
         "form",
         [
@@ -273,6 +274,7 @@ class TestOnesOwn:
             f"user is defined in {tmp_path}/user/user.asd."
         )
 
+    @pytest.mark.soak(all_but=1)
     @pytest.mark.parametrize(
         "form, wanted",
         [
@@ -295,6 +297,7 @@ class TestOnesOwn:
         )
         assert expected.replace(" a action", " an action") in told
 
+    @pytest.mark.soak(all_but=1)
     @pytest.mark.parametrize(
         "text, line, problem, hint",
         [

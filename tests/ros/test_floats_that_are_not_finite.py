@@ -47,6 +47,7 @@ def heard_by_both(kind, message):
     return in_python[0], in_lisp[0]
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("value, word", list(zip(INFINITE, KEYWORDS, strict=True)), ids=["inf", "-inf", "nan"])
 @pytest.mark.parametrize("kind", ["std_msgs/Float32", "std_msgs/Float64"])
 @pytest.mark.parametrize("number", [float, np.float32, np.float64])

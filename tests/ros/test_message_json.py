@@ -7,6 +7,7 @@ from fractions import Fraction
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as some
+from systems import SOAK
 
 from cramhy_runtime.ros import definition_files, messages, wire
 from cramhy_runtime.ros.definition_text import INTEGERS
@@ -24,7 +25,9 @@ from cramhy_runtime.ros.message_json import (
 )
 from cramhy_runtime.ros.messages import RosMessage, message_class
 
-quick = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
+quick = settings(
+    max_examples=60 if SOAK else 30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
+)
 
 
 def delivered(type_name, **fields):
@@ -282,6 +285,7 @@ def class_named(text):
 names_of_classes = some.deferred(lambda: some.sampled_from([cls.lisp_name for cls in _all_classes()]))
 
 
+@pytest.mark.soak
 @quick
 @given(some.data())
 def test_there_and_back_is_the_same_message(data):
@@ -301,6 +305,7 @@ _json = some.recursive(
 )
 
 
+@pytest.mark.soak
 @quick
 @given(some.data())
 def test_hostile_data_raise_nothing_but_the_one_error(data):

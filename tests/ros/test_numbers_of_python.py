@@ -34,6 +34,7 @@ RANGES = [(name, -(1 << bits - 1) if signed else 0, (1 << bits - signed) - 1) fo
 TYPES = {"byte": "Byte", "char": "Char", **{name: name.title().replace("Ui", "UI") for name in INTEGERS if "int" in name}}
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("name, least, most", RANGES)
 def test_an_integer_out_of_range_is_refused(name, least, most):
     kind = f"std_msgs/{TYPES[name]}"
@@ -69,12 +70,14 @@ class Level(enum.IntEnum):
     HIGH = 7
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("value", [np.int64(7), np.uint8(7), np.array(7), Level.HIGH, 7])
 def test_an_integer_of_a_library_is_an_integer(value):
     received = heard("std_msgs/Int32", data=value).data
     assert received == 7 and type(received) is int
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("value", [np.float64(0.5), np.float32(0.5), np.array(0.5), 0.5])
 @pytest.mark.parametrize("kind", ["std_msgs/Float32", "std_msgs/Float64"])
 def test_a_number_of_a_library_is_a_number(kind, value):
@@ -86,6 +89,7 @@ def test_an_array_of_numbers_is_a_list(value):
     assert heard("std_msgs/Float32MultiArray", data=value).data == [1.0, 2.5]
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("value", [[1, 255], bytes([1, 255]), bytearray([1, 255]), np.array([1, 255], dtype=np.uint8), np.array([1, 255])])
 def test_octets_come_in_all_their_forms(value):
     assert heard("std_msgs/UInt8MultiArray", data=value).data == [1, 255]

@@ -41,6 +41,7 @@ def node(session):
             kernel.stop()
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("form", FORMS)
 def test_all_forms_arrive_as_octets_and_in_lisp_as_a_list(form):
     in_python, in_lisp = [], []
@@ -74,6 +75,7 @@ def test_they_are_compared_copied_and_pickled():
     assert there.data != [0, 1] and there.data != "text" and not Octets() and list(there.data) == NUMBERS
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("values", [[256], [-1], [1.5], ["a"], [None], np.zeros((2, 2), np.uint8), np.array([1.5])])
 def test_other_values_are_refused(values):
     with pytest.raises(Exception, match="range|INTEGER|VECTOR"):
@@ -94,6 +96,7 @@ INTEGERS = {"int8": (72, "<i1"), "int16": (77, "<i2"), "int32": (78, "<i4"), "in
             "uint16": (69, "<u2"), "uint32": (70, "<u4"), "uint64": (71, "<u8")}  # fmt: skip
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("base", INTEGERS)
 def test_arrays_of_numpy_need_no_loop_of_python(base):
     tag, kind = INTEGERS[base]

@@ -25,6 +25,7 @@ def node(session):
             kernel.stop()
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("value", VALUES, ids=repr)
 def test_a_value_comes_back_as_it_went_in(value):
     set_param("value", value)
@@ -37,6 +38,7 @@ def test_a_value_comes_back_as_it_went_in(value):
     assert repr(hy.eval(hy.read_many(program), module)) == repr((value, True))
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("value", [False, None, [], {}, (), ""], ids=repr)
 def test_a_default_is_returned_as_it_is(value):
     assert get_param("missing", value) is value
@@ -48,6 +50,7 @@ def test_a_dict_can_be_read_by_its_names():
     assert get_param("arm/speed") == 0.5
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     "given, kept", [((1, 2), [1, 2]), (np.float64(1.5), 1.5), (np.int64(3), 3), (np.bool_(False), False), (np.array([[1, 2]]), [[1, 2]])]
 )

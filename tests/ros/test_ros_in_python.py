@@ -1,6 +1,7 @@
 """ROS from Python, without a line of Lisp: `cramhy_runtime.ros.python`, `cramhy_runtime.actionlib.python`, and `broadcasting` of tf."""
 
 import pytest
+from systems import ONE_BACKEND
 
 from cramhy_runtime import cpl, kernel
 from cramhy_runtime.actionlib.python import (
@@ -39,7 +40,7 @@ TWO_INTS = "roscpp_tutorials/TwoInts"
 FIBONACCI = "actionlib_tutorials/FibonacciAction"
 
 
-@pytest.fixture(params=["threads", "greenlet"], autouse=True)
+@pytest.fixture(params=ONE_BACKEND, autouse=True)
 def node(request, session):
     with Image(as_now=True):
         kernel.start(clock="virtual", backend=request.param, time_limit=3600)

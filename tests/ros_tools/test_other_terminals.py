@@ -39,6 +39,7 @@ def test_messages_are_printed_as_they_come_until_ctrl_c(far_shell):
     assert (text, status) == ("r: 69\ng: 86\nb: 255\n---\n" * 3, 0)
 
 
+@pytest.mark.soak
 def test_the_rate_of_a_topic_until_ctrl_c(far_shell):
     text, status = stream(far_shell, "rostopic hz /turtle1/pose", 2)
     assert status == 0 and re.fullmatch(
@@ -48,6 +49,7 @@ def test_the_rate_of_a_topic_until_ctrl_c(far_shell):
     )
 
 
+@pytest.mark.soak
 def test_the_bytes_of_a_topic_until_ctrl_c(far_shell):
     text, status = stream(far_shell, "rostopic bw /turtle1/pose", 2)
     assert status == 0 and re.fullmatch(
@@ -71,6 +73,7 @@ def test_a_topic_that_nobody_publishes_on_yet_is_waited_for(far_shell):
     assert far_shell.said == ('data: "here"\n---\n', "WARNING: topic [/late] does not appear to be published yet\n", 0)
 
 
+@pytest.mark.soak
 def test_a_command_that_is_repeated_keeps_the_turtle_going(far_shell):
     said = []
 
@@ -112,6 +115,7 @@ def test_numbers_that_json_does_not_have_arrive(far_shell):
     assert str(list(map(as_float, arrived[0].data))) == "[1.5, nan, inf, -inf]"
 
 
+@pytest.mark.soak
 def test_who_prints_more_slowly_than_a_plan_publishes_gets_the_newest_messages(far_shell):
     from cramhy_runtime.ros import graph
     from cramhy_runtime.ros.messages import message_class_exact
@@ -244,6 +248,7 @@ def test_keys_of_another_terminal_drive_the_turtle(far_shell, graph):
     assert feed(b"xq") is False and feed(b"A") is False
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("service", "request_data", "text"),
     [
@@ -309,6 +314,7 @@ def test_without_the_extra(far_shell, monkeypatch):
     )
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("token", ["a wrong token", "wrong", "", "a/b?c&d#e"])
 def test_a_session_that_does_not_let_us_in(far_shell, token):
     port = far_shell.server.port
@@ -381,6 +387,7 @@ def test_of_two_sessions_the_newest_is_taken_and_named(far_shell, monkeypatch, c
 # ---------------------------------------------------------------------------------------- the turtle of the session stays
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("words", [(), ("__name:=turtlesim",), ("__ns:=/", "__name:=turtlesim")])
 def test_whoever_starts_the_sessions_own_simulator_looks_on(far_shell, graph, words):
     before = far_shell.simulator

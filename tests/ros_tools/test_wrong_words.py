@@ -16,6 +16,7 @@ def usage(words, problem):
     return f"Usage: {words}\n\n{tool}: error: {problem}\n"
 
 
+@pytest.mark.soak(all_but=13)
 @pytest.mark.parametrize(
     ("words", "complaint", "status"),
     [

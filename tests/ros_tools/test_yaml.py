@@ -36,6 +36,7 @@ empty:
 """
 
 
+@pytest.mark.soak(all_but=25)
 @pytest.mark.parametrize(
     ("text", "value"),
     [

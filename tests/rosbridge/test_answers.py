@@ -33,6 +33,7 @@ BAD = {  # type, field, value; the compressions in which it cannot be sent, and 
 }
 
 
+@pytest.mark.soak(all_but=7)
 @pytest.mark.parametrize("compression", ["none", "png", "cbor", "cbor-raw"])
 @pytest.mark.parametrize("bad", BAD)
 def test_a_message_that_cannot_be_encoded_costs_that_message(graph, talk, other, bad, compression, capfd):

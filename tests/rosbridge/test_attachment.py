@@ -95,6 +95,7 @@ def joined(robot):
         link.close()
 
 
+@pytest.mark.soak
 def test_the_plan_of_the_course_drives_the_turtle_of_the_other_process(robot, joined):
     drive_by_the_plan_of_the_course(robot, *joined)
 
@@ -140,6 +141,7 @@ def test_the_connection_ends_with_the_session_and_after_the_cleanup_of_its_plans
     assert json.loads(robot.ask("pose"))[:2] == [3.0, 4.0]
 
 
+@pytest.mark.soak
 def test_services_and_parameters_are_the_robots(robot, joined):
     evaluate, _ = joined
     evaluate('(roslisp:start-ros-node "lisp")')
@@ -159,6 +161,7 @@ def test_services_and_parameters_are_the_robots(robot, joined):
     assert shown == ["ERROR: service [/kill] responded with an error: b''\n"]
 
 
+@pytest.mark.soak
 def test_the_robot_calls_a_service_of_the_plan(robot, joined, beside):
     from bridge_clients import Wire
 
@@ -176,6 +179,7 @@ def test_the_robot_calls_a_service_of_the_plan(robot, joined, beside):
     beside(client)()
 
 
+@pytest.mark.soak
 def test_each_message_arrives_once(robot, joined):
     evaluate, _ = joined
     evaluate("""(roslisp:start-ros-node "lisp")
@@ -199,6 +203,7 @@ def test_each_message_arrives_once(robot, joined):
     assert str(evaluate("(reverse *heard*)")[0]) == "('0' '1' '2' '3' '4')"
 
 
+@pytest.mark.soak
 def test_a_lost_connection_fails_what_waits_and_comes_back(robot, joined):
     from cramhy_runtime.lisp_core.condition_types import Condition
 
@@ -232,6 +237,7 @@ def test_a_lost_connection_fails_what_waits_and_comes_back(robot, joined):
         kernel.sleep(0.02)
 
 
+@pytest.mark.soak
 def test_virtual_time_cannot_join(serve):
     from cramhy_runtime.rosbridge.server import ServerError
 
@@ -243,6 +249,7 @@ def test_virtual_time_cannot_join(serve):
     )
 
 
+@pytest.mark.soak
 def test_where_nobody_answers(serve):
     from cramhy_runtime.rosbridge.server import ServerError
 
@@ -256,6 +263,7 @@ def test_where_nobody_answers(serve):
     kernel.stop()
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("address, text", [
     ("ws://127.0.0.1:{port}/wrong", "{shown} is refused: the server answered 403 Forbidden. If it is a session of cramhy, the token in "
      "this address is wrong. The session prints its address with the right one when it starts with --serve (docs/ros-bridge.md)."),
@@ -310,6 +318,7 @@ def test_what_another_server_answers_is_told(answer, text):
     assert str(caught.value) == text.format(shown=shown(url))
 
 
+@pytest.mark.soak
 def test_an_answer_that_comes_too_late_is_waited_for_no_more(robot, joined, monkeypatch):
     from cramhy_runtime.lisp_core.condition_types import Condition
     from cramhy_runtime.rosbridge import attachment
@@ -323,6 +332,7 @@ def test_an_answer_that_comes_too_late_is_waited_for_no_more(robot, joined, monk
     assert 7 not in link._waiting
 
 
+@pytest.mark.soak
 def test_a_service_whose_type_is_not_known_here_is_asked_about_once(joined, monkeypatch):
     _, link = joined
     asked = []
@@ -338,6 +348,7 @@ def test_a_service_whose_type_is_not_known_here_is_asked_about_once(joined, monk
     assert asked == ["/fly", "/fly"]
 
 
+@pytest.mark.soak
 def test_what_the_other_side_complains_of_is_logged(robot, joined, capsys):
     evaluate, link = joined
     evaluate('(roslisp:start-ros-node "lisp")')
@@ -365,6 +376,7 @@ def test_where_ros_2_is_a_parameter_stays_here_and_that_is_said_once(graph, caps
     assert parameters.names() == ["/a/b", "/c", "/old"] and parameters.get("/a/b") == 2
 
 
+@pytest.mark.soak
 def test_ros_2_spells_times_and_headers_its_own_way():
     from cramhy_runtime.ros.message_json import to_json
     from cramhy_runtime.rosbridge.attachment import as_ros2

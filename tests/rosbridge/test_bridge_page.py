@@ -40,6 +40,7 @@ def robot(tmp_path):
     process.communicate("", timeout=60)
 
 
+@pytest.mark.soak
 def test_the_example_of_roslibpy(robot):
     pytest.importorskip("roslibpy")
     code, shown = example("import roslibpy")
@@ -55,6 +56,7 @@ def test_the_example_of_roslib(robot, roslib_folder):
     assert (done.returncode, done.stdout) == (0, shown), done.stderr
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("options", [["--serve"], ["--serve", "--time", "virtual", "--origin", "https://app.foxglove.dev"]])
 def test_the_repl_tells_its_address(tmp_path, options):
     process = subprocess.Popen(
@@ -83,6 +85,7 @@ def test_the_repl_tells_its_address(tmp_path, options):
     assert process.returncode == 0
 
 
+@pytest.mark.soak
 def test_what_cannot_be_joined_is_told():
     done = subprocess.run(
         [sys.executable, "-m", "cramhy_runtime.cli", "repl", "--time", "virtual", "--ros", "ws://robot:9090"],

@@ -88,6 +88,7 @@ def compute(seconds):
     return time.monotonic() - began
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("kind", FLOODS if SOAK else ["wrong tokens", "messages", "calls"])
 def test_a_flood_does_not_slow_the_plan_down(serve, flood, kind):
     """The plan computes without a pause. What the server and its clients' operations cost meanwhile, in time of the processor that the plan
@@ -211,6 +212,7 @@ def test_nobody_has_more_calls_open_than_is_allowed(graph):
     assert [each["result"] for each in talk.heard()] == [True, True]
 
 
+@pytest.mark.soak
 def test_a_client_that_does_not_read_is_closed_and_the_plan_goes_on(serve, outside):
     """It asks until it is closed, however much the buffers of the system between the two hold, and however slow the machine is."""
     from test_hostile import raw_frame
@@ -240,6 +242,7 @@ def test_a_client_that_does_not_read_is_closed_and_the_plan_goes_on(serve, outsi
 CLIENTS = Path(__file__).with_name("many_clients.py")
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("pace", ["wall", "virtual"])
 def test_many_clients_at_60_hertz_lose_nothing(serve, outside, pace):
     """Each client hears a topic of 60 messages a second, and publishes as many on a topic of its own, which it hears again. Nothing is

@@ -119,6 +119,7 @@ def stranger(server):
 HOSTS = ["evil.example", "evil.example:80", "127.0.0.1", "127.0.0.1:1", "localhost:1", "127.0.0.1.evil.example", "[::1]:80", "", "0.0.0.0"]
 
 
+@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize("host", HOSTS)
 def test_a_page_that_had_its_name_point_here_is_refused(server, host):
     text = "This server answers to 127.0.0.1 and localhost only, with its port.\n"
@@ -166,11 +167,13 @@ PATHS = ["/../secret.txt", "/..%2fsecret.txt", "/%2e%2e/secret.txt", "//secret.t
          "/" + "a" * 3000, "/__proto__", "/constructor", "/proc/self/environ", "\\secret.txt"]
 
 
+@pytest.mark.soak(all_but=8)
 @pytest.mark.parametrize("path", PATHS)
 def test_only_the_pages_that_there_are(server, path):
     assert request(server, path=path)[0] in (400, 404)
 
 
+@pytest.mark.soak
 def test_a_head_that_never_ends_is_given_up(server):
     def drip():
         with socket.create_connection(("127.0.0.1", server.port), 20) as slow:
@@ -237,6 +240,7 @@ FIRST = [{"op": "call_service", "service": "/clear"}, {"op": "auth"}, {"op": "au
          {"op": "auth", "mac": "x"}, [], "auth", 7, None, {"token": "x"}]
 
 
+@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize("message", FIRST, ids=json.dumps)
 def test_who_does_not_begin_with_the_token_is_closed(server, message):
     def client(wire):
@@ -256,6 +260,7 @@ def test_a_first_message_that_is_none_is_closed(server, data):
     assert talk(server, client, stranger(server)) == (1008, NO_TOKEN)
 
 
+@pytest.mark.soak
 def test_who_says_nothing_is_closed(server):
     assert talk(server, lambda wire: wire.closed(), stranger(server)) == (
         1013, 'No token came within 1 s. The first message must be {"op": "auth", "token": "..."}.')
@@ -402,6 +407,7 @@ TEXTS = {
 }
 
 
+@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize(("text", "told"), TEXTS.items(), ids=[text[:30] for text in TEXTS])
 def test_what_is_no_operation_is_told(server, text, told):
     def client(wire):
@@ -477,6 +483,7 @@ OPERATIONS = [
 ]
 
 
+@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize(("operation", "told"), OPERATIONS, ids=[json.dumps(each[0])[:60] for each in OPERATIONS])
 def test_operations_that_cannot_be_done_are_told(server, operation, told):
     def client(wire):
@@ -502,6 +509,7 @@ CALLS = [
 ]
 
 
+@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize(("call", "told"), CALLS, ids=[json.dumps(each[0]) for each in CALLS])
 def test_calls_that_cannot_be_made_are_answered(server, call, told):
     def client(wire):

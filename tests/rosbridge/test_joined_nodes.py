@@ -177,6 +177,7 @@ kernel.run_blocking(sys.stdin.readline)
 """
 
 
+@pytest.mark.soak
 def test_a_process_that_is_killed_leaves_no_node(serve, said, outside):
     """The other process sees ours, its node is ours, ends by `rosnode kill`, and goes when the process is killed."""
     pytest.importorskip("roslibpy")

@@ -129,6 +129,7 @@ def test_another_type_than_the_robots_is_an_error_where_it_is_asked_for(robot, j
     assert robot.heard("advertise") == robot.heard("subscribe") == [] and robot.wrong() == []
 
 
+@pytest.mark.soak
 def test_the_robots_type_and_topics_that_are_new_are_taken(robot, join):
     evaluate, _ = join()
     evaluate("""(roslisp:advertise "/turtle1/cmd_vel" "geometry_msgs/Twist") (roslisp:advertise "/mine" "std_msgs/String")
@@ -144,6 +145,7 @@ def test_a_type_that_is_the_same_on_the_wire_goes_under_the_robots_name(robot, j
     assert until(lambda: robot.heard("advertise"), "the topic")[0][1]["type"] == "tf2_msgs/TFMessage"
 
 
+@pytest.mark.soak
 def test_a_type_that_differs_after_the_return_is_logged(robot, proxy, join, capsys):
     evaluate, link = join()
     evaluate('(roslisp:advertise "/news" "std_msgs/String")')
@@ -167,6 +169,7 @@ def test_joining_is_over_when_the_services_are_known(robot, join):
     assert robot.pose()["x"] == 1
 
 
+@pytest.mark.soak
 def test_services_whose_types_nobody_tells_are_named_and_do_not_keep_the_session_out(robot, join, monkeypatch, capsys):
     from cramhy_runtime.rosbridge import attachment
 
@@ -204,6 +207,7 @@ def test_a_robot_that_does_not_answer_while_the_session_joins_is_told_as_that(ro
     ]
 
 
+@pytest.mark.soak
 def test_while_the_connection_is_lost_a_missing_service_says_so(robot, proxy, join):
     evaluate, link = join()
     proxy.stall()
@@ -235,6 +239,7 @@ def offered(robot, evaluate):
     until(lambda: "/sum" in robot.services(), "the service")
 
 
+@pytest.mark.soak
 def test_the_robot_calls_a_service_of_the_plan(robot, join):
     evaluate, _ = join()
     offered(robot, evaluate)
@@ -252,6 +257,7 @@ def test_a_failure_of_a_service_of_the_plan_reaches_its_caller_and_the_service_s
     assert until(lambda: robot.calls()[1], "the answer") == [True, {"sum": 42}]
 
 
+@pytest.mark.soak
 def test_callers_of_a_connection_that_was_lost_are_told_and_a_late_answer_reaches_nobody_else(robot, proxy, join):
     evaluate, link = join()
     offered(robot, evaluate)
@@ -265,6 +271,7 @@ def test_callers_of_a_connection_that_was_lost_are_told_and_a_late_answer_reache
     assert link.offering.calls == {}
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("end", ["close", "stop", "shutdown"])
 def test_services_and_topics_are_withdrawn_at_an_orderly_end_and_callers_are_told(robot, join, end):
     evaluate, link = join()
@@ -370,6 +377,7 @@ def test_commands_of_a_stall_are_dropped_but_the_last_one_and_that_is_told(robot
     assert told and int(told[1]) + int(doubtful[1] if doubtful else 0) + len(sent) >= 61, said
 
 
+@pytest.mark.soak
 def test_a_stop_command_that_was_under_way_when_the_network_went_arrives_when_it_is_back(robot, proxy, join):
     evaluate, link = join()
     evaluate(f'(defparameter *cmd* (roslisp:advertise "{CMD}" "geometry_msgs/Twist"))')
@@ -430,6 +438,7 @@ def test_a_session_that_was_stopped_itself_takes_nothing_for_a_stall(robot, prox
         child.kill()
 
 
+@pytest.mark.soak
 def test_the_stop_command_of_a_plan_that_ends_in_a_stall_waits_for_the_network(robot, proxy, join):
     evaluate, link = join()
     evaluate(f'(defparameter *cmd* (roslisp:advertise "{CMD}" "geometry_msgs/Twist"))')
@@ -452,6 +461,7 @@ def test_the_last_message_of_an_orderly_end_comes_once(robot, join):
     assert [each["msg"]["linear"]["x"] for _, each in robot.heard("publish")] == [float(number) for number in range(10)]
 
 
+@pytest.mark.soak
 def test_a_last_message_that_nobody_confirms_is_told(robot, proxy, join, capsys):
     evaluate, link = join()
     evaluate(f'(defparameter *cmd* (roslisp:advertise "{CMD}" "geometry_msgs/Twist"))')
@@ -469,6 +479,7 @@ def test_a_last_message_that_nobody_confirms_is_told(robot, proxy, join, capsys)
 # --------------------------------------------------------------------------------------------------------------- the course
 
 
+@pytest.mark.soak
 def test_the_plan_of_the_course_drives_the_robot_before_and_after_a_cut(robot, proxy, join):
     from cramhy_runtime.session import Image
 

@@ -8,6 +8,7 @@ import subprocess
 import pytest
 
 
+@pytest.mark.soak
 def test_roslib_under_node(roslib_folder, beside):
     from cramhy_runtime import kernel, rosbridge
     from cramhy_runtime.repl.session import Session

@@ -178,6 +178,7 @@ def test_every_service_there_is_can_be_called(lisp, connect, beside):
     }
 
 
+@pytest.mark.soak
 def test_it_connects_anew_when_the_connection_is_lost(lisp, connect, beside):
     server, _ = lisp
 

@@ -13,6 +13,7 @@ from cramhy_runtime.extras import install_command
 from cramhy_runtime.ros import graph
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("time", ["virtual", "wall"])
 def test_a_client_is_answered_while_the_prompt_waits(serve, outside, time, backend):
     server = serve(time, backend)
@@ -105,6 +106,7 @@ def test_the_server_ends_with_the_kernel(serve, outside, backend):
     assert not server.company.alive and server.company.failure is None
 
 
+@pytest.mark.soak(all_but=1)
 def test_every_client_hears_why_the_session_ends_however_busy_the_server_is(serve, outside, backend):
     """uvicorn closes whom it still finds with a mere number; so it is told only when all have had their reason."""
     server = serve(backend=backend)

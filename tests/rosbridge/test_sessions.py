@@ -92,6 +92,7 @@ def made_up(**values):
 # ------------------------------------------------------------------------------------------------------------- the folder
 
 
+@pytest.mark.soak
 def test_the_session_is_found_by_its_file(serve, outside, tmp_path):
     server = serve()
     found = outside(sessions.current)
@@ -121,6 +122,7 @@ def test_a_folder_that_others_can_enter_is_not_trusted(tmp_path):
     )
 
 
+@pytest.mark.soak
 def test_where_no_session_can_be_announced_nothing_is_looked_for_and_no_server_stays(serve, tmp_path, monkeypatch):
     from cramhy_runtime.rosbridge.server import ServerError, running
 
@@ -136,6 +138,7 @@ def test_where_no_session_can_be_announced_nothing_is_looked_for_and_no_server_s
     assert running() is None and "/rosapi" not in graph.active().nodes
 
 
+@pytest.mark.soak
 def test_a_file_that_others_can_read_is_not_trusted(serve):
     server = serve()
     server.file.chmod(0o644)
@@ -144,6 +147,7 @@ def test_a_file_that_others_can_read_is_not_trusted(serve):
     assert str(caught.value) == f"{server.file} can be read or written by others than this user, so it is not trusted. Remove it."
 
 
+@pytest.mark.soak
 def test_a_relative_folder_is_ignored_and_that_is_said_once(tmp_path, start):
     temporary = tmp_path / "temporary"
     temporary.mkdir()
@@ -167,6 +171,7 @@ def small_disk(tmp_path):
     subprocess.run(["umount", "-l", str(place)], check=True)
 
 
+@pytest.mark.soak
 def test_a_full_folder_is_told_in_one_line_and_nothing_is_left(small_disk, start):
     place, _ = small_disk
     folder = folder_of(place)
@@ -180,6 +185,7 @@ def test_a_full_folder_is_told_in_one_line_and_nothing_is_left(small_disk, start
     assert list(folder.iterdir()) == []
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("there", [True, False], ids=["a folder", "no folder"])
 def test_a_folder_that_cannot_be_written_is_told_in_one_line(small_disk, start, there):
     place, make_read_only = small_disk
@@ -196,6 +202,7 @@ def test_a_folder_that_cannot_be_written_is_told_in_one_line(small_disk, start, 
     )
 
 
+@pytest.mark.soak
 def test_a_session_whose_folder_fills_up_goes_on_and_says_once_that_it_cannot_be_found(small_disk, start):
     place, _ = small_disk
     session = start(place)
@@ -213,6 +220,7 @@ def test_a_session_whose_folder_fills_up_goes_on_and_says_once_that_it_cannot_be
 # ------------------------------------------------------------------------------------------------------- surely dead or not
 
 
+@pytest.mark.soak
 @LINUX
 def test_what_a_killed_session_left_behind_goes_when_another_program_looks(start, tmp_path):
     session, other = start(), start()
@@ -224,6 +232,7 @@ def test_what_a_killed_session_left_behind_goes_when_another_program_looks(start
     assert not session.file.exists() and not page.exists() and other.file.exists()
 
 
+@pytest.mark.soak
 @LINUX
 def test_what_a_killed_session_left_behind_goes_when_the_next_one_starts(start, tmp_path):
     session = start()
@@ -245,6 +254,7 @@ def test_what_a_killed_session_left_behind_goes_when_the_next_one_starts(start, 
     assert set(session.file.parent.iterdir()) == {following.file, mine, elsewhere}
 
 
+@pytest.mark.soak
 @LINUX
 def test_a_session_that_is_stopped_keeps_its_file_and_is_found_however_many_look(start, tmp_path):
     session = start()
@@ -265,6 +275,7 @@ def namespace():
     return UNSHARE
 
 
+@pytest.mark.soak
 @LINUX
 def test_a_program_in_another_pid_namespace_leaves_the_file_of_a_living_session(start, tmp_path, namespace):
     session = start()
@@ -272,6 +283,7 @@ def test_a_program_in_another_pid_namespace_leaves_the_file_of_a_living_session(
     assert session.file.exists()
 
 
+@pytest.mark.soak
 @LINUX
 def test_a_session_in_another_pid_namespace_is_found_and_keeps_its_file(start, tmp_path, namespace):
     inside = start(before=namespace)
@@ -284,6 +296,7 @@ def test_a_session_in_another_pid_namespace_is_found_and_keeps_its_file(start, t
     assert list(outside.file.parent.iterdir()) == [outside.file]
 
 
+@pytest.mark.soak
 @LINUX
 def test_sessions_with_one_number_in_two_namespaces_do_not_take_each_others_file(start, tmp_path, namespace):
     one, other = start(before=namespace), start(before=namespace)
@@ -292,6 +305,7 @@ def test_sessions_with_one_number_in_two_namespaces_do_not_take_each_others_file
     assert look(tmp_path)[0] == [other.port]
 
 
+@pytest.mark.soak
 @LINUX
 def test_a_session_that_was_killed_in_another_namespace_is_not_shown_but_its_file_stays(start, tmp_path, namespace):
     session = start(before=namespace)
@@ -348,6 +362,7 @@ def test_a_file_in_which_no_session_stands_goes(announced, text):
     assert sessions.living() == [] and not path.exists()
 
 
+@pytest.mark.soak
 def test_what_is_no_file_is_left_alone(announced, tmp_path):
     folder = folder_of(tmp_path)
     (folder / "session-1-1.json").symlink_to("/etc/passwd")
@@ -365,6 +380,7 @@ def test_what_is_no_file_is_left_alone(announced, tmp_path):
     assert (folder / "session-1-1.json").is_symlink() and kept.exists()
 
 
+@pytest.mark.soak
 def test_the_newest_of_several_is_current(serve, outside, announced):
     server = serve()
     values = json.loads(server.file.read_text())
@@ -376,6 +392,7 @@ def test_the_newest_of_several_is_current(serve, outside, announced):
 # ------------------------------------------------------------------------------------------------- announced again, and gone
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("clock", ["wall", "virtual"])
 @pytest.mark.parametrize("gone", ["the file", "the folder", "the file, for another", "the file, for a folder's link"])
 def test_a_living_session_is_announced_again(start, tmp_path, gone, clock):
@@ -399,6 +416,7 @@ def test_a_living_session_is_announced_again(start, tmp_path, gone, clock):
     assert list(session.file.parent.iterdir()) == []
 
 
+@pytest.mark.soak
 def test_a_session_is_announced_again_while_a_plan_computes(serve):
     server = serve()
     kernel.spawn(lambda: kernel.sleep(1e9), name="somebody to hand the baton to")
@@ -412,6 +430,7 @@ def test_a_session_is_announced_again_while_a_plan_computes(serve):
     wait_until(announced, "it is announced again")
 
 
+@pytest.mark.soak
 def test_it_is_announced_again_where_it_was(serve, tmp_path, monkeypatch):
     server = serve()
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "elsewhere"))
@@ -420,6 +439,7 @@ def test_it_is_announced_again_where_it_was(serve, tmp_path, monkeypatch):
     assert not (tmp_path / "elsewhere").exists()
 
 
+@pytest.mark.soak
 def test_a_session_that_ends_removes_its_own_file_and_no_other(serve, announced):
     server = serve()
     other = announced("session-1-1.json", made_up(machine="elsewhere"))
@@ -430,6 +450,7 @@ def test_a_session_that_ends_removes_its_own_file_and_no_other(serve, announced)
     assert path.read_text() == "of another" and other.exists()
 
 
+@pytest.mark.soak
 def test_a_session_that_cannot_be_announced_again_says_so_once(serve, tmp_path, capfd):
     server = serve()
     folder = folder_of(tmp_path)

@@ -104,6 +104,7 @@ def first_message(session):
         assert wire.call("/rosapi/get_ros_version")["result"]
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("way", WAYS)
 def test_those_with_a_token_get_in_within_a_second_whatever_strangers_do(session, attack, way):
     attack(way)
@@ -135,6 +136,7 @@ def files_of(session):
     return len(os.listdir(f"/proc/{session.pid}/fd"))
 
 
+@pytest.mark.soak
 @pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="the system does not tell how many files are open")
 @pytest.mark.parametrize("way", WAYS)
 def test_strangers_leave_nothing_behind(session, attack, way):
@@ -170,12 +172,14 @@ def closed_after(made):
     return time.monotonic() - began
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("say", [b"", b"G", b"GET / HTTP/1.1\r\nHost: "], ids=["nothing", "a letter", "half a request"])
 def test_a_stranger_has_a_second(session, say):
     with silent(session, say) as made:
         assert 0.5 < closed_after(made) < 60
 
 
+@pytest.mark.soak
 def test_a_stranger_that_says_a_byte_from_time_to_time_has_no_more(session):
     with silent(session, b"GET / HTTP/1.1\r\nHost: ") as made:
         began = time.monotonic()
@@ -192,11 +196,13 @@ def test_a_stranger_that_says_a_byte_from_time_to_time_has_no_more(session):
         assert time.monotonic() - began > 0.5
 
 
+@pytest.mark.soak
 def test_a_page_that_is_slow_to_say_its_token_is_told_to_come_later(session):
     with Wire(f"ws://127.0.0.1:{session.port}/") as wire:
         assert wire.closed() == (1013, 'No token came within 1 s. The first message must be {"op": "auth", "token": "..."}.')
 
 
+@pytest.mark.soak
 def test_who_has_a_token_does_not_count_among_strangers_nor_they_among_clients(serve, outside):
     server = serve(connections=2, strangers=3)
 
@@ -230,6 +236,7 @@ def test_a_long_first_message_is_not_taken_but_later_ones_are(serve, outside):
     outside(run)
 
 
+@pytest.mark.soak
 def test_a_message_of_endless_empty_parts_is_given_up(serve, outside):
     from test_hostile import raw_frame
 

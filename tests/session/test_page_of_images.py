@@ -6,11 +6,13 @@ import re
 import threading
 from pathlib import Path
 
+import pytest
 from cramhy_runtime.session import outside
 
 PAGE = Path(__file__).parents[2] / "docs" / "images.md"
 
 
+@pytest.mark.soak
 def test_the_examples_of_the_page_print_what_it_shows():
     blocks = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", PAGE.read_text(), re.S)
     assert len(blocks) == 4

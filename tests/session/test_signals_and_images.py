@@ -51,6 +51,7 @@ def status_of(number):
     return 128 + number if number == signal.SIGTERM else -number  # as a shell says it; Python ends by SIGINT itself
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_between_images_ends_the_program_at_once_and_all_clean_up(number):
     status, lines, complaints = run(
@@ -69,6 +70,7 @@ finally:
     assert status == status_of(number), complaints
 
 
+@pytest.mark.soak
 def test_an_interrupt_is_heard_by_the_image_that_the_main_thread_is_in_and_the_others_go_on():
     status, lines, complaints = run(
         """
@@ -91,6 +93,7 @@ other.close()
     assert status == 0, complaints
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_while_another_thread_has_the_turn(number):
     """The current image is the other thread's; the message is for the plan of the main thread, which waits for its turn."""

@@ -6,6 +6,8 @@ import os
 import subprocess
 import sys
 
+import pytest
+
 STARTED = """
 import hy.macros
 
@@ -26,6 +28,7 @@ print(calls)
 """
 
 
+@pytest.mark.soak
 def test_no_compiled_macro_file_requires_anything_when_it_runs():
     """Hy's `require` looks at the source of every frame of the stack. A dozen files that require took a quarter of a start."""
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
@@ -66,6 +69,7 @@ def test_a_prompt_that_waits_has_loaded_common_lisp_only():
     assert prompt("1\n").endswith("rooms: ['cramhy_runtime.designators', 'cramhy_runtime.languages.commonlisp.faces.cpl.package']\n")
 
 
+@pytest.mark.soak
 def test_what_is_typed_finds_what_it_finds_in_a_session_that_was_whole_from_the_beginning():
     late, whole = prompt(LOOK), prompt(LOOK, "--package", "cl-user")
     assert late == whole and "CRAM-LANGUAGE" in late
@@ -94,6 +98,7 @@ print("*MINE*" in there()[0])
 """
 
 
+@pytest.mark.soak
 def test_a_new_image_of_a_late_session_is_as_one_of_a_whole_session():
     found = [subprocess.run([sys.executable, "-c", IMAGE, how], capture_output=True, text=True, timeout=120) for how in ("whole", "late")]
     assert [done.stderr for done in found] == ["", ""]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 LOAD = ['(ros-load:load-system "cram_my_beginner_tutorial" :cram-my-beginner-tutorial)', "(in-package :tut)"]
 NODE = """\
 [(ROSLISP TOP) INFO] TIME: Node name is /cram_tutorial_client
@@ -37,6 +39,7 @@ def create_package(workspace):
     workspace.shell("catkin_create_pkg", "cram_my_beginner_tutorial", "cram_language", where="src")
 
 
+@pytest.mark.soak
 def test_the_package_is_made_by_catkin_create_pkg(workspace):
     create_package(workspace)
     assert (workspace.package / "package.xml").is_file() and (workspace.package / "CMakeLists.txt").is_file()
@@ -47,6 +50,7 @@ def test_the_package_is_made_by_catkin_create_pkg(workspace):
     assert "No master is needed" in workspace.shell("roscore")
 
 
+@pytest.mark.soak
 def test_the_empty_package_loads(workspace, backend):
     create_package(workspace)
     workspace.copy("lecture-34/1-create/cram-my-beginner-tutorial.asd")
@@ -63,6 +67,7 @@ def control_package(workspace, control="control-turtlesim.lisp"):
     workspace.copy(f"lecture-34/2-control/src/{control}", "src/control-turtlesim.lisp")
 
 
+@pytest.mark.soak(all_but=1)
 def test_every_line_of_the_lecture_answers_as_the_slides_show(workspace, backend):
     control_package(workspace)
     transcript = workspace.repl(
@@ -98,6 +103,7 @@ def test_every_line_of_the_lecture_answers_as_the_slides_show(workspace, backend
     assert transcript.text.count("WARNING") == 0
 
 
+@pytest.mark.soak
 def test_a_wait_blocks_until_the_turtle_is_there(workspace, backend):
     control_package(workspace)
     transcript = workspace.repl(
@@ -110,6 +116,7 @@ def test_a_wait_blocks_until_the_turtle_is_there(workspace, backend):
     assert transcript.answers[4] == "T"
 
 
+@pytest.mark.soak
 def test_a_surplus_parenthesis_is_a_warning_with_its_place(workspace):
     control_package(workspace, "control-turtlesim-one-paren-too-many.lisp")
     transcript = workspace.repl(*LOAD, "*pen-srv*")
@@ -117,6 +124,7 @@ def test_a_surplus_parenthesis_is_a_warning_with_its_place(workspace):
     assert transcript.answers[2] == "NIL"
 
 
+@pytest.mark.soak
 def test_an_error_names_the_form_in_the_students_file(workspace):
     control_package(workspace)
     transcript = workspace.repl(

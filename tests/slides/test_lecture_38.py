@@ -39,6 +39,7 @@ def session_of(workspace, name):
     return (workspace.slides / "lecture-38" / "repl" / name).read_text().rstrip("\n").splitlines()
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("modules", ["process-modules-1.lisp", "process-modules-1-one-paren-too-many.lisp"])
 def test_the_first_module_loads(workspace, between_lectures, modules):
     modules_package(workspace, between_lectures, modules)
@@ -48,12 +49,14 @@ def test_the_first_module_loads(workspace, between_lectures, modules):
     assert ("process-modules.lisp:12:" in transcript.answers[0]) == ("too-many" in modules)
 
 
+@pytest.mark.soak(all_but=1)
 def test_drive_answers_as_the_slide_shows(workspace, between_lectures, backend):
     modules_package(workspace, between_lectures, "process-modules-2.lisp")
     transcript = workspace.repl(*LOAD, *NODE, "(drive 5 2)", backend=backend)
     assert transcript.answers[4] == DRIVEN.format(quote="'", speed=5, angle=2) + "\n1"
 
 
+@pytest.mark.soak
 def test_the_slip_on_the_slide_names_the_package_that_was_meant(workspace, between_lectures):
     modules_package(workspace, between_lectures, "process-modules-3.lisp")
     transcript = workspace.repl(LOAD[0], "0")
@@ -69,6 +72,7 @@ def same_module(workspace, between_lectures, backend="threads", seed=None):
     return transcript.answers[4]
 
 
+@pytest.mark.soak
 def test_two_motions_for_one_module_are_done_one_after_the_other(workspace, between_lectures, backend):
     answer = same_module(workspace, between_lectures, backend)
     assert "\nT" in answer and "STYLE-WARNING: unmatched close parenthesis" in answer[answer.rindex("\nT") :] or answer.endswith("T")
@@ -77,6 +81,7 @@ def test_two_motions_for_one_module_are_done_one_after_the_other(workspace, betw
     assert places == sorted(places)
 
 
+@pytest.mark.soak
 def test_two_modules_work_at_the_same_time(workspace, between_lectures, backend):
     modules_package(workspace, between_lectures, "process-modules-3-parts.lisp")
     transcript = workspace.repl(*LOAD, *NODE, *session_of(workspace, "par-two-modules.lisp"), "(value *turtle-pose*)", backend=backend)
@@ -88,6 +93,7 @@ def test_two_modules_work_at_the_same_time(workspace, between_lectures, backend)
     assert abs(float(pose[2][:-2]) - 9) < 0.2 and abs(float(pose[4][:-2]) - 9) < 0.2
 
 
+@pytest.mark.soak
 def test_the_opening_example_runs_once_a_module_is_there(workspace, between_lectures, backend):
     modules_package(workspace, between_lectures, "process-modules-2.lisp")
     example = " ".join(session_of(workspace, "with-designators.lisp"))

@@ -13,6 +13,7 @@ ROOT = Path(__file__).parents[2]
 PLANS = "tutorials/cram_my_beginner_tutorial/src/simple-plans.hy"
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("backend", ["threads", "greenlet"])
 def test_the_tutorial_shows_what_a_plan_is_doing(backend, tmp_path):
     environment = {key: value for key, value in os.environ.items() if key != "ROS_PACKAGE_PATH"}

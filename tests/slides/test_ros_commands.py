@@ -76,6 +76,7 @@ def test_without_a_repl_the_command_says_what_to_start(private):
     )
 
 
+@pytest.mark.soak
 def test_the_prompt_takes_ros_commands_too(workspace):
     commands = "rosservice call /clear", "rosservice type /spawn", "rosnode list"
     transcript = workspace.repl('(roslisp:start-ros-node "a")', *commands, "(+ 1 2)")

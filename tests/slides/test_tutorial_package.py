@@ -31,6 +31,7 @@ def lectures(*options):
     return done.stdout
 
 
+@pytest.mark.soak
 def test_both_lectures_give_the_same_bytes_twice_and_on_both_back_ends(tmp_path, backend):
     paper = tmp_path / "turtle.png"
     first = lectures("--png", str(paper), "--backend", backend)
@@ -41,6 +42,7 @@ def test_both_lectures_give_the_same_bytes_twice_and_on_both_back_ends(tmp_path,
     assert DRIVEN in stable(first)
 
 
+@pytest.mark.soak
 @pytest.mark.skipif(not RUNS_HY_FILES, reason=WHY_NO_HY_FILES)
 def test_a_hy_file_runs_with_hy_itself(tmp_path):
     script = tmp_path / "drive.hy"
@@ -90,6 +92,7 @@ def test_the_turtle_drives(capsys):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.soak
 def test_a_lisp_file_is_imported_like_a_python_file(tmp_path):
     (tmp_path / "my-greetings.lisp").write_text("""\
 (defpackage :my-greetings (:use :cl))

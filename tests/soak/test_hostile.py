@@ -87,6 +87,7 @@ def test_branches_within_branches_without_end_are_an_error(backend):
     assert after["values"] == ["3"]
 
 
+@pytest.mark.soak
 def test_a_thousand_branches(backend):
     waits = " ".join(["(sleep 1)"] * 999)
     first, second = evaluate([f"(top-level (par 7 {waits}))", "(+ 1 2)"], "--backend", backend)
@@ -115,6 +116,7 @@ HUGE = {
 }
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("form", HUGE.values(), ids=HUGE)
 def test_huge_forms_and_values_are_an_error_at_most(form):
     answer, after = evaluate([form, "(+ 1 2)"])

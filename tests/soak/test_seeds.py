@@ -94,12 +94,14 @@ def test_the_turtle_ends_where_it_ends_without_a_seed(seed, seeded, unseeded):
         assert pose == pytest.approx(other, abs=TOLERANCE)
 
 
+@pytest.mark.soak
 def test_the_same_seed_gives_the_same_bytes_on_both_back_ends(seeded):
     pytest.importorskip("greenlet")
     seeds = SEEDS if SOAK else SEEDS[:3]
     assert typed([(seed, "greenlet") for seed in seeds]) == [seeded[seed] for seed in seeds]
 
 
+@pytest.mark.soak
 def test_the_same_seed_gives_the_same_bytes_twice(seeded):
     seeds = SEEDS if SOAK else SEEDS[3:5]
     assert typed([(seed, "threads") for seed in seeds]) == [seeded[seed] for seed in seeds]
@@ -110,6 +112,7 @@ def test_seeds_do_differ(seeded):
     assert len(set(seeded.values())) == len(seeded)
 
 
+@pytest.mark.soak
 def test_both_lectures_take_less_than_two_seconds(unseeded, record_property):
     """The median of five runs, process and all. The bound here is generous, for busy machines; the figure is in reliability.md."""
     durations = []

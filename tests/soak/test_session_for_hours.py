@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from systems import SOAK, takes_long
+from systems import SOAK
 
 MINUTES = 60.0 if SOAK else 0.7
 MORE_KILOBYTES = 2_000  # after the first five minutes of an hour
@@ -21,7 +21,7 @@ MORE_IN_A_MINUTE = 12_000  # after the first third of it
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="what a process holds is told by Linux")
-@takes_long
+@pytest.mark.soak
 def test_a_session_does_not_grow():
     for module in ("uvicorn", "websockets", "mcap"):
         pytest.importorskip(module)

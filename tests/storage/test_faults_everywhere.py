@@ -112,6 +112,7 @@ def text_of(problem):
     return problem.report() if isinstance(problem, Condition) else str(problem)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("kind", WRITERS)
 @pytest.mark.parametrize("before", [OLD, None], ids=["replaced", "new"])
 def test_the_old_file_is_there_or_the_new_one(session, tmp_path, monkeypatch, kind, before):
@@ -186,6 +187,7 @@ def test_kept_code_that_cannot_be_written_is_no_loss_and_no_rubbish(session, tmp
         assert session.evaluate_text("cl-user::*loaded*") == [disk.fails]
 
 
+@pytest.mark.soak
 def test_shims_are_all_installed_or_none(session, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(shutil, "which", lambda tool: None)
     target = tmp_path / "bin" / "ros"
@@ -238,6 +240,7 @@ def test_a_page_that_cannot_be_written_is_not_shown(tmp_path, monkeypatch):
         assert len(list(tmp_path.iterdir())) == len(shown)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("before", [True, False], ids=["replaced", "new"])
 def test_a_recording_costs_its_rest_and_never_an_older_one(session, tmp_path, monkeypatch, capsys, before):
     pytest.importorskip("mcap")

@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from systems import SOAK
 from cramhy_runtime.languages.kept_hy import Loader as HyLoader
 
 from cramhy_runtime.languages import kept_hy
@@ -112,6 +113,7 @@ CHANGES = {
 }
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("name", CHANGES)
 def test_what_has_changed_is_seen_and_what_has_not_is_not_compiled_again(write, compiled, tmp_path, name):
     files, changed = CHANGES[name]
@@ -139,6 +141,7 @@ REASONS = {
 }
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("asks", REASONS)
 def test_what_cannot_be_compared_is_compiled_each_time_and_the_place_is_told(write, compiled, tmp_path, monkeypatch, asks):
     monkeypatch.setenv("KC_TEST", "0")
@@ -157,6 +160,7 @@ def test_what_cannot_be_compared_is_compiled_each_time_and_the_place_is_told(wri
     assert told == [f"{tmp_path / 'kc_user.hy'} is compiled anew each time: {REASONS[asks]} (line 6, column 13)"] * 2
 
 
+@pytest.mark.soak
 def test_a_module_that_has_changed_since_it_was_loaded_is_no_base_for_kept_code(write, tmp_path, monkeypatch):
     write("kc_helper.py", "ANSWER = 11\n")
     write("kc_user.hy", "(defmacro m [] (import kc_helper) kc_helper.ANSWER)\n(setv found (m))\n")
@@ -179,7 +183,7 @@ def kept(write, compiled, tmp_path):
 def test_every_byte_that_changes_is_noticed(kept, compiled, tmp_path, monkeypatch):
     whole, given, loads = kept.read_bytes(), [], marshal.loads
     monkeypatch.setattr(marshal, "loads", lambda data: (given.append(len(data)), loads(data))[1])
-    for number in range(0, len(whole), 97):
+    for number in range(0, len(whole), 97 if SOAK else 997):
         spoiled = bytearray(whole)
         spoiled[number] ^= 0x20
         kept.write_bytes(spoiled)
@@ -193,6 +197,7 @@ def test_every_byte_that_changes_is_noticed(kept, compiled, tmp_path, monkeypatc
     assert kept.read_bytes()[:20] == whole[:20], "it is made anew"
 
 
+@pytest.mark.soak
 def test_code_of_another_cramhy_or_another_hy_is_made_anew(kept, compiled, tmp_path, monkeypatch):
     monkeypatch.setattr(kept_hy, "stamp", lambda: "of another one")
     assert found(tmp_path) == 11 and "kc_user.hy" in compiled
@@ -202,6 +207,7 @@ def test_code_of_another_cramhy_or_another_hy_is_made_anew(kept, compiled, tmp_p
     assert found(tmp_path) == 11 and "kc_user.hy" in compiled
 
 
+@pytest.mark.soak
 def test_where_the_folder_cannot_be_written_the_cache_is_used(write, compiled, tmp_path, monkeypatch):
     access = os.access
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
@@ -214,6 +220,7 @@ def test_where_the_folder_cannot_be_written_the_cache_is_used(write, compiled, t
     assert place(tmp_path).parent == tmp_path / "cache" / "cramhy"
 
 
+@pytest.mark.soak
 def test_where_nothing_can_be_written_it_is_compiled_each_time(write, compiled, tmp_path, monkeypatch):
     def full(*words, **options):
         raise OSError(28, "No space left on device")

@@ -172,6 +172,7 @@ def test_a_lisp_program_that_is_killed_leaves_the_old_file_and_the_next_start_ti
 RECORDS = '(roslisp:start-ros-node "n") (turtlesim:press :up) (sleep 20) (format t "READY~%") (finish-output) (read-line)'
 
 
+@pytest.mark.soak
 def test_a_killed_recording_is_recovered_and_told_of_by_the_next_start(tmp_path):
     pytest.importorskip("mcap")
     from cramhy_runtime import chronicle

@@ -139,6 +139,7 @@ def without_kept_code(*paths, before=""):
     return found(*paths, before=before)
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("name", ["nav_msgs-msg:data", "geometry_msgs-msg:x", "alexandria:flatten", "turtlesim-srv:teleportabsolute"])
 def test_a_package_that_is_made_when_it_is_named_makes_no_difference(files, name):
     """A reader makes it, or loads it; kept code is not read, and is used all the same."""
@@ -147,6 +148,7 @@ def test_a_package_that_is_made_when_it_is_named_makes_no_difference(files, name
     assert found(use) == found(use) and loader.why_not_kept(use) is None
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("case", CASES)
 def test_what_has_changed_in_another_file_is_seen(files, case):
     definitions, use = files
@@ -163,6 +165,7 @@ def test_what_has_changed_in_another_file_is_seen(files, case):
     assert found(*files) == wanted and loader.why_not_kept(use) is None
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("case", CASES)
 def test_what_has_changed_at_the_prompt_is_seen(files, case):
     use = files[1]

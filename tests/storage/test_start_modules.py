@@ -118,6 +118,7 @@ def content(change):
     return spoil
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     "spoil",
     [
@@ -138,6 +139,7 @@ def test_a_file_that_is_damaged_or_of_another_python_is_made_anew(package, spoil
     assert kept().read_bytes() == good and from_the_file(started())
 
 
+@pytest.mark.soak
 def test_no_flipped_bit_is_run(package):
     """Wherever it is: the start is as ever, and the file is as it was after it."""
     started()
@@ -167,6 +169,7 @@ def test_python_that_shall_write_no_bytecode_writes_none(package, monkeypatch):
     assert not kept().exists()
 
 
+@pytest.mark.soak
 def test_the_command_line_keeps_what_it_starts_with(tmp_path):
     for folder in ("src/cramhy_runtime", "hy_src/cramhy"):
         shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("*.cramhy", "tutorials"))

@@ -10,7 +10,6 @@ import sys
 from pathlib import Path
 
 import pytest
-from systems import takes_long
 from world_cases import CASES
 
 from cramhy_runtime import kernel
@@ -77,6 +76,7 @@ def unused(folder):
     return loader.why_not_kept(folder / ("b.lisp" if (folder / "b.lisp").exists() else "main.lisp"))
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("name", IN_PROCESS)
 def test_the_second_run_answers_as_a_fresh_compilation(said, tmp_path, name):
     case = CASES[name]
@@ -100,7 +100,7 @@ def test_the_second_run_answers_as_a_fresh_compilation(said, tmp_path, name):
         assert name in NOT_KEPT or first != fresh, "the case shows nothing"
 
 
-@takes_long
+@pytest.mark.soak
 @pytest.mark.parametrize("name", IN_PROCESSES)
 def test_the_second_process_answers_as_a_fresh_compilation(tmp_path, name):
     case = CASES[name]
@@ -139,6 +139,7 @@ REASONS = {
 }
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("asks", REASONS)
 @pytest.mark.parametrize("way", ["(m)", "#.(ask)"], ids=["macro", "reader"])
 def test_what_cannot_be_compared_is_compiled_each_time_and_load_says_why(said, tmp_path, capsys, asks, way):

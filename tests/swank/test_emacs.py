@@ -152,6 +152,7 @@ def told(tmp_path_factory, shared):
     return Told(folder, {"lecture 34": (first, LINES_34), "lecture 38": (second, lines_38)}, done.stdout + done.stderr)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("lecture", ["lecture 34", "lecture 38"])
 def test_every_line_of_the_lectures_answers_as_at_the_prompt(told, lecture):
     workspace, lines = told.lectures[lecture]
@@ -271,6 +272,7 @@ EXACTLY = {
 }
 
 
+@pytest.mark.soak(all_but=24)
 @pytest.mark.parametrize("name", EXACTLY)
 def test_emacs_gets(told, name):
     assert told[name] == EXACTLY[name]

@@ -181,6 +181,7 @@ def test_slys_names_of_the_same_calls(emacs):
     assert emacs.call("(slynk:inspect-object 1 t)")[1] == "1"
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("way", ["repl", "eval", "compile", "load", "compile and load"])
 def test_a_check_of_the_course_knows_what_emacs_has_sent(emacs, tmp_path, way):
     file = tmp_path / "answer.lisp"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import random
 
 import pytest
-from systems import takes_long
 
 from cramhy_runtime import kernel
 from cramhy_runtime.swank import rpcs, wire
@@ -47,7 +46,7 @@ def random_frame(lot, number):
     return bytes(lot.randrange(256) for _ in range(lot.randrange(60)))
 
 
-@pytest.mark.parametrize("seed", [*range(3), *(pytest.param(seed, marks=takes_long) for seed in range(3, 53))])
+@pytest.mark.parametrize("seed", [*range(3), *(pytest.param(seed, marks=pytest.mark.soak) for seed in range(3, 53))])
 def test_random_frames(emacs, seed, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     lot = random.Random(seed)

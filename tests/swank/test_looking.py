@@ -127,6 +127,7 @@ def where(location):
         return path.rpartition("/")[2], file.read()[position - 1 :].partition("\n")[0]
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("name", "found"),
     [
@@ -154,6 +155,7 @@ def test_definitions_of_methods(emacs, files):
     assert any(":BEFORE" in label for label, _ in told)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("name", "file", "text"),
     [
@@ -181,6 +183,7 @@ def test_definitions_of_what_was_typed_and_of_nothing(emacs):
     assert emacs.call("(swank:find-definition-for-thing '(:inspector 9))") == [":error", "It is not known where this is defined."]
 
 
+@pytest.mark.soak
 def test_uses(emacs, files):
     told = emacs.call('(swank:xref \':calls "far-away-here")')
     assert [(label, where(location)[0]) for label, location in told] == [

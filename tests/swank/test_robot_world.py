@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-from systems import takes_long
 
 from .test_images import decoded, images
 from .test_looking import content
@@ -41,7 +40,7 @@ def test_a_world_is_inspected(world):
     assert "The object is a world" in content(world.call(f"(swank:inspector-call-nth-action {actions['[go to its world]']})"))[1]
 
 
-@takes_long
+@pytest.mark.soak
 def test_furniture_tells_its_joints(world):
     world.repl(
         "(btr:add-object btr:*current-bullet-world* :urdf :kitchen '((0 0 0) (0 0 0 1)) :urdf (robot-world:description-text :kitchen))"

@@ -240,6 +240,7 @@ class Process:
         return self.process.returncode, out, err
 
 
+@pytest.mark.soak
 @posix
 @pytest.mark.parametrize("ending", ["quit-lisp", "SIGTERM", "SIGINT"])
 def test_a_session_for_emacs_alone(tmp_path, ending):
@@ -265,6 +266,7 @@ def test_a_session_for_emacs_alone(tmp_path, ending):
     assert (status, out, err) == (130 if ending == "SIGINT" else 143, "", "")
 
 
+@pytest.mark.soak
 def test_emacs_beside_a_prompt_in_virtual_time(tmp_path):
     process = Process(tmp_path, "repl", "--swank", "--time", "virtual", "--no-turtlesim")
     client = PlainClient(process.port(), said(tmp_path))
@@ -275,6 +277,7 @@ def test_emacs_beside_a_prompt_in_virtual_time(tmp_path):
     assert status == 0 and "debugger invoked on a TYPE-ERROR" in out and out.endswith("CL-USER> 8\nCL-USER> ") and err == ""
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("words", "why"),
     [

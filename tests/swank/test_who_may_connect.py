@@ -170,6 +170,7 @@ def test_a_secret_that_is_spoilt_while_the_session_runs_lets_nobody_in(serve, fi
 # ---------------------------------------------------------------------------------------------------------------- the handshake
 
 
+@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize(
     "said",
     [
@@ -249,6 +250,7 @@ for number in range(int(sys.argv[3])):
 """
 
 
+@pytest.mark.soak
 @linux
 @root
 def test_another_user_of_the_machine_runs_nothing(serve, session, home):

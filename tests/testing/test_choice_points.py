@@ -33,6 +33,7 @@ def plan(kind="synchronous", requests=TWO):
     return text if kind == "asynchronous" else text.replace("(cpm:monitor-process-module 'asked)", "")
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("backend", ["threads", "greenlet"])
 @pytest.mark.parametrize("kind", MODULES)
 def test_the_order_of_two_requests_is_explored(kind, backend):

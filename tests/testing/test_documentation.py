@@ -6,11 +6,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from cramhy_runtime import testing
 
 PAGE = (Path(__file__).parents[2] / "docs" / "testing.md").read_text()
 
 
+@pytest.mark.soak
 def test_the_example_runs_and_shows_what_the_page_shows(tmp_path):
     (example,) = re.findall(r"```python\n(.*?)```", PAGE, re.S)
     (shown,) = re.findall(r"```\n(The plan depends.*?)```", PAGE, re.S)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import subprocess
 import sys
 
-TESTS = """
 import pytest
+
+TESTS = """
 from cramhy_runtime.designators import DesignatorError, Motion, motion_grounding, reference
 from cramhy_runtime.prolog import P, V, fact_group, findall, kw
 
@@ -51,6 +52,7 @@ with fact_group("wall") as wall:
 """
 
 
+@pytest.mark.soak
 def test_facts_of_a_test_go_with_it_and_those_of_a_module_stay(tmp_path):
     (tmp_path / "test_facts.py").write_text(TESTS)
     (tmp_path / "rules_of_ours.py").write_text(RULES)

@@ -160,6 +160,7 @@ def test_methods_for_what_a_program_has(lisp):
     assert lisp("(frame-id (ensure-pose-stamped (make-instance 'cup)))") == '"table"'
 
 
+@pytest.mark.soak
 def test_the_packages_are_made_when_somebody_names_them():
     text = (
         "import sys; from cramhy_runtime.session import boot; boot(); assert 'cramhy_runtime.tf' not in sys.modules;"

@@ -1,6 +1,7 @@
 """Waiting for transforms: in the time of the plan, ended like every wait, on both back ends."""
 
 import pytest
+from systems import ONE_BACKEND
 
 from cramhy_runtime import kernel
 from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER
@@ -8,7 +9,7 @@ from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.repl.session import Session
 
 
-@pytest.fixture(params=["threads", "greenlet"])
+@pytest.fixture(params=ONE_BACKEND)
 def session(request):
     made = Session(time="virtual", turtlesim=False, backend=request.param)
     made.package = "CRAM-USER"

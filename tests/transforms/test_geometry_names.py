@@ -58,6 +58,7 @@ TYPES = "point gen-quaternion quaternion-coefficient"
 CL_TRANSFORMS = ensure_package("CL-TRANSFORMS")
 
 
+@pytest.mark.soak(all_but=17)
 @pytest.mark.parametrize("lambda_list, names", FUNCTIONS.items())
 def test_the_arguments_of_each_function(lambda_list, names):
     for name in names.upper().split():

@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
+from systems import ONE_BACKEND
 from lisp_text import LispText
 
 from cramhy_runtime import kernel
@@ -161,7 +162,7 @@ PRELUDE = """
 """
 
 
-@pytest.fixture(params=["threads", "greenlet"])
+@pytest.fixture(params=ONE_BACKEND)
 def typed(request):
     """A `Typing` in a package that uses CPL and ROSLISP, with a node and the turtle; ``/turtle1`` is watched."""
     from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER, delete_package, find_package

@@ -32,6 +32,7 @@ def painted(width, begin, end):
 
 
 class TestLines:
+    @pytest.mark.soak(all_but=1)
     @pytest.mark.parametrize("width, rows", [(0, {0}), (1, {0}), (2, {-1, 0}), (3, {-1, 0, 1}), (5, {-2, -1, 0, 1, 2})])
     def test_a_line_has_its_width_around_it_and_square_caps(self, width, rows):
         pixels = painted(width, (100, 200), (110, 200))
@@ -46,6 +47,7 @@ class TestLines:
     def test_a_line_is_the_same_in_both_directions(self):
         assert painted(3, (100, 100), (173, 141)) == painted(3, (173, 141), (100, 100))
 
+    @pytest.mark.soak
     def test_a_slanting_line_has_no_holes(self):
         for end in ((171, 113), (113, 171), (29, 171), (131, 29)):
             pixels = painted(1, (100, 100), end)
@@ -61,6 +63,7 @@ class TestLines:
         assert painted(3, (-1e9, -1e9), (1e9, 1e9)) >= {(number, number) for number in range(500)}
         assert painted(3, (-50, -50), (-10, 600)) == set()
 
+    @pytest.mark.soak(all_but=1)
     @pytest.mark.parametrize("place", [math.nan, math.inf, -math.inf, 1e308, -1e308])
     def test_a_line_to_nowhere_paints_nothing_and_breaks_nothing(self, place):
         painted(3, (place, 100), (100, 100))
@@ -211,6 +214,7 @@ def test_odd_teleports_leave_a_simulator_that_goes_on(typed, value):
 ODD = (0.0, -0.0, 1.0, -2.5, 3.14159265, 1e-40, 40.0, 1e6, -1e30, 3e38, 1e300, math.inf, -math.inf, math.nan)
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("seed", range(12))
 def test_whatever_it_is_told_the_simulator_goes_on(turtle, seed, capsys):
     chance = Random(seed)

@@ -13,6 +13,7 @@ SPEED = """(py:method (py:call "cramhy_runtime.kernel.pace") "set_speed" {})""" 
 PLACE = "(with-fields (x y theta) (value *turtle-pose*) (list x y theta))"
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize("motions", [1, 4, 9], ids=["on the way", "at the walls", "at the door"])
 def test_a_house_is_left_unfinished(backend, motions):

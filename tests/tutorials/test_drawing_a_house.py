@@ -41,6 +41,7 @@ def assert_house(strokes):
         assert distance_from(outline, astray) < NEAR, (name, astray)
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_house_stands_where_it_should_wherever_the_turtle_comes_from(seed, capsys):
     start = random.Random(seed)
@@ -55,6 +56,7 @@ def test_the_house_stands_where_it_should_wherever_the_turtle_comes_from(seed, c
     assert "WARN" not in told.out and told.err == ""
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_between_the_parts_the_pen_is_up(backend):
     """The turtle goes from the middle to the first corner and from part to part, and no line leads there."""
@@ -67,6 +69,7 @@ def test_between_the_parts_the_pen_is_up(backend):
         assert gaps == pytest.approx([3, math.dist((6, 2), (3.5, 4)), math.dist((3.5, 4), (3, 6.5))], abs=0.3)
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_a_house_that_is_interrupted_leaves_a_turtle_that_stands_and_the_next_one_is_drawn(backend):
     with course(backend) as turtle:
@@ -85,6 +88,7 @@ def test_a_house_that_is_interrupted_leaves_a_turtle_that_stands_and_the_next_on
         assert turtle.stands_still() and turtle.left() == []
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_shapes_are_drawn_from_where_the_turtle_is(seed):
     with seeded(seed) as turtle:

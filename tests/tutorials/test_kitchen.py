@@ -16,7 +16,6 @@ from cramhy_runtime.repl.session import Session
 from .course import FOLDER, environment
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from systems import takes_long  # noqa: E402
 
 pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
 
@@ -53,13 +52,14 @@ def test_the_packages_own_tests_pass():
     assert done.returncode == 0 and "6 passed" in done.stdout, done.stdout + done.stderr
 
 
-@takes_long
+@pytest.mark.soak
 def test_the_tests_of_the_twin_pass(tmp_path):
     shutil.copytree(KITCHEN / "kitchen_in_hy", tmp_path / "kitchen_in_hy", ignore=shutil.ignore_patterns("__pycache__"))
     done = run(tmp_path, "pytest", "-p", "no:cacheprovider", "-p", "cramhy_runtime.pytest_plugin", "kitchen_in_hy")
     assert done.returncode == 0 and "6 passed" in done.stdout, done.stdout + done.stderr
 
 
+@pytest.mark.soak
 def test_a_plan_that_was_stopped_goes_on_where_it_was(ask):
     """The spoon of the second guest alone is missing, and another one is in the hand."""
     ask("(lay-out-dishes)")
@@ -80,7 +80,7 @@ def test_a_plan_that_was_stopped_goes_on_where_it_was(ask):
     assert ask("(things)").split() == SET.split() and ask("(held)") == "NIL"
 
 
-@takes_long
+@pytest.mark.soak
 @pytest.mark.parametrize("ask", [None, *range(5)], indirect=True)
 def test_the_table_is_the_same_with_every_seed(ask):
     ask("(lay-out-dishes)")
@@ -88,7 +88,7 @@ def test_the_table_is_the_same_with_every_seed(ask):
     assert ask("(things)").split() == SET.split()
 
 
-@takes_long
+@pytest.mark.soak
 def test_make_kitchen_writes_a_picture_and_a_movie_and_says_where(tmp_path):
     done = subprocess.run(
         [sys.executable, str(KITCHEN / "make_kitchen.py")], cwd=tmp_path, env=environment(), capture_output=True, text=True, timeout=300

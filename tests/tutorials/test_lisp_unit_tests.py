@@ -37,18 +37,21 @@ def workspace(tmp_path):
     return tmp_path
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("what", [".", SYSTEM], ids=["found in a folder", "by the system"])
 def test_pytest_runs_them(workspace, what):
     done = python(workspace, "pytest", "-v", "-p", "no:cacheprovider", "-p", "cramhy_runtime.pytest_plugin", what)
     assert done.returncode == 0 and "3 passed" in done.stdout, done.stdout + done.stderr
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("backend", ["threads", "greenlet"])
 def test_cramhy_runs_them(workspace, backend):
     done = python(workspace, "cramhy_runtime.cli", "test", "--backend", backend, SYSTEM)
     assert done.returncode == 0 and list(results(done.stdout)) == NAMES
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     "wrong, failures",
     [

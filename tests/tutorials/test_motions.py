@@ -22,6 +22,7 @@ def turtle(seed):
         assert course.left() == []
 
 
+@pytest.mark.soak(all_but=1)
 def test_simple_plans_reach_their_goals(turtle, seed):
     luck = random.Random(seed)
     for _ in range(3):
@@ -36,12 +37,14 @@ def test_simple_plans_reach_their_goals(turtle, seed):
     assert (here.x, here.y, here.z) == (*turtle.place, 0)
 
 
+@pytest.mark.soak(all_but=1)
 def test_a_plan_that_is_ended_stops_the_turtle_on_the_way(turtle):
     turtle("(top-level (pursue (move-to (make-3d-vector 9 9 0)) (sleep 1)))")
     assert 1 < math.dist(turtle.place, (5.544, 5.544)) < 2
     turtle("(top-level (pursue (rotate-to (make-3d-vector 1 1 0)) (sleep 0.1)))")
 
 
+@pytest.mark.soak(all_but=1)
 def test_drive_is_one_command(turtle):
     assert turtle("(drive 3 2)") == 2  # subscribers: the turtle, and the witness of this test
     turtle("(sleep 1.1)")
@@ -49,6 +52,7 @@ def test_drive_is_one_command(turtle):
     turtle("(send-vel-cmd 0 0)")
 
 
+@pytest.mark.soak(all_but=1)
 def test_move_simple(turtle):
     turtle("(move-simple 2 7)")
     assert math.dist(turtle.place, (2, 7)) < NEAR
@@ -56,6 +60,7 @@ def test_move_simple(turtle):
     assert math.dist(turtle.place, (7, 2)) < NEAR
 
 
+@pytest.mark.soak(all_but=1)
 def test_move_parallel_does_one_thing_after_the_other(turtle, capsys):
     """Which of the two requests is handed in first is a choice of the seed; on the slides it is the goal."""
     turtle("(move-parallel)")
@@ -72,6 +77,7 @@ def test_move_parallel_does_one_thing_after_the_other(turtle, capsys):
         assert waited <= 1 and commands[0] == (3, 8) and commands[-1] == (0, 0)
 
 
+@pytest.mark.soak(all_but=1)
 def test_drive_n_draw_does_two_things_at_once(turtle, seed):
     turtle("(drive-n-draw 9 9)")
     assert math.dist(turtle.place, (9, 9)) < NEAR
@@ -81,6 +87,7 @@ def test_drive_n_draw_does_two_things_at_once(turtle, seed):
     assert len({stroke[:2] for stroke in turtle.strokes}) == len(turtle.strokes)
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize(
     "motion",
     [
@@ -100,6 +107,7 @@ def test_a_motion_finds_its_module(turtle, motion, capsys):
     turtle("(send-vel-cmd 0 0)")
 
 
+@pytest.mark.soak(all_but=1)
 def test_the_paper_is_wiped(turtle):
     turtle("(move-simple 8 8)")
     assert set(turtle.simulator.canvas.rgb()) != {69, 86, 255}

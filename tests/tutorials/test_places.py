@@ -30,6 +30,7 @@ def in_third(column, row, x, y, margin=0.0):
     )
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_turtle_ends_in_the_third_that_it_was_sent_to(seed, capsys):
     with seeded(seed) as turtle:
@@ -42,6 +43,7 @@ def test_the_turtle_ends_in_the_third_that_it_was_sent_to(seed, capsys):
         assert turtle.stands_still() and turtle.left() == []
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_place_has_at_most_five_solutions_all_of_them_in_its_third(seed):
     with seeded(seed) as turtle:
@@ -63,6 +65,7 @@ def test_the_generator_gives_five_points_walls_or_not(turtle):
     assert len(points) == 5 and all(0 <= point.x < THIRD and 0 <= point.y < THIRD for point in points)
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "x, y, verdict", [(0.5, 10.5, "ACCEPT"), (5, 5, "ACCEPT"), (0.4999, 5, None), (5, 10.5001, None), (10.6, 5, None), (5, -1, None)]
 )
@@ -72,6 +75,7 @@ def test_points_near_a_wall_are_not_accepted(turtle, x, y, verdict):
     assert (answer and getattr(answer, "name", answer).upper()) == verdict  # a string in Hy
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "location, solution",
     [
@@ -89,6 +93,7 @@ def test_a_place_of_another_kind_has_no_points(turtle):
     assert turtle("(navigation-goal-generator (desig:a location (on table)))") is None
 
 
+@pytest.mark.soak(all_but=2)
 def test_a_misspelled_third_is_told(turtle, language):
     told = text_of_error(turtle, "(goto-location :leftt :top)")
     texts = {
@@ -99,6 +104,7 @@ def test_a_misspelled_third_is_told(turtle, language):
     assert turtle.left() == []
 
 
+@pytest.mark.soak(all_but=1)
 def test_points_are_generated_four_times_before_a_place_is_given_up(turtle, language, capsys):
     turtle("(setf *min-bound* 20)")
     try:

@@ -43,6 +43,7 @@ def in_both(act, backend="threads"):
     return found
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("backend", course.BACKENDS)
 def test_both_draw_the_same_paper_by_as_many_commands(backend):
     """The literal 0.1 is a single-float in Lisp and a double-float in Hy, so the turtles are less than a millimetre apart."""
@@ -82,6 +83,7 @@ def error_of(form):
     return act
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "form",
     [
@@ -101,6 +103,7 @@ def test_the_same_mistakes_have_the_same_texts(form):
     assert in_hy == in_lisp
 
 
+@pytest.mark.soak
 def test_lisp_and_python_call_functions_of_hy(tmp_path):
     program = """
 import hy
@@ -164,6 +167,7 @@ def test_a_picture_of_no_kind_is_refused_before_anything_is_drawn(copied):
     assert done.returncode == 1 and "What kind of picture is turtle.txt to be?" in done.stderr and "TurtleSim" not in done.stdout
 
 
+@pytest.mark.soak
 def test_pytest_runs_the_tests_of_the_package(copied):
     done = hy(copied, "pytest", "-v", "-p", "no:cacheprovider", "-p", "cramhy_runtime.pytest_plugin", ".")
     assert done.returncode == 0 and "3 passed" in done.stdout, done.stdout + done.stderr

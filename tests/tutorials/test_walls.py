@@ -40,6 +40,7 @@ def assert_recovered(turtle, x, y, told):
     assert all(0.4 < min(place) and max(place) < 10.6 for place in turtle.poses)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_target_behind_a_wall_is_reached_as_nearly_as_may_be(seed, capsys):
     luck = random.Random(seed)
@@ -53,6 +54,7 @@ def test_a_target_behind_a_wall_is_reached_as_nearly_as_may_be(seed, capsys):
         assert turtle.stands_still() and turtle.left() == []
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("x, y", [(20, 20), (-5, -5), (-5, 20), (20, -5)])
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_a_target_behind_a_corner(backend, x, y, capsys):
@@ -63,6 +65,7 @@ def test_a_target_behind_a_corner(backend, x, y, capsys):
         assert turtle.stands_still() and turtle.left() == []
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_target_inside_needs_no_recovery(seed, capsys):
     luck = random.Random(seed)
@@ -75,6 +78,7 @@ def test_a_target_inside_needs_no_recovery(seed, capsys):
         assert turtle.stands_still() and turtle.left() == []
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_rectangle_that_is_too_large_is_drawn_as_far_as_it_goes(seed, capsys):
     """Each corner outside costs a failure of its own, and the plan goes on with the next corner."""
@@ -87,6 +91,7 @@ def test_a_rectangle_that_is_too_large_is_drawn_as_far_as_it_goes(seed, capsys):
         assert turtle.stands_still() and turtle.left() == []
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_without_a_pen_the_way_back_is_red_all_the_same(backend, capsys):
     with course(backend) as turtle:
@@ -96,6 +101,7 @@ def test_without_a_pen_the_way_back_is_red_all_the_same(backend, capsys):
         assert turtle.left() == []
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_recovering_turns_to_the_middle_and_then_to_the_goal(backend):
     with course(backend) as turtle:

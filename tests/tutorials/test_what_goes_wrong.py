@@ -44,6 +44,7 @@ def without_log(answer):
     return "\n".join(line for line in told if not line.startswith("  while "))
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_driving_before_the_node_is_there(backend, tmp_path):
     drive, move, wipe, pen = session(
@@ -111,6 +112,7 @@ debugger invoked on a SB-PCL::NO-APPLICABLE-METHOD-ERROR:
     )
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_after_a_mistake_the_session_goes_on(backend, tmp_path):
     """Law 8: bad input costs nothing."""

@@ -39,11 +39,13 @@ def checked(pages):
     return Checked([*PROGRAMS, *TUTORIALS, *MISTAKES, *pages.values()])
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("program", [*PROGRAMS, *TUTORIALS], ids=lambda path: path.stem)
 def test_a_program_of_a_user_passes(checked, program):
     assert checked.about(program) == []
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("page", [page for page in PAGES if page.name not in WITHOUT_TYPES], ids=lambda page: page.stem)
 def test_what_stands_on_a_page_passes(checked, pages, page):
     lines = page.read_text(encoding="utf-8").splitlines()
@@ -88,6 +90,7 @@ def test_every_public_name_has_a_type(checked, room):
     assert [name for name, lack in checked.names_of(room).items() if lack == "untyped"] == []
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("room", ROOMS)
 def test_no_figure_rises(checked, room):
     """The ratchet. What is counted: ``python tests/type_hints/checking.py --list ROOM``; without --list lower figures are written down."""
@@ -102,6 +105,7 @@ def test_what_has_no_type_is_counted(checked):
     assert lacks.count(None) > 1000 and lacks.count("any") and lacks.count("untyped")
 
 
+@pytest.mark.soak
 def test_plans_load_no_typing():
     code = "import sys, cramhy_runtime.cpl; print(sorted({'typing', 'typing_extensions'} & set(sys.modules)))"
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "src")}

@@ -1,6 +1,7 @@
 """Each test has its own virtual time, on both back ends; Lisp text is evaluated in a session."""
 
 import pytest
+from systems import ONE_BACKEND
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
@@ -12,7 +13,7 @@ from cramhy_runtime.repl.session import Session
 boot()
 
 
-@pytest.fixture(params=["threads", "greenlet"], autouse=True)
+@pytest.fixture(params=ONE_BACKEND, autouse=True)
 def fresh_kernel(request):
     yield kernel.start(clock="virtual", backend=request.param, time_limit=3600)
     kernel.stop()

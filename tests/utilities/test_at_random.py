@@ -3,6 +3,7 @@
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from systems import SOAK
 
 from cramhy_runtime.lisp_core.data import Cons, Symbol, list_from, python_list
 from cramhy_runtime.lisp_core.equality import equal
@@ -10,7 +11,7 @@ from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.utilities import lazy_lists as ll
 from cramhy_runtime.utilities import patterns
 
-few = settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+few = settings(max_examples=150 if SOAK else 50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 X, Y, Z = (sym(f"CRAM-USER::?{name}") for name in "XYZ")
 
 atoms = st.one_of(st.integers(-3, 3), st.sampled_from([None, sym("CRAM-USER::A"), sym("CRAM-USER::B"), "s", "S"]))

@@ -65,12 +65,14 @@ def filled(pattern, values):
     return values.get(pattern, pattern) if isinstance(pattern, Symbol) else pattern
 
 
+@pytest.mark.soak
 @few
 @given(st.one_of(patterns_, wild_patterns), st.one_of(data, wild_data))
 def test_a_match_is_that_of_going_through_the_pattern(pattern, thing):
     assert same(often(pattern, thing), by_parts(pattern, thing))
 
 
+@pytest.mark.soak
 @few
 @given(patterns_, data, data, data)
 def test_what_fits_matches(pattern, x, y, other):
@@ -78,6 +80,7 @@ def test_what_fits_matches(pattern, x, y, other):
     assert same(often(pattern, thing), by_parts(pattern, thing))
 
 
+@pytest.mark.soak
 @few
 @given(patterns_, st.data(), data, data)
 def test_a_pattern_that_changes_matches_as_it_is_now(pattern, choice, x, other):

@@ -9,6 +9,7 @@ from cramhy_runtime.lisp_core.conditions import Condition
 FROM = "(defun from (n) (cut:lazy-list ((i n)) (cut:cont i (+ i 1))))"
 
 
+@pytest.mark.soak(all_but=15)
 @pytest.mark.parametrize(
     ("form", "values"),
     [
@@ -47,6 +48,7 @@ def test_lazy_lists(lisp, form, values):
     assert lisp(form) == values
 
 
+@pytest.mark.soak(all_but=22)
 @pytest.mark.parametrize(
     ("form", "values"),
     [
@@ -182,6 +184,7 @@ def test_the_rest(lisp, form, values):
     assert re.sub(r"(?<=\])-\d+", "", lisp(form)) == values  # without the numbers of tasks
 
 
+@pytest.mark.soak
 def test_a_quad_tree_finds_what_a_search_of_all_points_finds(lisp):
     assert (
         lisp("""

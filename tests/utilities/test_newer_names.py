@@ -25,6 +25,7 @@ def fresh(text):
     return text.replace(":newer", f":newer-{next(numbers)}")
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     ("methods", "value"),
     [

@@ -65,6 +65,7 @@ def test_fields_tell_their_names():
         assert [each.name for each in records.fields(mine)] == [each.name for each in dataclasses.fields(theirs)]
 
 
+@pytest.mark.soak
 def test_a_prompt_starts_without_what_inspects_classes():
     script = (
         "import sys\nfrom cramhy_runtime.repl.session import Session\nSession(time='virtual').evaluate_text('1')\n"

@@ -22,6 +22,7 @@ def lisp():
     return LispText(Session(time="virtual", turtlesim=False), PRELUDE)
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize(
     ("form", "value"),
     [

@@ -2,6 +2,7 @@
 
 from collections import Counter
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -87,6 +88,7 @@ class World:
         assert Counter(self.received) + Counter(self.mailbox.messages) == Counter(self.sent)
 
 
+@pytest.mark.soak
 @settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(workers, kills, st.sampled_from([None, 1, 2]))
 def test_whoever_is_killed_everything_is_given_back_and_everybody_ends(fresh_kernel, programs, killed, seed):

@@ -73,6 +73,7 @@ def rows(page, attributes=("name", "time", "waits", "place")):
 # --------------------------------------------------------------------------------------------------------------- the world
 
 
+@pytest.mark.soak
 def test_the_turtle_moves_and_the_read_out_follows(fake, visit):
     page = visit(fake.address)
     wait_for_reading(page, "x", "5.54")
@@ -83,6 +84,7 @@ def test_the_turtle_moves_and_the_read_out_follows(fake, visit):
     assert near(pixel(page, 9.0, 9.0), BLUE)
 
 
+@pytest.mark.soak
 def test_the_line_has_the_colour_and_the_width_of_the_pen(fake, visit):
     page = visit(fake.address)
     red = (255, 0, 0)
@@ -92,6 +94,7 @@ def test_the_line_has_the_colour_and_the_width_of_the_pen(fake, visit):
     assert all(near(pixel(page, 4, 2 + offset), BLUE) for offset in (7 / 45, -7 / 45))
 
 
+@pytest.mark.soak
 def test_a_clean_paper_has_its_own_colour(fake, visit):
     page = visit(fake.address)
     fake.world([turtle(x=10, y=10)], [stroke(1, 1, 9, 1, (255, 0, 0), 9)])
@@ -107,6 +110,7 @@ def test_who_comes_late_sees_all_that_was_drawn(fake, visit):
     wait_for_pixel(page, 4, 1, [255, 0, 0])
 
 
+@pytest.mark.soak
 def test_the_turtle_turns_with_its_heading(fake, visit):
     page = visit(fake.address)
     fake.world([turtle(x=5, y=5, theta=0.0)])
@@ -117,6 +121,7 @@ def test_the_turtle_turns_with_its_heading(fake, visit):
     page.wait_for_function(f"() => JSON.stringify(({PIXEL})([5, 4.62])) !== '{BLUE}'.replaceAll(' ', '')")  # now the head is there
 
 
+@pytest.mark.soak
 def test_several_turtles_have_names_and_one_is_chosen(fake, visit):
     page = visit(fake.address)
     assert not page.locator("#turtles").is_visible()
@@ -134,6 +139,7 @@ def test_several_turtles_have_names_and_one_is_chosen(fake, visit):
     wait_for_reading(page, "x", "2.00")
 
 
+@pytest.mark.soak
 def test_turtles_stand_in_the_order_of_their_numbers_and_the_chosen_one_is_in_sight(fake, visit):
     page = visit(fake.address)
     names = [f"a{number}" for number in range(1, 13)]
@@ -147,6 +153,7 @@ def test_turtles_stand_in_the_order_of_their_numbers_and_the_chosen_one_is_in_si
     }""")
 
 
+@pytest.mark.soak
 def test_a_pose_that_is_no_number_is_said_and_hurts_nobody(fake, visit):
     page = visit(fake.address)
     fake.world([{**turtle(), "x": None, "y": None, "theta": None}])
@@ -179,6 +186,7 @@ PAPERS = """async () => {
 }"""
 
 
+@pytest.mark.soak
 def test_of_very_many_lines_the_oldest_become_a_picture_also_while_the_past_is_looked_at(fake, visit):
     assert visit(fake.address).evaluate(PAPERS) == [True, True, True]
 
@@ -186,6 +194,7 @@ def test_of_very_many_lines_the_oldest_become_a_picture_also_while_the_past_is_l
 # -------------------------------------------------------------------------------------------------------------- driving
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("key", "linear", "angular"), [("ArrowUp", 2, 0), ("ArrowDown", -2, 0), ("ArrowLeft", 0, 2), ("ArrowRight", 0, -2)]
 )
@@ -198,6 +207,7 @@ def test_the_arrow_keys_drive(fake, visit, key, linear, angular):
     assert sent["msg"] == {"linear": {"x": linear, "y": 0, "z": 0}, "angular": {"x": 0, "y": 0, "z": angular}}
 
 
+@pytest.mark.soak
 def test_turtles_are_driven_in_the_namespace_of_their_simulator_as_its_parameters_say(fake, visit):
     parameters = {"/house/scale_linear": "1.5", "/house/scale_angular": '"fast"'}
     fake.services["/rosapi/get_param"] = lambda request: {"value": parameters.get(request["name"], request["default"])}
@@ -217,6 +227,7 @@ def test_turtles_are_driven_in_the_namespace_of_their_simulator_as_its_parameter
     assert (sent["topic"], sent["msg"]["linear"]["x"]) == ("/house/turtle1/cmd_vel", 1.5)
 
 
+@pytest.mark.soak
 def test_a_key_that_is_held_repeats(fake, visit):
     page = visit(fake.address)
     for _ in range(5):  # what the keyboard sends while a key is held
@@ -225,6 +236,7 @@ def test_a_key_that_is_held_repeats(fake, visit):
     fake.wait(lambda message: len([one for one in fake.heard if one["op"] == "publish"]) == 5)
 
 
+@pytest.mark.soak
 def test_a_button_that_is_held_repeats_until_it_is_let_go(fake, visit):
     page = visit(fake.address)
     page.get_by_role("button", name="turn left").hover()
@@ -240,6 +252,7 @@ def test_a_button_that_is_held_repeats_until_it_is_let_go(fake, visit):
     assert count() == sent
 
 
+@pytest.mark.soak
 def test_clear_and_reset_call_their_services_and_say_what_went_wrong(fake, visit):
     page = visit(fake.address)
     page.get_by_role("button", name="Clear paper").click()
@@ -283,6 +296,7 @@ def test_the_task_tree_shows_what_each_task_does(fake, visit):
     wait_for_count(page, "#tasks [role=treeitem]", 1)
 
 
+@pytest.mark.soak
 def test_a_branch_can_be_closed_and_stays_closed(fake, visit):
     page = visit(fake.address)
     par(fake)
@@ -293,6 +307,7 @@ def test_a_branch_can_be_closed_and_stays_closed(fake, visit):
     assert len(rows(page)) == 1
 
 
+@pytest.mark.soak
 def test_thousands_of_tasks_do_not_stop_the_page(fake, visit):
     page = visit(fake.address)
     children = [task(str(number), f"[CHILD-{number}]", "top", "SUCCEEDED", ended=1.0) for number in range(3000)]
@@ -305,6 +320,7 @@ def test_thousands_of_tasks_do_not_stop_the_page(fake, visit):
     wait_for_count(page, "#tasks [role=treeitem]", 3)
 
 
+@pytest.mark.soak
 def test_fluents_have_their_values_and_a_line_of_the_recent_past(fake, visit):
     page = visit(fake.address)
     fake.fluents(fluent("1", "DISTANCE", "3.5", 3.5), fluent("2", "POSE", "x 1 y 2"))
@@ -318,6 +334,7 @@ def test_fluents_have_their_values_and_a_line_of_the_recent_past(fake, visit):
     wait_for_count(page, "#fluents .fluent", 1)
 
 
+@pytest.mark.soak
 def test_process_modules_have_what_they_execute_and_their_queue(fake, visit):
     page = visit(fake.address)
     wait_for_text(page, "#modules", "No process module is running.")
@@ -329,6 +346,7 @@ def test_process_modules_have_what_they_execute_and_their_queue(fake, visit):
     wait_for_text(page, "#modules .module:nth-child(2)", "executes nothing")
 
 
+@pytest.mark.soak
 def test_the_log_has_the_levels_that_are_wanted(fake, visit):
     page = visit(fake.address)
     for level, text in ((1, "a detail"), (2, "as usual"), (4, "Oh no! I hit the wall!"), (8, "broken"), (16, "over")):

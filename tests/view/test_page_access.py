@@ -30,6 +30,7 @@ def filled(fake):
     fake.say("Clamping/" * 40, level=4)
 
 
+@pytest.mark.soak
 def test_all_of_the_page_is_reached_and_used_with_the_keys_alone(fake, visit):
     page = visit(fake.address)
     filled(fake)
@@ -101,6 +102,7 @@ def test_the_task_tree_is_used_with_the_keys(fake, visit):
     assert not [message for message in fake.heard if message["op"] == "publish"]  # no turtle was driven by that
 
 
+@pytest.mark.soak
 def test_buttons_drive_with_enter_and_the_space_bar(fake, visit):
     page = visit(fake.address)
     page.get_by_role("button", name="turn right").focus()
@@ -109,6 +111,7 @@ def test_buttons_drive_with_enter_and_the_space_bar(fake, visit):
     fake.wait(lambda message: len([one for one in fake.heard if one["op"] == "publish"]) == 2)
 
 
+@pytest.mark.soak
 def test_readers_of_the_screen_are_told_what_things_are(fake, visit):
     page = visit(fake.address)
     filled(fake)
@@ -161,6 +164,7 @@ CONTRAST = """() => {
 }"""
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_text_can_be_read_in_both_themes(fake, visit, scheme):
     page = visit(fake.address, color_scheme=scheme)
@@ -175,6 +179,7 @@ def test_text_can_be_read_in_both_themes(fake, visit, scheme):
     assert ground == {"light": "rgb(243, 241, 234)", "dark": "rgb(20, 23, 26)"}[scheme]
 
 
+@pytest.mark.soak
 def test_a_theme_can_be_chosen_and_is_kept(fake, visit):
     page = visit(fake.address, color_scheme="light")
     ground = lambda: page.evaluate("() => getComputedStyle(document.body).backgroundColor")  # noqa: E731
@@ -196,6 +201,7 @@ COVERED = """() => {
 }"""
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("width", [360, 390, 768, 1024, 1280, 1920])
 def test_nothing_sticks_out_at_any_width(fake, visit, width):
     page = visit(fake.address, width=width, height=800)
@@ -221,6 +227,7 @@ def test_nothing_sticks_out_at_any_width(fake, visit, width):
         assert page.evaluate(COVERED) == []
 
 
+@pytest.mark.soak
 def test_a_finger_drives_on_a_phone(fake, visit):
     page = visit(fake.address, width=360, height=740, has_touch=True, is_mobile=True)
     assert show(page, "Turtle")
@@ -241,6 +248,7 @@ MEASURE = """() => {
 }"""
 
 
+@pytest.mark.soak
 def test_twenty_turtles_are_drawn_within_a_frame(fake, visit):
     """Sixty frames a second leave 16 ms for each; what the page itself takes of that is measured, not what a busy machine leaves over."""
     page = visit(fake.address)

@@ -69,6 +69,7 @@ def test_another_terminal_opens_the_page_of_a_plan_that_runs(repl, terminal, vis
     session.wait_for("; Interrupted.")
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("serve", [(), ("--serve",)])
 def test_the_prompt_opens_the_page_and_other_terminals_find_it(repl, terminal, visit, serve, tmp_path):
     session = repl(*serve, view=False)
@@ -131,6 +132,7 @@ def test_make_view_draws_in_virtual_time_so_that_it_can_be_paused_and_stepped(re
     session.wait_for('("drawn")')
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("missing", ["uvicorn", "websockets"])
 def test_without_the_extra_the_error_says_what_to_install(repl, missing):
     session = repl(view=False, hidden=[missing])
@@ -173,6 +175,7 @@ def test_the_page_goes_with_the_turtle_to_the_session_of_the_prompt(repl, tmp_pa
         simulator.stderr.close()
 
 
+@pytest.mark.soak
 def test_the_page_goes_to_no_other_address(fake, visit):
     page = visit(fake.address)
     before = page.url
@@ -206,6 +209,7 @@ def test_without_a_session_a_simulator_of_its_own_is_shown_and_that_is_said(tmp_
         process.stderr.close()
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("begins", "text"),
     [
@@ -264,6 +268,7 @@ kernel.stop()
 IN_PYTHON = "from cramhy_runtime import kernel, turtlesim\nkernel.start(clock='wall')\n"
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("program", "name"),
     [
@@ -283,6 +288,7 @@ def test_a_program_opens_the_page_too(tmp_path, program, name):
     assert not list(tmp_path.rglob("session-*"))
 
 
+@pytest.mark.soak
 def test_a_python_program_that_offers_no_page_is_told_how_to_open_one(tmp_path):
     program = f"{IN_PYTHON}turtlesim.view()"
     done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=120)

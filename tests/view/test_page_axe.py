@@ -34,6 +34,7 @@ def axe(request):
     return path.read_text()
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_axe_finds_nothing(fake, visit, axe, scheme):
     page = visit(fake.address, color_scheme=scheme)
@@ -59,6 +60,7 @@ def test_axe_finds_nothing(fake, visit, axe, scheme):
         assert look() == []
 
 
+@pytest.mark.soak
 def test_axe_would_find_something(fake, visit, axe):
     page = visit(fake.address)
     page.evaluate(axe)

@@ -1,6 +1,6 @@
 """The tests of the page once more, with the transport of a browser's tab: a port to a worker in place of a WebSocket.
 
-The worker (``relay.mjs``) leads to the same fake session. `make test` takes a few of the tests, `make soak` all that have a fake session. Left
+The worker (``relay.mjs``) leads to the same fake session. `make test` takes one of the tests, `make soak` all that have a fake session. Left
 out are those about a token, since a worker asks for none.
 """
 
@@ -13,16 +13,9 @@ from importlib import resources
 from pathlib import Path
 
 import pytest
-from systems import takes_long
 
 MODULES = [f"test_page{what}" for what in ("", "_access", "_axe", "_marks", "_room", "_safety", "_scroll", "_time")]
-FEW = {
-    "test_clear_and_reset_call_their_services_and_say_what_went_wrong",
-    "test_pause_step_and_speed_ask_the_session",
-    "test_the_task_tree_shows_what_each_task_does",
-    "test_the_turtle_moves_and_the_read_out_follows",
-    "test_who_comes_late_sees_all_that_was_drawn",
-}
+FEW = {"test_the_task_tree_shows_what_each_task_does"}
 OF_SERVERS = {"test_a_wrong_token_is_said_and_not_tried_again", "test_an_address_without_a_token_is_said"}
 """Tests that a worker cannot meet: it asks for no token."""
 
@@ -51,7 +44,7 @@ def _again(test):
     copy = types.FunctionType(test.__code__, test.__globals__, test.__name__, test.__defaults__, test.__closure__)
     copy.__dict__.update(test.__dict__)
     copy.__kwdefaults__, copy.__doc__ = test.__kwdefaults__, test.__doc__
-    return copy if test.__name__ in FEW else takes_long(copy)
+    return copy if test.__name__ in FEW else pytest.mark.soak(copy)
 
 
 for _module in map(importlib.import_module, MODULES):

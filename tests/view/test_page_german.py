@@ -6,6 +6,7 @@ import json
 import re
 from pathlib import Path
 
+import pytest
 from fake_session import task
 from cramhy_runtime.view import page as page_of_view
 
@@ -28,6 +29,7 @@ def test_the_page_speaks_german_where_the_system_does(fake, visit):
     page.locator("#tasks", has_text="scheiterte mit BUMP").wait_for()
 
 
+@pytest.mark.soak
 def test_where_there_is_no_table_the_page_speaks_english(fake, visit):
     page = visit(fake.address, locale="fr-FR")
     assert page.locator("#connection").inner_text() == "connected"

@@ -54,6 +54,7 @@ def course(repl, visit):
     return session, page
 
 
+@pytest.mark.soak
 def test_the_par_example_of_the_slides_is_seen_and_can_be_looked_back_at(course):
     session, page = course
     page.get_by_role("button", name="Pause").click()
@@ -100,6 +101,7 @@ def test_the_keys_drive_the_turtle_while_the_prompt_waits(course):
     assert page.locator("#notice").get_attribute("data-kind") == "good"
 
 
+@pytest.mark.soak
 def test_a_step_moves_the_clock_though_nothing_else_happens(course):
     session, page = course
     page.get_by_role("button", name="Pause").click()
@@ -133,6 +135,7 @@ def test_in_wall_time_the_turtle_moves_and_cannot_be_paused(repl, visit):
     assert page.locator("#pause").is_disabled()
 
 
+@pytest.mark.soak
 def test_when_the_session_ends_the_page_says_so(repl, visit):
     session = repl("--time", "virtual")
     page = visit(session.url)

@@ -7,7 +7,6 @@ import math
 
 import pytest
 from fake_session import TOPICS
-from systems import takes_long
 from test_page import wait_for_text
 
 np = pytest.importorskip("numpy", reason="pip install 'cramhy[robot]'")
@@ -285,6 +284,7 @@ def an_object_is_dragged_over_what_it_can_stand_on(page, fake):
     assert not [message for message in fake.heard if message.get("service") == "/cramhy/move_thing"]
 
 
+@pytest.mark.soak
 def test_a_session_of_turtles_loads_nothing_of_the_room_and_one_with_both_has_a_switch(fake, visit):
     loaded = []
     page = visit("about:blank", connected=False)
@@ -303,7 +303,7 @@ def test_a_session_of_turtles_loads_nothing_of_the_room_and_one_with_both_has_a_
     assert not page.locator("#paper").is_visible()
 
 
-@takes_long
+@pytest.mark.soak
 def test_on_a_phone_the_past_is_shown_too(fake, visit):
     kitchen(fake)
     page = visit(fake.address, 390, 760, has_touch=True, is_mobile=True, color_scheme="dark", reduced_motion="reduce")

@@ -7,12 +7,14 @@ import re
 from importlib import resources
 from pathlib import Path
 
+import pytest
 from fake_session import fluent, task, turtle
 from test_page import wait_for_count, wait_for_reading, wait_for_text
 
 MARKUP = "<img src=x onerror='window.hit = 1'><script>window.hit = 1</script>"
 
 
+@pytest.mark.soak
 def test_names_that_are_markup_stay_names(fake, visit):
     page = visit(fake.address)
     fake.world([turtle(MARKUP, 2, 2), turtle("javascript:alert(1)", 4, 4)])
@@ -47,6 +49,7 @@ def test_names_that_are_markup_stay_names(fake, visit):
     assert page.evaluate("document.querySelectorAll('main img, main script, footer img, footer script').length") == 0
 
 
+@pytest.mark.soak
 def test_names_of_objects_properties_are_names_like_others(fake, visit):
     page = visit(fake.address)
     for name in ("__proto__", "constructor", "toString"):
@@ -60,6 +63,7 @@ def test_names_of_objects_properties_are_names_like_others(fake, visit):
     wait_for_count(page, "#fluents .fluent", 3)
 
 
+@pytest.mark.soak
 def test_messages_that_are_none_leave_the_page_as_it_is(fake, visit):
     page = visit(fake.address)
     connection = next(iter(fake._connections))
@@ -82,6 +86,7 @@ def test_messages_that_are_none_leave_the_page_as_it_is(fake, visit):
     wait_for_reading(page, "x", "3.00")
 
 
+@pytest.mark.soak
 def test_nothing_of_the_page_comes_from_elsewhere_or_stands_in_line(fake, visit):
     visit(fake.address)  # the fixture holds that the policy was not violated
     for file in (file for file in Path(str(resources.files("cramhy_runtime.view").joinpath("static"))).rglob("*") if file.is_file()):

@@ -6,7 +6,6 @@ import signal
 
 import pytest
 from fake_session import fluent, task
-from systems import takes_long
 from test_page import show, wait_for_count, wait_for_text
 
 SIZES = {"desktop": (1440, 900), "tablet": (820, 1180), "phone": (390, 844)}
@@ -115,6 +114,7 @@ REACHED = """() => {
 }"""
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("letters", ["usual", "twice as large", "a projector's"])
 def test_the_document_is_as_high_as_the_window_and_every_control_can_be_reached(fake, visit, letters):
     page = visit(fake.address)
@@ -144,6 +144,7 @@ def test_what_is_placed_in_a_list_scrolls_with_the_list(fake, visit):
         assert page.evaluate(STRAYS) == []
 
 
+@pytest.mark.soak
 def test_the_wheel_scrolls_a_list_and_never_the_page(fake, visit):
     page = visit(fake.address, *SIZES["desktop"])
     fill(fake, page, 60)
@@ -210,6 +211,7 @@ def test_the_focus_is_not_lost_when_its_row_ends(fake, visit, size):
     assert page.evaluate("() => scrollY") == 0
 
 
+@pytest.mark.soak
 def test_what_runs_now_is_in_sight_and_marked_until_somebody_scrolls(fake, visit):
     page = visit(fake.address, *SIZES["desktop"])
     ended = [task(f"e{number}", f"[STEP-{number}]", "top", "FAILED", ended=1.0) for number in range(60)]
@@ -239,7 +241,7 @@ LONG_PLAN = """\
       (cpl:sleep (+ 0.5 (* i 0.01))))))"""
 
 
-@takes_long
+@pytest.mark.soak
 def test_during_a_long_plan_no_size_scrolls_away(repl, visit):
     """The plan of a real session, with 120 branches that all log, on three pages at once, each with its wheel."""
     session = repl("--time", "virtual")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 
+import pytest
 from fake_session import PATIENCE, fluent, stroke, task, turtle
 from test_page import BLUE, near, pixel, rows, wait_for_count, wait_for_pixel, wait_for_reading, wait_for_text, wait_for_texts
 
@@ -20,6 +21,7 @@ def seek(page, stamp):
     )
 
 
+@pytest.mark.soak
 def test_pause_step_and_speed_ask_the_session(fake, visit):
     page = visit(fake.address)
     page.get_by_role("button", name="Pause").click()
@@ -36,6 +38,7 @@ def test_pause_step_and_speed_ask_the_session(fake, visit):
     page.wait_for_function("() => document.getElementById('speed').selectedOptions[0].text === '× 3'")
 
 
+@pytest.mark.soak
 def test_a_pace_that_is_refused_does_not_stay_chosen(fake, visit):
     def refuse(request):
         raise ValueError("A speed is a number above zero.")
@@ -47,6 +50,7 @@ def test_a_pace_that_is_refused_does_not_stay_chosen(fake, visit):
     assert page.locator("#speed").input_value() == "1"
 
 
+@pytest.mark.soak
 def test_what_is_asked_for_before_the_last_answer_came_keeps_what_was_asked_before(fake, visit):
     page = visit(fake.address)
     answer, set_pace = threading.Event(), fake.services["/cramhy/set_pace"]
@@ -59,6 +63,7 @@ def test_what_is_asked_for_before_the_last_answer_came_keeps_what_was_asked_befo
     fake.wait(lambda message: message.get("service") == "/cramhy/set_pace" and message["args"] == {"paused": False, "speed": 5})
 
 
+@pytest.mark.soak
 def test_the_walls_time_cannot_be_held(fake, visit):
     fake.pace(virtual=False)
     page = visit(fake.address)
@@ -84,6 +89,7 @@ def past(fake):
     fake.say("the last line")
 
 
+@pytest.mark.soak
 def test_the_time_line_shows_everything_as_it_was(fake, visit):
     page = visit(fake.address)
     past(fake)
@@ -116,6 +122,7 @@ def test_the_time_line_shows_everything_as_it_was(fake, visit):
     assert not page.locator("#past").is_visible()
 
 
+@pytest.mark.soak
 def test_the_time_line_works_with_the_keys(fake, visit):
     page = visit(fake.address)
     past(fake)
@@ -132,6 +139,7 @@ def test_the_time_line_works_with_the_keys(fake, visit):
     page.wait_for_function("() => document.getElementById('moment').getAttribute('aria-valuetext') === 'live'")
 
 
+@pytest.mark.soak
 def test_what_was_before_the_page_came_is_asked_for(fake, visit):
     fake.chapter(2, 1, 2, 5.0, 10.0, fake.state, later_world=[])
     early = {**fake.state, "tasks": {**fake.state["tasks"], "tasks": [task("0", "[AN-EARLY-PLAN]", state="SUCCEEDED", ended=1.0)]}}
@@ -158,6 +166,7 @@ def test_what_was_before_the_page_came_is_asked_for(fake, visit):
     assert not page.get_by_role("button", name="earlier").is_visible()
 
 
+@pytest.mark.soak
 def test_the_strip_shows_the_plans_of_the_time_line(fake, visit):
     page = visit(fake.address)
     past(fake)
@@ -166,6 +175,7 @@ def test_the_strip_shows_the_plans_of_the_time_line(fake, visit):
     assert (round(x), round(x + width)) == (667, 1000)
 
 
+@pytest.mark.soak
 def test_a_lost_connection_is_said_and_made_again(fake, visit):
     page = visit(fake.address)
     par = task("1", "[TOP-LEVEL]", began=0.0)
@@ -189,6 +199,7 @@ def test_a_lost_connection_is_said_and_made_again(fake, visit):
     wait_for_reading(page, "x", "5.00")
 
 
+@pytest.mark.soak
 def test_another_session_at_the_same_address_begins_anew(fake, visit):
     page = visit(fake.address)
     fake.tasks(task("1", "[TOP-LEVEL]"), task("2", "[CHILD]", "1"))
@@ -211,6 +222,7 @@ def test_another_session_at_the_same_address_begins_anew(fake, visit):
     wait_for_count(page, "#tasks [role=treeitem]", 2)  # what was closed belonged to another plan
 
 
+@pytest.mark.soak
 def test_a_wrong_token_is_said_and_not_tried_again(fake, visit):
     page = visit(fake.address + "-wrong", connected=False)
     wait_for_text(
@@ -229,6 +241,7 @@ def test_a_page_that_cannot_start_says_so(fake, visit):
     wait_for_text(page, "#banner", "The page could not start: the server has no shapes.json (404). Load it again; if that does not help, ")
 
 
+@pytest.mark.soak
 def test_an_address_without_a_token_is_said(fake, visit):
     page = visit(fake.address.partition("#")[0], connected=False)
     wait_for_text(page, "#banner", "The session does not let this page in: this address has no token. Open the address that it prints;")

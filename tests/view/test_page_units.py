@@ -12,6 +12,7 @@ import pytest
 NODE = shutil.which("node")
 
 
+@pytest.mark.soak
 @pytest.mark.skipif(NODE is None, reason="no node is on the PATH to run the page's unit tests")
 def test_the_modules_of_the_page_pass_their_unit_tests(tmp_path):
     version = subprocess.run([NODE, "--version"], capture_output=True, text=True).stdout

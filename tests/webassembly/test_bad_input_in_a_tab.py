@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import pytest
 from browsers import KINDS, browser
-from systems import takes_long
 from test_site import enter, kind, made, served, transcript, visit, wait_for_prompt, wait_for_state  # noqa: F401  fixtures among them
 
-pytestmark = [takes_long, pytest.mark.timeout(3000)]
+pytestmark = [pytest.mark.soak, pytest.mark.timeout(3000)]
 KEEP = '(with-open-file (out "kept.lisp" :direction :output) (print :kept out))'
 READ = '(with-open-file (in "kept.lisp") (read in))'
 DEAF = "No answer to Ctrl-C: the program computes outside of Lisp. Restart ends it; files are kept."

@@ -78,6 +78,7 @@ def imported_by(name):
             yield from (f"{base}.{alias.name}" for alias in node.names)
 
 
+@pytest.mark.soak
 def test_the_prompt_of_a_tab_imports_nothing_that_is_left_out():
     known, waiting = set(), ["cramhy_runtime.browser.tab"]
     while waiting:

@@ -22,7 +22,6 @@ from pathlib import Path
 import pytest
 from browsers import KINDS, browser, chromium
 from node import node, pyodide
-from systems import takes_long
 
 from cramhy_runtime import cli
 from cramhy_runtime.browser import left_out, local_host, pyodide_files, site
@@ -140,7 +139,7 @@ def enter(page, text):
     return transcript(page)[before:]
 
 
-@takes_long
+@pytest.mark.soak
 @pytest.mark.parametrize("kind", KINDS)
 def test_both_lectures_give_the_answers_of_the_terminal_without_a_network(visit):
     sys.path.append(str(ROOT / "tutorials"))
@@ -160,7 +159,7 @@ def test_both_lectures_give_the_answers_of_the_terminal_without_a_network(visit)
     assert page.locator("#modules").inner_text() != ""
 
 
-@takes_long
+@pytest.mark.soak
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_prompt_has_a_history_ctrl_c_and_a_restart_that_keeps_files(visit):
     page, _ = visit
@@ -184,7 +183,7 @@ def test_the_prompt_has_a_history_ctrl_c_and_a_restart_that_keeps_files(visit):
     assert enter(page, "(boundp '*gone*)").splitlines()[-1] == "NIL"
 
 
-@takes_long
+@pytest.mark.soak
 def test_a_browser_that_cannot_is_told_which_ones_can(made):
     with served(made) as (address, _), chromium() as browser:
         page = browser.new_page()
@@ -195,7 +194,7 @@ def test_a_browser_that_cannot_is_told_which_ones_can(made):
         assert not page.locator("#repl").is_visible()
 
 
-@takes_long
+@pytest.mark.soak
 def test_the_site_is_of_one_origin_and_without_inline_code(made):
     index = (made / "index.html").read_text(encoding="utf-8")
     assert site.POLICY in index and "unsafe-inline" not in site.POLICY and "unsafe-eval" not in site.POLICY.replace("wasm-unsafe-eval", "")
@@ -205,7 +204,7 @@ def test_the_site_is_of_one_origin_and_without_inline_code(made):
     assert listed == {file.relative_to(made).as_posix() for file in made.rglob("*") if file.is_file()} - {"offline.js"}
 
 
-@takes_long
+@pytest.mark.soak
 def test_the_first_visit_fetches_less_than_nine_megabytes_from_a_host_that_packs_nothing_or_only_texts(made):
     texts = (".js", ".mjs", ".css", ".html", ".json", ".svg")
     sizes = {file: (file.stat().st_size, len(gzip.compress(file.read_bytes()))) for file in made.rglob("*") if file.is_file()}
@@ -213,7 +212,7 @@ def test_the_first_visit_fetches_less_than_nine_megabytes_from_a_host_that_packs
     assert sum(plain for plain, _ in sizes.values()) < 10_500_000
 
 
-@takes_long
+@pytest.mark.soak
 def test_what_is_not_in_a_tab_is_told_and_what_programs_use_of_pythons_library_is_there(visit):
     page, _ = visit
     assert enter(page, '(py:call "statistics.mean" (list 1 2 3))').splitlines()[-1] == "2"
@@ -278,6 +277,7 @@ def test_the_local_host_serves_the_site_and_nothing_else(tmp_path):
                 urllib.request.urlopen(address + wrong)
 
 
+@pytest.mark.soak
 def test_the_command_shows_a_site_until_ctrl_c(tmp_path):
     environment = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
     words = [sys.executable, "-m", "cramhy_runtime.cli", "browser", "--serve", str(site_of(tmp_path))]

@@ -14,7 +14,6 @@ from pathlib import Path
 import pytest
 from browsers import browser
 from node import node, pyodide
-from systems import takes_long
 from test_site import served
 
 from cramhy_runtime.browser import bundling, pyodide_files, site
@@ -136,6 +135,7 @@ def choose(page, *words):
     page.get_by_role("button", name=words[0], exact=True).click()
 
 
+@pytest.mark.soak
 def test_the_editor_evaluates_a_form_a_choice_and_a_file_at_the_prompt(visit):
     page = visit()
     wait_for(page, "#code-in .cm-line", "(defun one () 1)")
@@ -164,7 +164,7 @@ def test_the_editor_evaluates_a_form_a_choice_and_a_file_at_the_prompt(visit):
     assert page.locator("#repl-title").inner_text() == "Hy"
 
 
-@takes_long
+@pytest.mark.soak
 def test_tab_completes_in_the_language_and_package_of_the_cursor_and_the_call_is_shown(visit):
     page = visit()
     wait_for(page, "#code-in .cm-line", "(defun one () 1)")
@@ -191,6 +191,7 @@ def test_tab_completes_in_the_language_and_package_of_the_cursor_and_the_call_is
     assert line.inner_text().split() == ["(drive", "na", ")"]
 
 
+@pytest.mark.soak
 def test_an_error_shows_its_restarts_and_its_calls_and_a_button_chooses(visit):
     page = visit()
     line = page.locator("#repl-in")
@@ -210,7 +211,7 @@ def test_an_error_shows_its_restarts_and_its_calls_and_a_button_chooses(visit):
     assert transcript(page).endswith("0] 1\n")
 
 
-@takes_long
+@pytest.mark.soak
 def test_files_are_made_saved_renamed_deleted_and_come_back_after_a_restart(visit):
     page = visit()
     choose(page, "New file")
@@ -238,7 +239,7 @@ def test_files_are_made_saved_renamed_deleted_and_come_back_after_a_restart(visi
     assert page.evaluate("Object.keys(localStorage).filter((key) => key.startsWith('cramhy-draft:'))") == []
 
 
-@takes_long
+@pytest.mark.soak
 def test_a_package_is_exported_and_imported_and_what_it_would_replace_is_asked(visit, tmp_path):
     page = visit()
     with page.expect_download() as saved:
@@ -255,6 +256,7 @@ def test_a_package_is_exported_and_imported_and_what_it_would_replace_is_asked(v
     wait_for(page, "#code-in .cm-line", ";; imported")
 
 
+@pytest.mark.soak
 def test_a_link_holds_a_file_which_is_shown_and_not_run_and_one_that_was_cut_is_told(visit):
     page = visit()
     wait_for(page, "#code-in .cm-line", "(defun one () 1)")
@@ -315,6 +317,7 @@ def test_the_lesson_is_read_typed_copied_and_its_task_is_hinted_at_and_checked(v
     assert page.locator("#lesson-done").get_attribute("title") == "1 of 1 tasks are solved"
 
 
+@pytest.mark.soak
 def test_a_button_of_another_page_begins_a_session_and_to_look_at_it_costs_nothing(visit):
     page = visit()
     new = "This page begins a new session."
@@ -360,6 +363,7 @@ def prompt(page, text):
     page.locator("#repl-prompt", has_text=re.compile(rf"^{re.escape(text)}\s*$")).wait_for()
 
 
+@pytest.mark.soak
 def test_the_prompt_speaks_the_language_of_the_lesson_and_no_page_owns_a_session_for_that(visit):
     page = visit()
     anew = page.get_by_role("button", name="Begin this page anew")
@@ -387,6 +391,7 @@ def test_the_prompt_speaks_the_language_of_the_lesson_and_no_page_owns_a_session
     assert anew.count() == 0 and transcript(page).count("This page begins a new session.") == 1
 
 
+@pytest.mark.soak
 def test_the_prompt_keeps_its_language_until_the_debugger_is_left(visit):
     page = visit()
     page.locator("#repl-in").press_sequentially("(error)")
@@ -399,13 +404,14 @@ def test_the_prompt_keeps_its_language_until_the_debugger_is_left(visit):
     assert transcript(page).endswith("0] 1\nCL-USER> (in-hy)\n")
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("width", "height", "beside"),
     [
         (768, 1024, {"lesson", "repl", "live"}),
-        pytest.param(1500, 900, {"lesson", "code", "repl", "live"}, marks=takes_long),
-        pytest.param(1024, 768, {"lesson", "repl", "live"}, marks=takes_long),
-        pytest.param(390, 800, {"lesson"}, marks=takes_long),
+        pytest.param(1500, 900, {"lesson", "code", "repl", "live"}, marks=pytest.mark.soak),
+        pytest.param(1024, 768, {"lesson", "repl", "live"}, marks=pytest.mark.soak),
+        pytest.param(390, 800, {"lesson"}, marks=pytest.mark.soak),
     ],
 )
 def test_the_page_fits_and_shows_what_there_is_room_for(visit, width, height, beside):
@@ -433,7 +439,8 @@ def share(page, name):
     return int(page.locator(f"#split-{name}").get_attribute("aria-valuenow")), round(box["height" if name == "repl" else "width"])
 
 
-@pytest.mark.parametrize("kind", ["chromium", pytest.param("firefox", marks=takes_long)])
+@pytest.mark.soak
+@pytest.mark.parametrize("kind", ["chromium", pytest.param("firefox", marks=pytest.mark.soak)])
 def test_parts_are_made_larger_by_mouse_and_by_keys_and_sizes_are_kept(visit, kind):
     page = visit()
     bar = page.locator("#split-live")
@@ -472,7 +479,7 @@ def test_parts_are_made_larger_by_mouse_and_by_keys_and_sizes_are_kept(visit, ki
     assert share(page, "live") == (began, width)
 
 
-@takes_long
+@pytest.mark.soak
 def test_a_finger_moves_the_bars_of_a_tablet_and_each_layout_has_its_sizes(visit):
     page = visit(viewport={"width": 768, "height": 1024}, has_touch=True)
     bar, live = page.locator("#split-live"), page.locator(".live")
@@ -498,6 +505,7 @@ def test_a_finger_moves_the_bars_of_a_tablet_and_each_layout_has_its_sizes(visit
     assert page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]") == [768, 1024]
 
 
+@pytest.mark.soak
 def test_the_page_speaks_the_language_of_the_system(visit):
     page = visit(locale="de-AT")
     assert page.locator("html").get_attribute("lang") == "de"
@@ -508,7 +516,7 @@ def test_the_page_speaks_the_language_of_the_system(visit):
     assert visit(locale="fr-FR").locator("#code-load").inner_text() == "Load file"
 
 
-@takes_long
+@pytest.mark.soak
 def test_everything_is_reached_by_the_keyboard_and_has_a_name(visit):
     page = visit()
     wait_for(page, "#code-in .cm-line", "(defun one () 1)")
@@ -541,6 +549,7 @@ def test_everything_is_reached_by_the_keyboard_and_has_a_name(visit):
     assert page.locator("#notice").inner_text() == ""  # the arrow did not drive the turtle
 
 
+@pytest.mark.soak
 def test_the_packages_of_the_editor_are_those_that_npm_fetches():
     fetched = json.loads((Path(__file__).parents[2] / "webassembly" / "package.json").read_text())["dependencies"]
     assert {name: version for name, version in fetched.items() if name != "pyodide"} == bundling.PACKAGES
@@ -561,6 +570,7 @@ def test_the_licenses_of_what_is_in_the_editor_come_along():
     assert text.count("Permission is hereby granted") == text.count("THE SOFTWARE IS PROVIDED") >= 12
 
 
+@pytest.mark.soak
 def test_without_the_packages_of_the_editor_the_command_says_what_to_type(tmp_path):
     with pytest.raises(bundling.NoBundle) as refused:
         bundling.check(tmp_path)

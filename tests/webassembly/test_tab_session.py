@@ -9,11 +9,10 @@ from pathlib import Path
 
 import pytest
 from browsers import KINDS
-from systems import takes_long
 from test_site import enter, kind, made, transcript, visit, wait_for_prompt, wait_for_state  # noqa: F401  fixtures
 
 SOLUTIONS = Path(__file__).parents[1] / "course" / "solutions"
-pytestmark = [takes_long, pytest.mark.timeout(3000)]
+pytestmark = [pytest.mark.soak, pytest.mark.timeout(3000)]
 
 
 def write(page, text):

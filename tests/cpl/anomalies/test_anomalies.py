@@ -38,6 +38,7 @@ def every_plan(test):
     return pytest.mark.parametrize("plan", [*PLANS, *ACTING_PLANS, *PYTHON_PLANS], ids=lambda plan: plan.name)(test)
 
 
+@pytest.mark.soak(all_but=6)
 @every_plan
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_without_a_fault_a_plan_gives_its_value_and_leaves_nothing(plan, backend):
@@ -45,6 +46,7 @@ def test_without_a_fault_a_plan_gives_its_value_and_leaves_nothing(plan, backend
     assert str(outcome) in (plan.value, *plan.free) and not wrong
 
 
+@pytest.mark.soak(all_but=2)
 @every_plan
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize("action", faults.ACTIONS)
@@ -58,6 +60,7 @@ def test_a_fault_at_any_park_point(plan, backend, action, record_property):
     print(f"{count} runs")
 
 
+@pytest.mark.soak(all_but=6)
 @every_plan
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_several_faults_in_one_run(plan, backend, record_property):

@@ -19,6 +19,7 @@ from .python_plans import PYTHON_PLANS
 SEEDS = 1000 if SOAK else 20
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("plan", [*PLANS, *ACTING_PLANS, *PYTHON_PLANS], ids=lambda plan: plan.name)
 def test_a_plan_gives_the_same_with_every_seed(plan, record_property):
     different = set()
@@ -30,6 +31,7 @@ def test_a_plan_gives_the_same_with_every_seed(plan, record_property):
     record_property("schedules", len(different))
 
 
+@pytest.mark.soak(all_but=15)
 @pytest.mark.parametrize("plan", [*PLANS, *ACTING_PLANS, *PYTHON_PLANS], ids=lambda plan: plan.name)
 def test_both_back_ends_take_the_same_way_with_a_seed(plan):
     ways = []

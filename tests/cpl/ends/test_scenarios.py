@@ -52,6 +52,7 @@ def agree(seen, expected):
     )
 
 
+@pytest.mark.soak(all_but=16)
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize("name", IN_PYTHON)
 def test_a_plan_in_python(name, backend):

@@ -55,11 +55,18 @@ IN_HY = """
 """
 
 
-def pytest_collection_modifyitems(items):
-    for item in items:
-        parameters = getattr(getattr(item, "callspec", None), "params", {})
-        if "hy" in (parameters.get("lisp"), parameters.get("plan_text")) and item.originalname in NOT_IN_HY:
+FOR_THE_SOAK = {("threads", "hy"), ("greenlet", "lisp")}
+"""A law that is told in both languages runs in Lisp on threads and in Hy on greenlet. The two other pairs are for `make soak`."""
+
+
+def pytest_itemcollected(item):
+    parameters = getattr(getattr(item, "callspec", None), "params", {})
+    language, backend = parameters.get("lisp") or parameters.get("plan_text"), parameters.get("fresh_kernel")
+    if item.originalname in NOT_IN_HY:
+        if language == "hy":
             item.add_marker(pytest.mark.skip(f"not in plain Hy: {NOT_IN_HY[item.originalname]}"))
+    elif (backend, language) in FOR_THE_SOAK:
+        item.add_marker(pytest.mark.soak)
 
 
 @pytest.fixture(params=["lisp", "hy"])

@@ -28,6 +28,7 @@ WAITS = {
 waits = pytest.mark.parametrize("wait", WAITS.values(), ids=WAITS)
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.law(53, 54)
 @waits
 def test_a_second_request_ends_the_wait_and_the_outer_cleanup_runs_completely(lisp, wait):
@@ -54,6 +55,7 @@ def test_a_second_request_ends_the_wait_and_the_outer_cleanup_runs_completely(li
     assert kernel.now() == 6.5
 
 
+@pytest.mark.soak(all_but=10)
 @pytest.mark.law(53, 54)
 @waits
 def test_the_limit_ends_the_wait_with_a_warning(lisp, wait):
@@ -135,6 +137,7 @@ def test_a_second_request_leaves_a_protected_region_outside_of_cleanup_alone(lis
     )
 
 
+@pytest.mark.soak(all_but=10)
 @pytest.mark.law(53)
 @pytest.mark.parametrize(
     "way_in, then",
@@ -199,6 +202,7 @@ def test_a_limit_that_makes_no_sense_is_none(lisp):
     assert lisp('(dolist (x \'(:a -1 "5")) (let ((*cleanup-time-limit* x)) (top-level (unwind-protect 1 (sleep 9))))) 1') == "1"
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     "plan",
     [
@@ -313,6 +317,7 @@ def test_a_finally_of_an_evaporated_task_is_limited_as_well():
     assert order == [3.5]
 
 
+@pytest.mark.soak(all_but=2)
 def test_the_warning_says_whose_cleanup_waited_for_what_and_where(lisp, capsys):
     lisp(NEVER + "(let ((*cleanup-time-limit* 5)) (top-level (unwind-protect 1 (wait-for *never*))))")
     said = re.sub(r"-\d+ ", "-N ", " ".join(capsys.readouterr().err.split()))

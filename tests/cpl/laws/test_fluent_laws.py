@@ -133,6 +133,7 @@ def test_an_operator_on_plain_values_is_the_one_of_common_lisp(lisp):
     )
 
 
+@pytest.mark.soak(all_but=6)
 @pytest.mark.law(13)
 @pytest.mark.parametrize("operator", ["<", ">", "=", "+", "-", "*", "/", "eq", "eql", "fl-and", "fl-or", "list"])
 def test_an_operator_with_a_fluent_is_a_fluent_whose_value_is_the_operator_on_the_values(lisp, operator):
@@ -247,6 +248,7 @@ def test_who_waits_for_a_net_keeps_it(lisp):
     assert lisp("(top-level (par (wait-for (> *input* 5)) (progn (sleep 1) (collect-garbage) (setf (value *input*) 6))))") == "T"
 
 
+@pytest.mark.soak(all_but=2)
 def test_a_hundred_thousand_nets_that_nobody_holds_cost_an_input_nothing_that_never_pulses(lisp):
     lisp("(defparameter *input* (make-fluent :value 1)) (dotimes (i 100000) (< *input* i))")
     (fluent,) = lisp.session.evaluate_text("*input*")

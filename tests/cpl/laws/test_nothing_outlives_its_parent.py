@@ -42,6 +42,7 @@ def check(lisp):
     assert kernel.active().tasks == [kernel.active().main]
 
 
+@pytest.mark.soak(all_but=3)
 @form
 @pytest.mark.law(44, 53)
 @pytest.mark.parametrize("requests", ["(evaporate p)", "(progn (suspend p) (sleep 1) (evaporate p))", "(evaporate p :sync nil)"])
@@ -50,6 +51,7 @@ def test_evaporated(lisp, form, requests):
     check(lisp)
 
 
+@pytest.mark.soak(all_but=3)
 @form
 @pytest.mark.law(46)
 def test_ended_because_a_sibling_of_the_form_failed(lisp, form):
@@ -57,12 +59,14 @@ def test_ended_because_a_sibling_of_the_form_failed(lisp, form):
     check(lisp)
 
 
+@pytest.mark.soak(all_but=3)
 @form
 def test_ended_because_a_sibling_of_the_form_has_won(lisp, form):
     assert lisp(BRANCHES + f"(top-level (pursue (unwind-protect {form} (note :parent)) (progn (sleep 1) :won)))") == ":WON"
     check(lisp)
 
 
+@pytest.mark.soak(all_but=3)
 @form
 @pytest.mark.parametrize("time", [0.0, 0.25, 1.0])
 def test_interrupted(lisp, form, time):
@@ -78,6 +82,7 @@ def test_interrupted(lisp, form, time):
     assert kernel.active().tasks == [kernel.active().main]
 
 
+@pytest.mark.soak(all_but=2)
 @form
 def test_ended_by_the_time_limit(lisp_for_ten_seconds, form):
     lisp = lisp_for_ten_seconds
@@ -85,6 +90,7 @@ def test_ended_by_the_time_limit(lisp_for_ten_seconds, form):
     check(lisp)
 
 
+@pytest.mark.soak(all_but=3)
 @form
 def test_ended_because_of_a_deadlock(lisp, form):
     if "policy" in form:
@@ -111,6 +117,7 @@ HANDLERS = {
 }
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.law(46)
 @pytest.mark.parametrize("form", FAILING.values(), ids=FAILING)
 @pytest.mark.parametrize("handler", HANDLERS.values(), ids=HANDLERS)

@@ -62,6 +62,7 @@ def test_two_runs_of_one_name_at_a_time_would_share_a_tree_and_the_second_is_ref
     assert kernel.now() == 2 and plan_text("(named-top-level (:name lecture) 4)") == "4"
 
 
+@pytest.mark.soak(all_but=9)
 @pytest.mark.parametrize(
     "body, ends", [("(note :body)", "(:BODY)"), ("(seq (note :body) (fail))", "(:BODY)"), ("(seq (note :body) (car 1))", "(:BODY)")]
 )
@@ -383,6 +384,7 @@ def test_a_constrained_step_starts_after_all_that_it_waits_for_and_the_others_do
     assert plan_text("*notes*") == "(:FREE :B :A :LAST)"
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.law(92)
 @pytest.mark.parametrize("end", ["1", "(with-failure-handling ((plan-failure (e) (return e))) (fail))", "(evaporate first)"])
 def test_dead_in_whatever_way_is_enough(plan_text, end):

@@ -195,6 +195,7 @@ def test_sleep_takes_any_real_and_returns_nil(lisp, where):
 # ------------------------------------------------------------------------------- requests to tasks that are not there (yet)
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("end, status", [("1", ":SUCCEEDED"), ("(fail)", ":FAILED"), ("(evaporate (current-task))", ":EVAPORATED")])
 @pytest.mark.parametrize("where", ["{}", "(top-level {})"])
 def test_no_call_on_a_dead_task_hangs_or_changes_anything(lisp, end, status, where):
@@ -294,6 +295,7 @@ def test_an_endless_loop_without_waits_can_be_suspended_and_evaporated(lisp):
     )
 
 
+@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("sync", ["t", "nil"])
 def test_requests_work_from_callbacks_of_fluents_and_from_outside_of_plans(lisp, sync):
     assert (

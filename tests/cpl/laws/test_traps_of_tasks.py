@@ -73,6 +73,7 @@ def test_dynamic_bindings_of_the_caller_are_not_seen_in_a_plan_function(lisp):
     )
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.law(97)
 @pytest.mark.parametrize("seed", [None, 1, 2, 3])
 def test_branches_begin_in_the_order_in_which_they_are_written_with_any_seed(request, seed):

@@ -389,6 +389,7 @@ def test_return_in_declare_goal_suppresses_the_bodies_and_succeed_gives_all_its_
     assert plan_text("(declare-goal on ()) (def-goal (on) (succeed)) (top-level (multiple-value-list (on)))") == "NIL"
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.law(106)
 @pytest.mark.parametrize(
     "pattern, call, bindings",

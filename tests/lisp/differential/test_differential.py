@@ -16,7 +16,6 @@ from comparing import Asked, questions, recorded, shown
 from form_grammar import NAMES, Grammar
 from named_differences import NAMED, named
 from shrinking import shrunk
-from systems import takes_long
 
 from cramhy_runtime import kernel
 
@@ -35,11 +34,13 @@ def asked():
     kernel.stop()
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("chapter", NAMES)
 def test_random_forms_answer_as_was_recorded(asked, chapter):
     check_recorded(asked, [entry for entry in recorded("recorded") if entry[0] == chapter])
 
 
+@pytest.mark.soak
 def test_what_was_mended_stays_so(asked):
     check_recorded(asked, recorded("mended"))
 
@@ -51,6 +52,7 @@ def check_recorded(asked, entries):
         assert ours == theirs or named(question, theirs, ours), shown(question, theirs, ours)
 
 
+@pytest.mark.soak
 @needs_sbcl
 @pytest.mark.parametrize("chapter", NAMES)
 def test_random_forms_answer_as_in_sbcl(asked, chapter):
@@ -58,7 +60,7 @@ def test_random_forms_answer_as_in_sbcl(asked, chapter):
 
 
 @needs_sbcl
-@takes_long
+@pytest.mark.soak
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("chapter", NAMES)
 def test_many_random_forms_answer_as_in_sbcl(asked, chapter, seed):
@@ -76,6 +78,7 @@ def test_each_named_difference_stands_on_its_page():
     assert [difference.words for difference in NAMED if difference.words not in page] == []
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("chapter", NAMES)
 def test_the_same_number_makes_the_same_form(chapter):
     grammars = Grammar(chapter), Grammar(chapter)

@@ -42,6 +42,7 @@ def test_the_body_sees_the_newest_equated_designator(text):
     )
 
 
+@pytest.mark.soak(all_but=3)
 @pytest.mark.law("process-modules", 5)
 @pytest.mark.parametrize("signal", ["(fail *failure*)", "(error *failure*)", "(par (sleep 1) (fail *failure*))"])
 @pytest.mark.parametrize("kind", ["simple-plan-failure", "simple-error"])
@@ -143,6 +144,7 @@ def test_a_second_caller_is_warned_in_its_own_thread_and_served_afterwards(text)
     assert kernel.now() == 2
 
 
+@pytest.mark.soak(all_but=4)
 @pytest.mark.law("process-modules", 13)
 @pytest.mark.parametrize(
     "form",

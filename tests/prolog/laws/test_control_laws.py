@@ -141,6 +141,7 @@ def test_conjunctions_and_branches_let_a_cut_through(lisp, goal, answer):
     assert lisp(f"(all '{goal})") == answer
 
 
+@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     "goal, answer",
     [

@@ -148,6 +148,7 @@ def test_equal(lisp):
 # ------------------------------------------------------------------------------------------- the rest of sections 7.3 to 8
 
 
+@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize(
     "goal, answer",
     [

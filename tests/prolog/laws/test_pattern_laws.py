@@ -56,6 +56,7 @@ def test_rename_vars(lisp):
 # ---------------------------------------------------------------------------------------------------------- sections 2 and 3
 
 
+@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize(
     "form, result",
     [
@@ -140,6 +141,7 @@ def test_warnings_of_patterns(lisp):
 # ---------------------------------------------------------------------------------------------------------------- section 4
 
 
+@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize(
     "form, result",
     [

@@ -21,6 +21,7 @@ def where(table):
     return lambda target, source: listener.lookup(target, source)
 
 
+@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     "command",
     [(0, pi / 2, -pi / 2, 0, 0, 0.03), (0.5, 1.2, -1.0, 0.3, -0.4, 0.01), (-1.5, 2.0, -2.5, -1.0, 1.0, 0.02), (3, 0.3, -0.2, 1.2, 3, 0)],

@@ -4,7 +4,6 @@ from math import cos, hypot, pi, sin
 from random import Random
 
 import pytest
-from systems import takes_long
 
 
 def anywhere(chance):
@@ -13,7 +12,7 @@ def anywhere(chance):
     return away * sin(angle), away * cos(angle), chance.uniform(-pi / 2, pi / 2)
 
 
-@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=takes_long) for seed in range(1, 40))])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.soak) for seed in range(1, 40))])
 def test_a_brick_from_anywhere_arrives_anywhere(table, seed):
     chance = Random(seed)
     (x, y, turn), goal = anywhere(chance), anywhere(chance)

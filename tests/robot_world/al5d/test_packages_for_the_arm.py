@@ -16,6 +16,8 @@ from cramhy_runtime import kernel
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.session.session import Session
 
+pytestmark = pytest.mark.soak
+
 HERE = Path(__file__).parent
 FOREIGN = Path(os.environ.get("CRAMHY_FOREIGN", HERE / "nowhere"))
 BRICK = """(roslisp:call-service "/lynxmotion_al5d/spawn_brick" 'lynxmotion_al5d_description-srv:SpawnBrick :color "red"

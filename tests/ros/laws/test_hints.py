@@ -3,6 +3,7 @@
 import pytest
 
 
+@pytest.mark.soak(all_but=8)
 @pytest.mark.parametrize(
     "text, hint",
     [
@@ -72,6 +73,7 @@ def test_what_to_try(node, text, hint):
     assert node.hint(text) == hint
 
 
+@pytest.mark.soak(all_but=12)
 @pytest.mark.parametrize(
     "text, problem",
     [

@@ -45,6 +45,7 @@ BAD = {
 }
 
 
+@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize(("kind", "call"), [(kind, call) for kind, calls in CALLS.items() for call in calls])
 def test_every_function_refuses_a_name_that_ros_does_not_allow(lisp, kind, call):
     lisp('(start-ros-node "n")')

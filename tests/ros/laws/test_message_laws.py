@@ -194,6 +194,7 @@ def test_legacy_names_work_with_one_warning(lisp, request):
         assert lisp.warned() == ""
 
 
+@pytest.mark.soak(all_but=7)
 @pytest.mark.parametrize(
     "type_name, value, got",
     [

@@ -37,6 +37,7 @@ def bytes_(lisp, tmp_path):
     return lisp
 
 
+@pytest.mark.soak(all_but=7)
 @pytest.mark.parametrize("form", MESSAGES)
 def test_what_is_written_is_read_again(bytes_, form):
     bytes_(f"(defvar *m* {form}) (defvar *back* (through-a-file *m* (class-name (class-of *m*))))")
