@@ -15,7 +15,7 @@ IN_WEBASSEMBLY = sys.platform == "emscripten"
 BACKENDS = ["jspi"] if IN_WEBASSEMBLY else ["threads", "greenlet"]
 """The names of the kernel's back ends that this system can have."""
 ONE_BACKEND = BACKENDS if IN_WEBASSEMBLY else [pytest.param("threads", marks=pytest.mark.soak), "greenlet"]
-"""The same for rooms above `cpl`, whose tests meet the other back end in `make soak`. The tests of `kernel` and `cpl` always meet both."""
+"""The same for tests that meet the other back end in `make soak`. The tests of `kernel` and the laws of `cpl` always meet both."""
 needs_threads = pytest.mark.skipif(IN_WEBASSEMBLY, reason="WebAssembly has no threads")
 needs_processes = pytest.mark.skipif(IN_WEBASSEMBLY, reason="WebAssembly has no processes and no signals")
 

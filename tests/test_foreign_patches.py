@@ -15,7 +15,8 @@ import sys
 
 import pytest
 
-from test_house import FILES, ROOT, SOURCE, nodes_of, tree_of
+from source_trees import nodes_of, tree_of
+from test_house import FILES, ROOT, SOURCE
 
 OURS = ("cramhy_runtime", "cramhy")
 PATHS = (*FILES, *sorted((ROOT / "hy_src").rglob("*.py")))

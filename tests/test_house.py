@@ -14,6 +14,8 @@ import sys
 from pathlib import Path
 
 import pytest
+from source_trees import nodes_of, tree_of
+from systems import SOAK
 
 from cramhy_runtime.lisp_core import ports
 
@@ -51,17 +53,6 @@ TEXTS = sorted(
         ),
     }
 )
-
-
-@functools.cache
-def tree_of(path):
-    return ast.parse(path.read_text())
-
-
-@functools.cache
-def nodes_of(tree):
-    """All nodes of a tree, in the order of `ast.walk`: a tree is asked many times."""
-    return list(ast.walk(tree))
 
 
 @functools.cache
@@ -363,7 +354,7 @@ def test_nobody_sets_the_names_of_another_module():
 def test_a_patch_is_found(monkeypatch):
     path = SOURCE / "image_that_patches.py"  # it is never written
     text = "from cramhy_runtime import kernel\nkernel.now = kernel.reports.LIMIT = 1\nsetattr(kernel, 'now', 2)\nkernel.cleanup.limit = 3\n"
-    monkeypatch.setattr(Path, "read_text", lambda self: text)
+    monkeypatch.setattr(Path, "read_text", lambda self, **options: text)
     assert [line.split(":")[0] for line in patches(path)] == ["line 2", "line 2", "line 3", "line 4"]
 
 
@@ -406,7 +397,6 @@ def test_every_module_opens_with_a_paragraph():
     assert [str(path.relative_to(ROOT)) for path in FILES if not ast.get_docstring(tree_of(path))] == []
 
 
-@pytest.mark.soak(all_but=25)
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="each module gets a fresh interpreter by a fork")
 @pytest.mark.parametrize(
     "room",
@@ -419,7 +409,7 @@ def test_a_room_that_says_where_its_parts_are_names_them_all(room):
     assert parts - set(re.findall(r"`(\w+)`", told)) == {"__init__"}
 
 
-@pytest.mark.parametrize("files", ["packages", pytest.param("all", marks=pytest.mark.soak)])
+@pytest.mark.parametrize("files", ["packages", *(["all"] if SOAK else [])])
 def test_any_module_can_be_imported_first(files):
     """No module relies on another one having been imported before it. The short form takes packages and each twentieth module."""
     wanted = FILES if files == "all" else [path for path in FILES if path.name == "__init__.py"] + FILES[::20]

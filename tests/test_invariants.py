@@ -10,6 +10,7 @@ import re
 from pathlib import Path
 
 import pytest
+from source_trees import tree_of
 
 TESTS = Path(__file__).parent
 REFERENCE = TESTS.parent / "docs" / "reference"
@@ -33,7 +34,7 @@ def marks():
     found = {}
     for path in sorted(TESTS.rglob("test_*.py")):
         text = path.read_text()
-        for node in ast.walk(ast.parse(text)) if "mark.law(" in text else ():
+        for node in ast.walk(tree_of(path)) if "mark.law(" in text else ():
             if isinstance(node, ast.FunctionDef):
                 for decorator in node.decorator_list:
                     if isinstance(decorator, ast.Call) and ast.unparse(decorator.func) == "pytest.mark.law":

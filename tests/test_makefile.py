@@ -36,7 +36,6 @@ def installed(tmp_path):
     return installed
 
 
-@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize("target", [target for target in TARGETS if target != "clean"])
 def test_the_lectures_and_the_page_need_little_and_the_rest_comes_with_the_tests(installed, target):
     wanted = SMALL.get(target, [LIGHT, REST])

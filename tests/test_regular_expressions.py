@@ -6,6 +6,7 @@ from pathlib import Path
 from re import _constants, _parser
 
 import pytest
+from source_trees import nodes_of, tree_of
 
 from cramhy_runtime.languages.commonlisp.pathnames.pathname_objects import CHARACTER_SET, MULTI_CHAR, SINGLE_CHAR, Pattern
 
@@ -17,7 +18,7 @@ REPEATS = (_constants.MAX_REPEAT, _constants.MIN_REPEAT)
 def patterns(path):
     """(line, text, flags) of each regular expression that a file writes out."""
     source = path.read_text(encoding="utf-8")
-    for node in ast.walk(ast.parse(source)) if re.search(r"\bre\.|late_pattern", source) else ():
+    for node in nodes_of(tree_of(path)) if re.search(r"\bre\.|late_pattern", source) else ():
         if not (isinstance(node, ast.Call) and node.args and isinstance(node.args[0], ast.Constant)):
             continue
         function, text = node.func, node.args[0].value

@@ -147,7 +147,6 @@ def test_the_id_of_a_goal(lisp):
     assert lisp(f"({AL}send-goal *client* (goal 1)) (subseq ({AL}goal-id *client*) 0 3)") == '"/n-"'
 
 
-@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     "form, text",
     [

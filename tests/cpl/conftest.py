@@ -1,10 +1,10 @@
-"""Each test has its own virtual time, on both back ends."""
+"""Each test has its own virtual time. The laws, in their own folder, run on both back ends in `make test`."""
 
 import io
 import itertools
 
 import pytest
-from systems import BACKENDS
+from systems import ONE_BACKEND
 
 from cramhy_runtime import kernel
 from cramhy_runtime.session import Image, boot
@@ -15,7 +15,7 @@ from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 boot()
 
 
-@pytest.fixture(params=BACKENDS, autouse=True)
+@pytest.fixture(params=ONE_BACKEND, autouse=True)
 def fresh_kernel(request):
     with Image(as_now=True):
         yield kernel.start(clock="virtual", backend=request.param, time_limit=3600)

@@ -108,7 +108,6 @@ def test_an_unknown_step_in_an_ordering_is_named_and_starts_nothing(plan_text):
     assert plan_text("*notes*") == "(:CLOSED)" and nothing_runs()
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "ordering, value, wanted, more",
     [
@@ -347,7 +346,6 @@ def test_a_function_of_the_user_may_have_the_name_of_a_marker(plan_text):
     plan_text("(fmakunbound 'goal-context)")
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "form, message",
     [

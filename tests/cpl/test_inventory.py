@@ -97,17 +97,15 @@ def fresh_kernel():
 
 
 def kinds(symbol):
-    """What ``symbol`` names."""
-    found = set()
+    """What ``symbol`` names, one after the other: to look for a class takes longest."""
     if symbol.macro is not None:
-        found.add("macro")
+        yield "macro"
     if not isinstance(symbol.function, UndefinedFunction):
-        found.add("function")
+        yield "function"
     if symbol.special and symbol.value is not UNBOUND:
-        found.add("variable")
+        yield "variable"
     if is_known_type(symbol):
-        found.add("class")
-    return found
+        yield "class"
 
 
 @pytest.mark.soak(all_but=2)
@@ -159,7 +157,7 @@ def test_what_other_cram_code_reaches_for_is_public(kind):
 def test_the_markers_are_exported_and_are_all_that_has_no_meaning():
     markers = set(MARKERS.upper().split())
     assert markers == set(WHERE)
-    without = {name for name, symbol in CPL_IMPL.external.items() if not kinds(symbol)}
+    without = {name for name, symbol in CPL_IMPL.external.items() if not any(kinds(symbol))}
     assert without - {"LOG-SUCCEED", "LOG-FAIL", "PLAN-TYPE", "PLAN-LAMBDA-LIST", "PLAN-SEXP"} == markers
     assert all(CPL.lookup(name)[1] == "external" for name in markers)
 

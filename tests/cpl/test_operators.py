@@ -74,7 +74,6 @@ def test_a_plan_form_outside_of_a_plan_says_so(form, call):
     assert (problem.value.format_control, problem.value.format_arguments) == ("'~a' form not inside a plan.", (form,))
 
 
-@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("form", [operators.par, operators.pursue, operators.try_all, lambda: cpl.partial_order([], [])])
 def test_parallel_forms_without_branches_are_errors(form):
     with pytest.raises(Error) as problem:

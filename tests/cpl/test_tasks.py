@@ -469,7 +469,6 @@ def test_a_dead_task_goes_without_the_garbage_collector():
         gc.enable()
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "wait",
     [lambda: cpl.sleep(10), lambda: cpl.wait_for(cpl.make_fluent()), lambda: cpl.par(lambda: cpl.sleep(10), lambda: cpl.sleep(20))],

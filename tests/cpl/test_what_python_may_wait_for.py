@@ -83,7 +83,6 @@ def test_a_generator_expression_is_a_value_like_others():
     assert list(cpl.run(lambda: (n for n in [1, 2]), clock="virtual")) == [1, 2]
 
 
-@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("decorate", [prolog_test, function, process_module, motion_grounding], ids=lambda each: each.__name__)
 def test_a_decorator_refuses_what_would_not_run(decorate):
     with pytest.raises(TypeError, match="asynchronous is an `async def`, and cannot be .*: its call would return at once, and run nothing"):
@@ -105,7 +104,6 @@ def test_a_mistake_in_the_program_is_not_tried_another_way(form, error):
         cpl.run(lambda: form(wrong, lambda: cpl.sleep(1)), clock="virtual")
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("form", [cpl.try_all, cpl.try_in_order, lambda *ways: cpl.try_each_in_order(ways, lambda way: way())], ids=FORMS)
 def test_other_exceptions_are_failures_of_an_attempt(form):
     def fails():

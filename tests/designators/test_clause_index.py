@@ -103,7 +103,6 @@ def test_a_redefined_group_is_used_at_once(lisp):
     assert lisp("(reference (a motion (type driving)))") == "(TWO)"
 
 
-@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("description", ["5", "'(:type :driving)", "'((:type) (:speed 1 2))", '\'(("type" :driving) (5 5))', "#'car"])
 def test_a_description_may_be_anything(lisp, description):
     lisp(

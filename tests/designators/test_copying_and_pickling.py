@@ -46,7 +46,6 @@ def command(motion):
     return motion
 
 
-@pytest.mark.soak(all_but=4)
 def test_a_copy_of_a_designator_is_another_one_with_the_same_properties(copied):
     cup = Object(type=kw.cup, color="red")
     motion = Motion(("goal", 1), ("goal", 2), type=kw.driving, towards=cup, then=[1, [2.5, "a"]], call=command)
@@ -57,7 +56,6 @@ def test_a_copy_of_a_designator_is_another_one_with_the_same_properties(copied):
     assert made.effective is None and not desig_equal(made, motion)
 
 
-@pytest.mark.soak(all_but=4)
 def test_a_resolved_designator_stays_resolved_and_knows_the_solutions_that_were_asked_for(copied):
     motion_grounding(Going)(lambda motion: iter([["go", 1], ["go", 2], ["go", 3]]))
     location_generator(Beside)(lambda place: [place.x + 1, place.x + 2])

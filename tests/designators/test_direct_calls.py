@@ -54,7 +54,6 @@ def test_calls_are_watched_like_those_of_any_generic_function():
     assert seen == [("a",)]
 
 
-@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     "call, given",
     [

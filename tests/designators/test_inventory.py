@@ -146,7 +146,6 @@ def test_names_that_belong_to_other_packages():
     assert all(DESIG.lookup(name.upper())[1] != "external" for name in NOT_IN_THIS_VERSION.split())
 
 
-@pytest.mark.soak(all_but=21)
 @pytest.mark.parametrize("name, lambda_list", LAMBDA_LISTS.items())
 def test_lambda_lists(name, lambda_list):
     assert prin1_to_string(lambda_list_of(symbol(name).function)).replace("#:", "") == lambda_list

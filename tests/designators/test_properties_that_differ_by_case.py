@@ -20,7 +20,6 @@ def inherited():
         X: float = 0.0
 
 
-@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     ("make", "one", "other", "of"),
     [

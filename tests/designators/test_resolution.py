@@ -345,7 +345,6 @@ def test_validators_restrict_to_what_all_of_them_accept():
         error_of(place())
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "verdicts, valid",
     [

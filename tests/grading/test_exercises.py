@@ -35,7 +35,6 @@ def test_a_formula_gives_a_finite_number_or_is_told(formula):
         computed(formula, {})
 
 
-@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize("name", own_exercises())
 def test_an_exercise_of_ours_is_whole(name):
     folder = own_exercises()[name]

@@ -42,7 +42,6 @@ def test_questions_with_seeds_and_all_of_them_must_be_right(session):
     assert "should give" in told and "and gave 0" in told
 
 
-@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     ("form", "told"),
     [

@@ -144,7 +144,6 @@ COPIES = {
 }
 
 
-@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize("way", COPIES)
 def test_a_copy_that_was_worked_over_is_found_and_the_other_authors_solution_is_not(tmp_path, way):
     copy = RACE

@@ -75,7 +75,6 @@ def lecture(request, shared):
     return steps, answers
 
 
-@pytest.mark.soak(all_but=1)
 def test_common_lisp_at_the_prompt_of_hy_is_answered_as_by_roslisp_repl(lecture):
     steps, answers = lecture
     for step, answer, expected in zip(steps, answers["lisp"], answers["roslisp_repl"]):

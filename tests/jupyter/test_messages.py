@@ -137,7 +137,6 @@ WRONG = [
 ]
 
 
-@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize(("kind", "content", "reason"), WRONG)
 def test_a_wrong_message_is_refused_with_the_reason(cells, kind, content, reason):
     refused = reply(cells, kind, content)

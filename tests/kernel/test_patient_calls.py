@@ -24,7 +24,6 @@ def running(request, backend):
     kernel.stop()
 
 
-@pytest.mark.soak(all_but=2)
 def test_a_task_that_sleeps_is_ended_at_once_and_the_others_run(running):
     heard = []
 
@@ -43,7 +42,6 @@ def test_a_task_that_sleeps_is_ended_at_once_and_the_others_run(running):
     assert heard == ["another ran", "cleaned up"]
 
 
-@pytest.mark.soak(all_but=2)
 def test_the_main_task_that_sleeps_is_interrupted(running):
     kernel.spawn(kernel.interrupt)
     with pytest.raises(kernel.Interrupted):

@@ -197,7 +197,6 @@ def test_a_finished_task_is_not_kept_alive_by_the_kernel(k):
     assert ref() is None
 
 
-@pytest.mark.soak(all_but=2)
 @needs_processes
 @pytest.mark.parametrize("clock", ["virtual", "wall"])
 def test_a_script_that_just_ends_runs_the_cleanup_of_its_tasks(backend, clock):

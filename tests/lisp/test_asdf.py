@@ -242,7 +242,6 @@ FUNCTIONS_WITH_METHODS = """component-name component-pathname component-version 
     version-satisfies""".split()
 
 
-@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize("name", FUNCTIONS_WITH_METHODS)
 def test_the_functions_of_asdf_take_methods(run, name):
     """For a class of the program's own; what they say of systems stays as it was."""

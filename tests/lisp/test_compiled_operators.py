@@ -95,7 +95,6 @@ def test_the_operator_means_the_function(session, program, wanted):
     assert answer(session, program) == wanted
 
 
-@pytest.mark.soak(all_but=23)
 @pytest.mark.parametrize(
     ("program", "wanted"),
     [
@@ -158,7 +157,6 @@ def test_an_accessor_of_the_same_name_for_a_slot_of_another_name_is_seen_by_its_
     assert answer(session, "(x-of (make-new-spot :spot-x 7))") == "8"
 
 
-@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     "loop",
     [
@@ -176,7 +174,6 @@ def test_an_endless_loop_lets_others_run_and_can_be_ended(session, loop):
     assert answer(session, plan) == ":SLEPT"
 
 
-@pytest.mark.soak(all_but=17)
 @pytest.mark.parametrize(
     ("program", "wanted"),
     [

@@ -79,7 +79,6 @@ def test_a_declared_range_ends_at_its_bounds(lisp, specifier, shape):
         assert lisp(f"(typep {form} '{specifier})") == "NIL"
 
 
-@pytest.mark.soak(all_but=15)
 @pytest.mark.parametrize("specifier", [specifier for specifier in RANGES if specifier != "fixnum" and RANGES[specifier][1] is not None])
 def test_elements_of_a_declared_range_are_stored_up_to_the_bounds_of_the_upgraded_type(lisp, specifier):
     low, high = RANGES[specifier]

@@ -114,7 +114,6 @@ def test_what_is_no_table_is_told_alike(lisp, table, form):
     assert told == called and "HASH-TABLE" in told
 
 
-@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize(
     ("form", "answer"),
     [

@@ -54,7 +54,6 @@ def a_kernel():
     kernel.start(clock="virtual")
 
 
-@pytest.mark.soak(all_but=12)
 @pytest.mark.parametrize("form, expected", recorded("equality.txt"))
 def test_equality_answers_as_in_sbcl(form, expected):
     assert answer(form) == expected

@@ -54,7 +54,6 @@ def test_at_the_prompt_it_is_the_error_itself(lisp, form):
     assert lisp.error(form) == "There is no 3."
 
 
-@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize(
     ("form", "answer"),
     [

@@ -25,7 +25,6 @@ def lisp(session):
     session.package = "COMMON-LISP-USER"
 
 
-@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize(
     ("change", "answer"),
     [

@@ -28,7 +28,6 @@ def test_slots_are_filled_in_their_order(lisp):
     assert lisp("(setf *log* nil) (list (parts (make-it 2)) *log*)") == "((10 2 5) (:B :Y))"
 
 
-@pytest.mark.soak(all_but=7)
 @pytest.mark.parametrize(
     ("change", "then", "answer"),
     [

@@ -49,7 +49,6 @@ def undefined(session, form):
     return [each["message"].rpartition(":")[2] for each in warnings if each["message"].startswith("undefined function")]
 
 
-@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize(
     ("form", "names"),
     [

@@ -104,7 +104,6 @@ def test_local_nicknames_hold_in_their_package_only(lisp):
     assert lisp("(find-package :geometry)") is None
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "form",
     [

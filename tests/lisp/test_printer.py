@@ -33,7 +33,6 @@ def running(monkeypatch):
     kernel.stop()
 
 
-@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("name", ["floats", "names", "code", "random_data"])
 def test_recorded_objects_print_as_in_sbcl(name):
     assert printing_answers.differences(name) == []

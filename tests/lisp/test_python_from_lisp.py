@@ -34,7 +34,6 @@ def without_addresses(text):
     return re.sub(r"\{[0-9A-F]{10}\}", "{}", text)
 
 
-@pytest.mark.soak(all_but=24)
 @pytest.mark.parametrize(
     ("form", "answer"),
     [

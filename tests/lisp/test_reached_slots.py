@@ -38,7 +38,6 @@ def test_a_slot_is_read_and_written(lisp):
     assert lisp(CLASSES) == "(1 2 3 NIL 4)"
 
 
-@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize(
     ("change", "then", "answer"),
     [

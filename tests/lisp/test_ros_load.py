@@ -64,7 +64,6 @@ def test_a_package_that_is_there_is_loaded(answer, words):
     assert answer(f"(ros-load:load-system {words})") is True
 
 
-@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize(
     ("package", "system", "hint"),
     [

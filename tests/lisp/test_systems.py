@@ -83,7 +83,6 @@ def test_the_pathname_of_a_system(workspace):
     assert workspace.load("path") == ["x"]
 
 
-@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     "options",
     [

@@ -75,7 +75,6 @@ INDENTED = [
 ]
 
 
-@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize("text", INDENTED)
 def test_indentation_brings_back_what_was_lost(editor, text):
     uri = f"untitled:indented-{INDENTED.index(text)}.lisp"

@@ -297,7 +297,6 @@ def test_mistakes_say_what_to_write(mistake, kind, text):
     assert text_of(problem) == text
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "form, use",
     [

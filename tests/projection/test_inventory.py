@@ -120,7 +120,6 @@ def test_nothing_else_is_exported_and_the_nicknames_are_known(package):
         assert find_package(nickname) is find_package(package)
 
 
-@pytest.mark.soak(all_but=25)
 @pytest.mark.parametrize("designator, lambda_list", LAMBDA_LISTS.items())
 def test_functions_have_the_lambda_lists_of_the_original(designator, lambda_list):
     shown = prin1_to_string(lambda_list_of(exported(designator).function))

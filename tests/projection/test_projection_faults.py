@@ -57,7 +57,6 @@ def test_projections_side_by_side_do_not_depend_on_who_goes_first(backend):
     testing.explore(side_by_side, schedules=40, check=check, backend=backend)
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("backend", ["threads", "greenlet"])
 @pytest.mark.parametrize("action", ["evaporate", "fail", "suspend-and-resume"])
 def test_what_was_started_up_is_shut_down_whatever_happens(action, backend):

@@ -13,7 +13,6 @@ from cramhy_runtime.prolog import test as prolog_test
 PLACES = {"cup": 1, "plate": 2}
 
 
-@pytest.mark.soak(all_but=8)
 @pytest.mark.parametrize(
     ("given", "elements"),
     [

@@ -140,7 +140,6 @@ with ?x = homer, ?y = bart, ?a = 10"""
     )
 
 
-@pytest.mark.soak(all_but=20)
 @pytest.mark.parametrize(
     "goal, reason",
     [

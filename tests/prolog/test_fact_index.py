@@ -178,7 +178,6 @@ def test_atoms_that_are_compared_by_their_contents_are_found():
     assert [answer[read("?i")] for answer in query.solve(read('(fact (name "a" ?i))'))] == [*range(20)]
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("seed", range(6))
 def test_who_asks_first_gets_the_answers_of_the_table(seed, monkeypatch):
     """Where facts are many, the first goal of its kind looks through the columns, and the second one makes a table."""

@@ -183,7 +183,6 @@ def test_a_group_may_be_removed_while_a_query_waits_in_it():
     assert answers == ["(((?X . 1)) ((?X . 2)))"]
 
 
-@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("backend", ["threads", "greenlet"])
 @pytest.mark.parametrize("goal", ["(forever)", "(forever-in-turn 1)", "(and (or-forever) (fail))", "(nothing-ever)"])
 def test_a_proof_that_never_ends_is_evaporated(backend, goal):

@@ -334,7 +334,6 @@ def test_a_task_that_is_ended_leaves_its_goals():
 # -------------------------------------------------------------------------------------------------------------- the same answers
 
 
-@pytest.mark.soak(all_but=7)
 @pytest.mark.parametrize(
     "goal",
     [

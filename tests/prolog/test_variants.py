@@ -117,7 +117,6 @@ def test_variants_of_variants_end():
     assert ask("(and (grow (a ?u) 3 ?y) (== ?u 1))").count("G") == 3
 
 
-@pytest.mark.soak(all_but=12)
 @pytest.mark.parametrize(
     "construct", ["(call {})", "(and {})", "(once {})", "(call (call {}))", "(call (and {} (true)))", "(or (call {}))"]
 )

@@ -185,7 +185,6 @@ def test_a_variable_of_a_method_may_be_called_as_a_macro_is(type_in, body):
     assert "debugger invoked" not in text and text.endswith("(5)\n")
 
 
-@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     "form",
     [

@@ -117,7 +117,6 @@ def test_ctrl_c_in_the_debugger_stays_in_the_debugger(terminal):
     assert evaluates(terminal)
 
 
-@pytest.mark.soak(all_but=2)
 def test_ctrl_d_leaves(terminal):
     assert terminal.end() == 0
 

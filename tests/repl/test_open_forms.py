@@ -19,7 +19,6 @@ def after(*lines, hy=False):
     return opened
 
 
-@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize(
     "lines, prompt",
     [

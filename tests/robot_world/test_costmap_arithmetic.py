@@ -53,7 +53,6 @@ COSTS = {
 }
 
 
-@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize("cost", COSTS.values(), ids=COSTS)
 def test_a_cost_function_gives_a_grid_what_it_gives_each_place(cost):
     geometry = {"size": 3, "origin_x": -1, "origin_y": -1, "resolution": 0.25}

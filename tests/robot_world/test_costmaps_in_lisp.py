@@ -275,7 +275,6 @@ def test_a_size_that_is_not_a_number_is_an_error(lisp):
     assert "WIDE" in lisp.error("(costmap-metadata)", "type-error")
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "goal, result, value",
     [
@@ -416,7 +415,6 @@ MESSAGES = """
 """
 
 
-@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize(
     "form, value",
     [

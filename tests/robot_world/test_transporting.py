@@ -174,7 +174,6 @@ def test_of_a_hundred_bottles_held_by_friction_ninety_arrive(physical):
     assert len(failed) <= 10, failed
 
 
-@pytest.mark.soak
 def test_a_check_does_not_touch_a_physical_world(physical):
     """It takes a moment, in which controllers go on holding the robot where it is."""
     spawn(physical, "bottle", "bottle", 1.42, 0.7)
@@ -206,7 +205,6 @@ def test_what_moves_in_a_physical_world_is_hindered_with_cram_s_failures(physica
     assert physical(reach).startswith("MANIPULATION-POSE-UNREACHABLE: ")
 
 
-@pytest.mark.soak
 def test_a_world_has_one_of_two_modes(session):
     session.evaluate_text("(setf btr-belief:*world-mode* :dreamt)")
     try:
@@ -216,7 +214,6 @@ def test_a_world_has_one_of_two_modes(session):
     assert str(answer) == "The mode of a world is :KINEMATIC or :PHYSICAL, not :DREAMT."
 
 
-@pytest.mark.soak
 def test_what_is_not_there_is_nowhere_to_be_found(ask):
     assert ask("(transport '(1.5 0.7 0.95) '(-1.4 -1 0.82))").startswith("OBJECT-NOWHERE-TO-BE-FOUND: The object is at none of the places")
 
@@ -232,13 +229,11 @@ def test_what_no_arm_reaches_is_unfetchable_and_stays(ask):
     assert ask("(place-of 'bottle)") == "(1.5 0.7 1.9)"
 
 
-@pytest.mark.soak
 def test_a_base_that_stands_nowhere_free_is_in_collision(ask):
     form = "(with-simulated-robot (let ((?in (at -0.9 1.8 0))) (perform (an action (type navigating) (location (a location (pose ?in)))))))"
     assert ask(form) == "NAVIGATION-GOAL-IN-COLLISION: No other samples in designator"
 
 
-@pytest.mark.soak
 def test_a_hand_that_holds_something_takes_nothing_more(ask):
     """The second object comes into the other hand, and a third one into none."""
     for name, y in (("one", 0.5), ("two", 0.75), ("three", 1.0)):
@@ -276,7 +271,6 @@ def test_what_is_dropped_at_the_sink_is_dropped_from_lower_where_the_arm_is_too_
     assert re.match(r"\(1\.\d+ -0\.\d+ 0\.8", ask("(place-of 'spoon)"))
 
 
-@pytest.mark.soak
 def test_a_spoon_behind_the_front_of_its_drawer_is_seen_from_above(ask):
     """From where costmaps let the robot stand, the front hides more than a tenth of it."""
     ask(f'(put-spoon-into "{UPPER}")')
@@ -307,7 +301,6 @@ def stand_and_look(ask, x, y, robot_x=0.7):
       (let ((?there (at {x} {y} 0.9))) (perform (an action (type looking) (target (a location (pose ?there)))))))""")
 
 
-@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("spawned, wanted", [("cereal", "breakfast-cereal"), ("breakfast-cereal", "cereal"), ("fork", "fork-plastic")])
 def test_things_that_look_the_same_are_found_by_either_type(ask, spawned, wanted):
     spawn(ask, "it", spawned, 1.45, 0.7)
@@ -335,7 +328,6 @@ def closed_room(ask):
     ask("(def-fact-group closed-room (costmap:desig-costmap))")
 
 
-@pytest.mark.soak
 def test_where_no_costmap_has_a_place_a_simulated_robot_takes_a_free_one(ask, closed_room, capsys):
     spawn(ask, "it", "bottle", 1.45, 0.7)
     stand_and_look(ask, 1.45, 0.7)
@@ -343,7 +335,6 @@ def test_where_no_costmap_has_a_place_a_simulated_robot_takes_a_free_one(ask, cl
     assert "No place of the costmaps serves. The simulated robot takes another free place: " in capsys.readouterr().out
 
 
-@pytest.mark.soak
 def test_a_place_that_is_told_is_the_only_one(ask):
     spawn(ask, "it", "bottle", 1.45, 0.7)
     stand_and_look(ask, 1.45, 0.7, 0.2)
@@ -352,7 +343,6 @@ def test_a_place_that_is_told_is_the_only_one(ask):
     assert ask("(held)") == "NIL"
 
 
-@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("kind, known", [("cup", True), ("milk", True), ("breakfast-cereal", True), ("bowl", True), ("bottle", False)])
 def test_for_some_things_it_is_known_how_they_are_taken_from_above(ask, kind, known):
     """Facts offer it of bowls only; a plan says it where the ways from the sides are blocked."""
@@ -365,7 +355,6 @@ def test_for_some_things_it_is_known_how_they_are_taken_from_above(ask, kind, kn
         assert ask(grasp.format(kind)) == ":TOP"
 
 
-@pytest.mark.soak
 def test_what_is_hidden_now_lies_where_it_was_seen(ask):
     spawn(ask, "it", "bottle", 1.45, 0.7)
     stand_and_look(ask, 1.45, 0.7)
@@ -379,7 +368,6 @@ def test_what_is_hidden_now_lies_where_it_was_seen(ask):
     assert ask(again.format("t")) == '(IT "base_footprint" T T)'
 
 
-@pytest.mark.soak
 def test_a_bowl_is_taken_by_that_side_of_its_rim_which_is_free(ask):
     spawn(ask, "it", "bowl", 1.45, 0.7)
     stand_and_look(ask, 1.45, 0.7)
@@ -409,20 +397,13 @@ def turned(degrees):
 
 AMONG_OTHERS = [  # what is fetched, and what stands beside it: the kind, x and y in metres, degrees about z
     pytest.param([("milk", 1.562, 1.04, 22), ("cereal", 1.48, 0.882, 19)], id="milk behind a box, CRAM's demo-random with seed 8"),
-    pytest.param(
-        [("milk", 1.402, 1.24, 5), ("cereal", 1.48, 1.158, -169)], id="milk between a box and a wall, seed 4", marks=pytest.mark.soak
-    ),
-    pytest.param(
-        [("bottle", 1.45, 1.24, 0), ("cup", 1.34, 1.22, 0), ("milk", 1.45, 1.13, 0)], id="bottle among two", marks=pytest.mark.soak
-    ),
-    pytest.param(
-        [("milk", 1.45, 0.7, 0), ("cereal", 1.43, 0.792, 180), ("breakfast-cereal", 1.43, 0.608, 0)],
-        id="milk between two boxes",
-        marks=pytest.mark.soak,
-    ),
+    pytest.param([("milk", 1.402, 1.24, 5), ("cereal", 1.48, 1.158, -169)], id="milk between a box and a wall, seed 4"),
+    pytest.param([("bottle", 1.45, 1.24, 0), ("cup", 1.34, 1.22, 0), ("milk", 1.45, 1.13, 0)], id="bottle among two"),
+    pytest.param([("milk", 1.45, 0.7, 0), ("cereal", 1.43, 0.792, 180), ("breakfast-cereal", 1.43, 0.608, 0)], id="milk between two boxes"),
 ]
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("things", AMONG_OTHERS)
 def test_what_keeps_every_hand_from_an_object_is_put_aside(ask, capsys, things):
     for kind, x, y, degrees in things:
@@ -437,7 +418,6 @@ def test_what_keeps_every_hand_from_an_object_is_put_aside(ask, capsys, things):
         assert dist((x, y), (now_x, now_y)) < 0.6 and now_z > 0.88, f"{kind} is at {now}"
 
 
-@pytest.mark.soak
 def test_what_is_held_or_lies_in_a_drawer_or_stands_apart_is_not_put_aside(ask):
     for name, x, y in (("it", 1.45, 0.7), ("held", 1.45, 0.5), ("beside", 1.45, 0.9), ("apart", 1.45, 0.1)):
         spawn(ask, name, "bottle", x, y)
@@ -473,7 +453,6 @@ def let_fall(ask):
 NOT_THERE = "OBJECT-UNDELIVERABLE: The object was put down, but does not lie where it was to be."
 
 
-@pytest.mark.soak
 def test_what_falls_from_where_it_was_put_is_undeliverable(ask):
     assert let_fall(ask) == (NOT_THERE, "NIL")
 
@@ -494,7 +473,6 @@ def test_to_turn_towards_what_is_behind_turns_the_base(ask):
     assert ask(form) == "T"
 
 
-@pytest.mark.soak
 def test_a_check_leaves_the_world_as_it_was_and_moves_the_action_on(ask):
     spawn(ask, "bottle", "bottle", 1.42, 0.7)
     form = f"""(with-simulated-robot
@@ -507,7 +485,6 @@ def test_a_check_leaves_the_world_as_it_was_and_moves_the_action_on(ask):
     assert ask(form) == '(T \\"PICK-UP\\" NIL)' or ask(form) == '(T "PICK-UP" NIL)'
 
 
-@pytest.mark.soak
 def test_fetched_is_held_and_delivered_is_there(ask):
     spawn(ask, "bottle", "bottle", 1.42, 0.7)
     form = f"""(with-simulated-robot
@@ -580,7 +557,6 @@ def test_a_spoon_is_transported_out_of_its_drawer_which_is_closed_again(ask):
     assert ask(f'(< -0.001 (opened "{UPPER}") 0.001)') == "T"
 
 
-@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize(
     ("name", "text"),
     [

@@ -50,7 +50,6 @@ def test_a_dict_can_be_read_by_its_names():
     assert get_param("arm/speed") == 0.5
 
 
-@pytest.mark.soak(all_but=3)
 @pytest.mark.parametrize(
     "given, kept", [((1, 2), [1, 2]), (np.float64(1.5), 1.5), (np.int64(3), 3), (np.bool_(False), False), (np.array([[1, 2]]), [[1, 2]])]
 )

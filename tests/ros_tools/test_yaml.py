@@ -36,7 +36,6 @@ empty:
 """
 
 
-@pytest.mark.soak(all_but=25)
 @pytest.mark.parametrize(
     ("text", "value"),
     [

@@ -119,7 +119,6 @@ def stranger(server):
 HOSTS = ["evil.example", "evil.example:80", "127.0.0.1", "127.0.0.1:1", "localhost:1", "127.0.0.1.evil.example", "[::1]:80", "", "0.0.0.0"]
 
 
-@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize("host", HOSTS)
 def test_a_page_that_had_its_name_point_here_is_refused(server, host):
     text = "This server answers to 127.0.0.1 and localhost only, with its port.\n"
@@ -167,7 +166,6 @@ PATHS = ["/../secret.txt", "/..%2fsecret.txt", "/%2e%2e/secret.txt", "//secret.t
          "/" + "a" * 3000, "/__proto__", "/constructor", "/proc/self/environ", "\\secret.txt"]
 
 
-@pytest.mark.soak(all_but=8)
 @pytest.mark.parametrize("path", PATHS)
 def test_only_the_pages_that_there_are(server, path):
     assert request(server, path=path)[0] in (400, 404)
@@ -509,7 +507,6 @@ CALLS = [
 ]
 
 
-@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize(("call", "told"), CALLS, ids=[json.dumps(each[0]) for each in CALLS])
 def test_calls_that_cannot_be_made_are_answered(server, call, told):
     def client(wire):

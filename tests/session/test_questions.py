@@ -61,7 +61,6 @@ shared = pytest.fixture(scope="module")(asking)
 """Questions leave an image as it was, so one is enough for all of them."""
 
 
-@pytest.mark.soak(all_but=8)
 @pytest.mark.parametrize("question", QUESTIONS.values(), ids=list(QUESTIONS))
 def test_no_question_loads_what_it_asks_about(question, shared):
     loaded, waiting = dict(systems.loaded), libraries_waiting()

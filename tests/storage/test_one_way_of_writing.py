@@ -6,6 +6,7 @@ import ast
 from pathlib import Path
 
 import pytest
+from source_trees import nodes_of, tree_of
 
 SOURCE = Path(__file__).parents[2] / "src" / "cramhy_runtime"
 WRITERS = {
@@ -78,7 +79,7 @@ def _mode(call):
 
 def writings(path):
     """The (line, name) of each call in a file that writes to a disk, or might."""
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in nodes_of(tree_of(path)):
         if not isinstance(node, ast.Call):
             continue
         function = node.func

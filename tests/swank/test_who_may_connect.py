@@ -170,7 +170,6 @@ def test_a_secret_that_is_spoilt_while_the_session_runs_lets_nobody_in(serve, fi
 # ---------------------------------------------------------------------------------------------------------------- the handshake
 
 
-@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize(
     "said",
     [

@@ -10,7 +10,6 @@ import pytest
 from cramhy_runtime.testing import park_points
 
 
-@pytest.mark.soak(all_but=13)
 @pytest.mark.parametrize("entry", [*park_points.NAMES, park_points.ORDER])
 def test_the_function_of_a_park_point_is_there(entry):
     path, name = entry.split(":")

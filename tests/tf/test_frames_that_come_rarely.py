@@ -28,7 +28,6 @@ def between(stamps, time):
     return before**2 + share * (after**2 - before**2)
 
 
-@pytest.mark.soak(all_but=12)
 @pytest.mark.parametrize("apart", [0.3, 1.0, 1.5, 2.0, 2.9, 3.0, 5.0, 8.0, 9.0])
 @pytest.mark.parametrize("first", [10.0, 9.75])
 def test_the_neighbours_answer(first, apart):

@@ -81,7 +81,6 @@ def run(package="robot_state_publisher", *arguments, executable=None):
 HALF = 2**0.5 / 2
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     ("positions", "source", "place"),
     [

@@ -44,7 +44,6 @@ def near(a, b):
     return all(math.isclose(x, y, abs_tol=1e-7) for x, y in zip(a, b))
 
 
-@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize(
     "obj, text",
     [

@@ -39,13 +39,11 @@ def checked(pages):
     return Checked([*PROGRAMS, *TUTORIALS, *MISTAKES, *pages.values()])
 
 
-@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("program", [*PROGRAMS, *TUTORIALS], ids=lambda path: path.stem)
 def test_a_program_of_a_user_passes(checked, program):
     assert checked.about(program) == []
 
 
-@pytest.mark.soak(all_but=1)
 @pytest.mark.parametrize("page", [page for page in PAGES if page.name not in WITHOUT_TYPES], ids=lambda page: page.stem)
 def test_what_stands_on_a_page_passes(checked, pages, page):
     lines = page.read_text(encoding="utf-8").splitlines()

@@ -9,7 +9,6 @@ from cramhy_runtime.lisp_core.conditions import Condition
 FROM = "(defun from (n) (cut:lazy-list ((i n)) (cut:cont i (+ i 1))))"
 
 
-@pytest.mark.soak(all_but=15)
 @pytest.mark.parametrize(
     ("form", "values"),
     [
@@ -48,7 +47,6 @@ def test_lazy_lists(lisp, form, values):
     assert lisp(form) == values
 
 
-@pytest.mark.soak(all_but=22)
 @pytest.mark.parametrize(
     ("form", "values"),
     [

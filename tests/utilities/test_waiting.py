@@ -6,7 +6,6 @@ from cramhy_runtime import kernel
 from cramhy_runtime.lisp_core.conditions import Condition
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     ("form", "values"),
     [

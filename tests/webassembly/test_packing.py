@@ -91,7 +91,6 @@ def test_pythons_library_is_divided_into_what_begins_and_the_rest(tmp_path, monk
 # ---------------------------------------------------------------------------------------------------------------- what is left out
 
 
-@pytest.mark.soak(all_but=25)
 @pytest.mark.parametrize("name", left_out.WHY)
 def test_what_is_left_out_is_there_on_a_computer(name):
     place = HOUSE / name.replace(".", "/")

@@ -6,7 +6,10 @@ import re
 import pytest
 from not_in_hy import NOT_IN_HY
 from plain_hy import PlainHy
+from systems import BACKENDS
 
+from cramhy_runtime import kernel
+from cramhy_runtime.session import Image
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string, princ_to_string
 from cramhy_runtime.repl.session import Session, condition_of
 
@@ -21,6 +24,12 @@ PRELUDE = """
 (defmacro in-child (&body body) `(start (lambda () ,@body)))
 """
 _numbers = itertools.count(1)
+
+
+@pytest.fixture(params=BACKENDS, autouse=True)
+def fresh_kernel(request):
+    with Image(as_now=True):
+        yield kernel.start(clock="virtual", backend=request.param, time_limit=3600)
 
 
 class Lisp:

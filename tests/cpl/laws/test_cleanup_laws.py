@@ -137,7 +137,6 @@ def test_a_second_request_leaves_a_protected_region_outside_of_cleanup_alone(lis
     )
 
 
-@pytest.mark.soak(all_but=10)
 @pytest.mark.law(53)
 @pytest.mark.parametrize(
     "way_in, then",
@@ -317,7 +316,6 @@ def test_a_finally_of_an_evaporated_task_is_limited_as_well():
     assert order == [3.5]
 
 
-@pytest.mark.soak(all_but=2)
 def test_the_warning_says_whose_cleanup_waited_for_what_and_where(lisp, capsys):
     lisp(NEVER + "(let ((*cleanup-time-limit* 5)) (top-level (unwind-protect 1 (wait-for *never*))))")
     said = re.sub(r"-\d+ ", "-N ", " ".join(capsys.readouterr().err.split()))

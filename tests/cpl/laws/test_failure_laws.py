@@ -141,7 +141,6 @@ def test_a_failure_prints_its_control_string_and_shows_its_text(lisp):
     assert printed.startswith(r'"#<SIMPLE-PLAN-FAILURE \"a ~a\" {')
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("type", ["'my-condition", "'policy-condition", "'warning"])
 def test_a_condition_of_another_family_reaches_the_parents_handlers_and_leaves_top_level_as_itself(lisp, type):
     lisp("(define-condition my-condition (condition) ())")
@@ -182,7 +181,6 @@ def test_restarts_belong_to_their_task_and_every_task_can_be_aborted(lisp):
 # ------------------------------------------------------------------------------------------------------------------- clauses
 
 
-@pytest.mark.soak(all_but=13)
 @pytest.mark.parametrize(
     "clauses, why",
     [

@@ -62,7 +62,6 @@ def test_two_runs_of_one_name_at_a_time_would_share_a_tree_and_the_second_is_ref
     assert kernel.now() == 2 and plan_text("(named-top-level (:name lecture) 4)") == "4"
 
 
-@pytest.mark.soak(all_but=9)
 @pytest.mark.parametrize(
     "body, ends", [("(note :body)", "(:BODY)"), ("(seq (note :body) (fail))", "(:BODY)"), ("(seq (note :body) (car 1))", "(:BODY)")]
 )

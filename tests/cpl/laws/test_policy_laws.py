@@ -112,7 +112,6 @@ def test_a_policy_can_be_read_and_found_by_its_name(guarded):
     assert guarded.error("(named-policy 'no-such)") == "Policy NO-SUCH not found."
 
 
-@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize(
     "form, why",
     [

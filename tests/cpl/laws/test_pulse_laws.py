@@ -169,7 +169,6 @@ def test_a_timed_wait_keeps_its_time_though_the_fluent_pulses(lisp):
     assert kernel.now() == 1
 
 
-@pytest.mark.soak(all_but=5)
 @pytest.mark.law(34)
 @pytest.mark.parametrize("timeout", ["0", "-1", "-1/2", "0.0"])
 def test_a_wait_without_time_only_looks(lisp, timeout):

@@ -47,7 +47,6 @@ def test_a_suspended_task_that_is_evaporated_ends_without_running_again(lisp):
     )
 
 
-@pytest.mark.soak(all_but=3)
 @pytest.mark.law(41)
 @pytest.mark.parametrize("body, result", [("(values 1 2)", "(1 2)"), ("(values)", "NIL"), ('(fail "x")', "T")])
 def test_when_a_status_is_dead_the_result_is_final(lisp, body, result):
@@ -357,7 +356,6 @@ def test_retry_after_suspension_cleans_up_at_suspension_and_starts_again_after_w
     )
 
 
-@pytest.mark.soak(all_but=6)
 @pytest.mark.law(58)
 @pytest.mark.parametrize(
     "body, ends",
@@ -428,7 +426,6 @@ def test_join_task_gives_all_values_the_identical_condition_or_nothing(lisp):
     )
 
 
-@pytest.mark.soak(all_but=6)
 @pytest.mark.law(61)
 @pytest.mark.parametrize(
     "form, text",

@@ -120,7 +120,6 @@ def test_a_promise_whose_computing_branch_is_evaporated_is_computed_by_the_next(
     )
 
 
-@pytest.mark.soak(all_but=7)
 @pytest.mark.law(116)
 @pytest.mark.parametrize("data", ['(a (b 1 "s") . c)', "nil", "(nil (nil))", "7", "(#\\\\a :k 1.5)".replace("\\\\", "\\")])
 def test_ground_data_matches_itself_without_bindings(lisp, data):
@@ -128,7 +127,6 @@ def test_ground_data_matches_itself_without_bindings(lisp, data):
     assert lisp("(cut:pat-match *data* *data*)") == "NIL ; T"
 
 
-@pytest.mark.soak(all_but=7)
 @pytest.mark.law(116)
 @pytest.mark.parametrize(
     ("data", "matches"), [("(1 1)", "T"), ("(1 2)", "NIL"), ("((a b) (a b))", "T"), ('("s" "s")', "T"), ("(a nil)", "NIL")]
@@ -137,7 +135,6 @@ def test_a_variable_used_twice_matches_only_equal_elements(lisp, data, matches):
     assert lisp(f"(cut:pat-match-p '(?x ?x) '{data})") == matches
 
 
-@pytest.mark.soak(all_but=7)
 @pytest.mark.law(117)
 @pytest.mark.parametrize(
     ("pattern", "data"),

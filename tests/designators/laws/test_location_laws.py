@@ -130,7 +130,6 @@ def test_verdicts(places, verdicts, valid):
     assert places("(if (validate-location-designator-solution (place) 1) :valid :invalid)") == (":VALID" if valid else ":INVALID")
 
 
-@pytest.mark.soak(all_but=3)
 @pytest.mark.law("designators", 31)
 @pytest.mark.parametrize("verdict", ["t", "nil", ":reject", "'accept", '"accept"'])
 def test_any_other_verdict_ends_the_questions(places, verdict):

@@ -180,7 +180,6 @@ WARNING: An error occurred while executing the lisp function `LENGHT': `The func
     )
 
 
-@pytest.mark.soak(all_but=6)
 @pytest.mark.parametrize(
     "query, text, hint",
     [

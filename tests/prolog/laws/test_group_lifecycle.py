@@ -5,7 +5,6 @@ import pytest
 FAMILY = "(def-fact-group family () (<- (parent tom bob)) (<- (parent bob ann)))"
 
 
-@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     "definition",
     [

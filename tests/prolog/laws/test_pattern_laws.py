@@ -141,7 +141,6 @@ def test_warnings_of_patterns(lisp):
 # ---------------------------------------------------------------------------------------------------------------- section 4
 
 
-@pytest.mark.soak(all_but=10)
 @pytest.mark.parametrize(
     "form, result",
     [
