@@ -42,6 +42,7 @@ def test_two_commits_are_compared_row_by_row():
     assert re.search(r"^calls with &optional \(t\) +ms +[\d.]+ +[\d.]+ +[\d.]+ +\d+%", done.stdout, re.M)
 
 
+@pytest.mark.soak
 def test_a_row_that_falls_behind_is_marked():
     command = [sys.executable, str(BENCHMARKS / "table.py"), "--quick", "--only", "cut:pat-match"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)

@@ -202,6 +202,7 @@ def test_a_file_that_was_compiled_before_makes_the_packages_too(tmp_path):
         assert subprocess.run(run, capture_output=True, text=True, timeout=120).stdout == "There is no current goal to end.\n"
 
 
+@pytest.mark.soak
 def test_naming_a_package_or_loading_a_system_makes_them():
     import subprocess
     import sys

@@ -59,6 +59,7 @@ def test_the_suites_of_cl_robotics_libs_pass(suite, tests, tmp_path):
     assert done.stdout.splitlines()[-1].startswith(f"{tests} passed in "), done.stdout + done.stderr
 
 
+@pytest.mark.soak
 def test_a_suite_with_the_habits_of_crams_own_passes(tmp_path):
     environment = {**os.environ, "ROS_PACKAGE_PATH": str(Path(__file__).parent / "workspace" / "src")}
     command = [sys.executable, "-m", "cramhy_runtime.cli", "test", "plan-harness-tests"]

@@ -86,7 +86,7 @@ def no_old_fluents():
     fluents.living_fluents = asked
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize("backend", ["threads", "greenlet"])
 @given(plan=plans, seed=st.one_of(st.none(), st.integers(0, 5)))
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))

@@ -130,6 +130,7 @@ def test_a_slip_that_only_the_check_meets_is_told_below_it(typed, form, told):
     assert told in words(shown) and "hyx_" not in shown.split(":check")[1]
 
 
+@pytest.mark.soak
 def test_a_check_names_functions_as_hy_does(typed):
     forms = [*START["hy"], "(defn turn-left [] (tut.send-vel-cmd 1))", step_with(1, "hy", "turn-left"), ":check", ":quit"]
     shown = words(typed(forms, language="hy"))

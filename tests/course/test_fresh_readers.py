@@ -174,7 +174,7 @@ def test_the_check_of_the_square_names_the_task_of_a_missing_function(typed, lan
     assert "Does the loop do both" not in shown and "turn_left" not in shown and "is loaded by" not in shown
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("task", ["turn-left", "first-square"])
 def test_a_function_in_which_nothing_waits_is_named(typed, language, task):

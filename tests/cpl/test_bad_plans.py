@@ -50,7 +50,6 @@ def test_a_plan_form_outside_of_a_plan_says_so_in_its_own_name(plan_text, form):
     assert plan_text.run(f"(defun drive ()\n  {text})\n(drive)") == OUTSIDE.format(name, text + ")", name.lower())
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.law(79)
 @pytest.mark.parametrize(
     "form, value",
@@ -206,7 +205,6 @@ def test_a_ring_through_a_step_of_a_step_is_reported_as_a_deadlock_with_what_eve
     assert plan_text("*notes*") == "NIL" and nothing_runs()
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("form", ["(par)", "(pursue)", "(try-all)", "(partial-order ())"])
 def test_a_parallel_form_without_branches_closes_the_plan_in_order(plan_text, form):
     assert (
@@ -228,7 +226,6 @@ def test_a_parallel_form_without_branches_closes_the_plan_in_order(plan_text, fo
     assert plan_text("*notes*") == "(:BRANCH-CLOSED :CLOSED)" and nothing_runs()
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("ordering", ["(:before a b)", "(:order a)", "(:order a b c)", "a"])
 def test_a_malformed_ordering_is_an_error_of_the_expansion(plan_text, ordering):
     shown = ordering.upper()

@@ -200,7 +200,6 @@ def test_wrong_arguments_have_the_texts_of_the_original_and_a_place(told, form, 
     assert rest.splitlines()[1] == f"    {form}" and rest.splitlines()[2].endswith("^")
 
 
-@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize(
     "form",
     [

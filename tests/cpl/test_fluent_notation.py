@@ -45,7 +45,6 @@ def test_a_fluent_is_itself_and_has_a_hash():
     assert f == f and f != g and len({f, g, f}) == 2 and f in [f] and [g].count(f) == 0
 
 
-@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("ask", [bool, lambda f: 1 if f else 2, lambda f: f and 1, lambda f: not f, lambda f: 0 < f < 3])
 def test_whether_a_fluent_is_true_cannot_be_asked(ask):
     with pytest.raises(TypeError) as caught:

@@ -54,7 +54,6 @@ class Broken(ValueFluent):
         return self.no_such_slot
 
 
-@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("kind, factor", [(ValueFluent, 1), (Doubled, 2), (DoubledBelow, 2), (DoubledBeside, 2), (AsBefore, 1)])
 def test_the_read_of_a_class_counts_everywhere(kind, factor):
     fluent = kind(value=4)

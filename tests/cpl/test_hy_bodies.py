@@ -41,6 +41,7 @@ def test_pursue_ends_the_loser_after_its_cleanup():
     assert run(text) == ("won", ["won", "cleaned"])
 
 
+@pytest.mark.soak
 def test_the_ways_to_try():
     assert run('(top-level (try-in-order (fail "a") 2 (note "never")))') == (2, [])
     assert run('(top-level (try-each-in-order [x [1 2 3]] (note x) (when (< x 2) (fail "small")) x))') == (2, [1, 2])

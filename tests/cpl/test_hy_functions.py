@@ -52,7 +52,6 @@ def test_all_with_one_argument_is_the_function_of_python():
     assert run("(str (all objects (type cup)))") == run("(str (desig:all objects (type cup)))")
 
 
-@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize(
     "name, hint",
     [
@@ -103,6 +102,7 @@ def test_a_quoted_name_is_the_symbol_of_a_function():
     assert run("(. (fl-funcall 'v-norm (make-fluent :value (make-3d-vector 0 3 4))) value)") == 5
 
 
+@pytest.mark.soak
 def test_lists_of_lisp_are_gone_through_by_hy():
     assert isinstance(run("(lisp (1 2 3))"), Cons)
     assert run("(lfor x (lisp (1 2 3)) (* x 2))") == [2, 4, 6]

@@ -41,6 +41,7 @@ def in_hy(text, where):
     return value
 
 
+@pytest.mark.soak
 def test_the_blocks_print_what_stands_there(session):
     where, out, compared = module(), io.StringIO(), 0
     for kind, text in BLOCKS:

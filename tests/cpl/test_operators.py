@@ -304,6 +304,7 @@ def test_a_branch_evaporated_by_somebody_else_counts_as_done():
     assert plan(body) == (NO_VALUES, EVAPORATED)
 
 
+@pytest.mark.soak
 def test_par_of_a_thousand_branches():
     assert plan(lambda: cpl.par(*[after(1, n) for n in range(1000)])) == 0
     assert kernel.now() == 1

@@ -411,7 +411,6 @@ def test_handlers_outside_of_a_block_run_before_its_surroundings_unwind(log):
     assert log.entries == [("TimedOut", 1), ("unwound", 1)]
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("form", [cpl.par, cpl.pursue, cpl.try_all, lambda: cpl.timeout(1)])
 def test_outside_of_a_plan_a_block_says_what_to_do(form):
     with pytest.raises(Error, match="form not inside a plan.") as caught, form():

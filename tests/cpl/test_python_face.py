@@ -268,7 +268,6 @@ def test_a_failure_class_of_python_has_text_and_attributes():
         cpl.run(lambda: cpl.fail(cpl.TimedOut, seconds=4))
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     ("arguments", "text"), [((), "Plan failure."), (("100% of ~ 3",), "100% of ~ 3"), (("~a of ~a", 1, 2), "1 of 2"), (("~",), "~")]
 )

@@ -356,7 +356,6 @@ def test_joining_a_failed_task_signals_the_very_same_condition():
     assert plan(body) is failure
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize(
     "call, text",
     [

@@ -111,7 +111,6 @@ def test_lisp_takes_what_python_gives_for_what_it_is(form):
 COLLECTIONS = [[1], {1: 2}, {1}, bytearray(b"a"), np.array([1])]
 
 
-@pytest.mark.soak(all_but=5)
 @pytest.mark.parametrize("collection", COLLECTIONS, ids=lambda each: type(each).__name__)
 def test_a_collection_of_python_that_is_stored_once_more_pulses(collection):
     things = cpl.make_fluent(value=collection)

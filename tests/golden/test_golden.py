@@ -19,7 +19,7 @@ MUST_PASS = [
 ]
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize("name", MUST_PASS)
 def test_every_answer_is_that_of_the_original(shared, name):
     output = score([shared / "golden" / f"{name}.jsonl"], show=5)

@@ -225,7 +225,7 @@ TAKING = {
 SHORT = ("threads", "after_the_main_thread", "deaf")
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize("which", [each if each in SHORT else pytest.param(each, marks=pytest.mark.soak) for each in TAKING])
 def test_a_submission_takes_no_more_than_it_may_wherever_it_takes_it(place, which):
     report = place.attack("takes_much", WHICH=which)

@@ -127,6 +127,7 @@ def test_ctrl_c_in_the_debugger_stays_there(hy_terminal):
         assert hy.ask("0") == "CL-USER> "
 
 
+@pytest.mark.soak
 def test_ctrl_c_in_the_debugger_of_a_plans_task_ends_the_plan(hy_terminal):
     with hy_terminal() as hy:
         hy.begin_lisp(":cram-user")

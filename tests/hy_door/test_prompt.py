@@ -97,6 +97,7 @@ def test_mistakes_in_a_pipe_are_told_as_by_roslisp_repl(hy, roslisp):
     assert answered.stderr == expected.stderr == ""
 
 
+@pytest.mark.soak
 def test_read_line_in_a_pipe_reads_the_next_line(hy):
     done = hy(input=f"{REQUIRE}\n(in-package :cl-user)\n(list (read-line))\nwords of the user\n(+ 1 2)\n")
     assert done.stdout == 'CL-USER> #<PACKAGE "COMMON-LISP-USER">\nCL-USER> ("words of the user")\nCL-USER> 3\nCL-USER> '

@@ -89,6 +89,7 @@ def test_a_second_tab_lists_what_there_is(hy_terminal):
         assert repl.expect("\n=> $").endswith("\n1\n=> ")
 
 
+@pytest.mark.soak
 def test_in_a_form_of_several_lines_the_call_is_the_one_of_the_lines_before(hy_terminal):
     with hy_terminal() as repl:
         repl.expect("=> $")

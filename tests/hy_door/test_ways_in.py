@@ -150,6 +150,7 @@ def test_an_error_after_the_repl_in_a_python_program_opens_no_debugger():
         assert repl.text.endswith("told Lost.\n")
 
 
+@pytest.mark.soak
 def test_cramhy_repl_begins_in_hy():
     with Door("repl", "--hy", "--time", "virtual") as repl:
         repl.continuation = r"\n\.\.\. $"

@@ -311,7 +311,7 @@ def test_an_operator_that_was_not_required_is_told_of(write, program, text, oper
     )
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize("text", ["(require cramhy *)\n(print par)\n", "(print unknown-word)\n", "(defn f [] (return 1))\n(return)\n"])
 def test_other_names_are_not_told_to_be_required(write, program, text):
     write("plan.hy", text)

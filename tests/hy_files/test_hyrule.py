@@ -76,6 +76,7 @@ def test_the_macros_of_hyrule_work_around_plan_forms_and_inside(write, program):
     assert done.stdout.splitlines() == [f"{hy.repr(value)} {name}" for name, (_, value) in FORMS.items()]
 
 
+@pytest.mark.soak
 def test_the_seq_of_the_plan_language_has_its_prefix_beside_that_of_hyrule(write, program):
     write("both.hy", "(require cramhy * hyrule *)\n(import hyrule *)\n(print (get (seq [n] (** n 2)) 3) (cpl:top-level (cpl:seq 1 2)))\n")
     done = program("hy", "both.hy")

@@ -8,6 +8,7 @@ import sys
 import pytest
 
 
+@pytest.mark.soak
 def test_the_answer_of_a_service_is_that_of_the_callback(tmp_path):
     path = tmp_path / "add.hy"
     path.write_text(

@@ -11,6 +11,7 @@ from cramhy_runtime.lisp_core.packages import find_package
 from cramhy_runtime.session import Image
 
 
+@pytest.mark.soak
 def test_a_file_asks_for_the_package_once(load, tmp_path):
     load("""
     (defn read-twice [fluent] [(value fluent) (value fluent)])

@@ -81,6 +81,7 @@ for text in %r:
 """
 
 
+@pytest.mark.soak
 def test_python_sees_numbers_as_python_writes_them(python, tmp_path):
     (tmp_path / "numbers_in_texts.lisp").write_text(LISP)
     done = python("-c", PYTHON % (list(TEXTS),))

@@ -235,6 +235,7 @@ def test_each_public_function_is_called_or_gives_no_numbers():
     assert sorted(set(CALLS) & without_numbers()) == []
 
 
+@pytest.mark.soak
 def test_functions_give_numbers_of_python(node):
     silent, others = set(CALLS), []
     for name, value in called():

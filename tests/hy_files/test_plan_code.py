@@ -157,6 +157,7 @@ def test_what_finally_does_runs_to_its_end(write, program, way):
     )
 
 
+@pytest.mark.soak
 def test_hy2py_shows_both_as_python(write, python):
     write("plan.hy", "(require cramhy *)\n(while True (try (f) (finally (g))))\n")
     done = python("-c", "from hy.cmdline import hy2py_main; hy2py_main()", "plan.hy")

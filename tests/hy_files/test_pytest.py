@@ -193,6 +193,7 @@ def test_a_file_that_is_named_like_one_of_tests_and_has_none_is_an_error(write, 
         ) in shown, shown
 
 
+@pytest.mark.soak
 def test_a_helper_may_say_that_it_has_no_tests(write, run_pytest):
     write("test_helper.hy", "(setv __test__ False)\n")
     write("test_plan.hy", "(import test-helper)\n(defn test-good [] (assert True))\n")

@@ -59,6 +59,7 @@ def test_a_module_that_is_required_for_another_one_keeps_the_macros_apart(folder
     del sys.modules["a_library"]
 
 
+@pytest.mark.soak
 def test_no_source_is_read_for_it(folder, monkeypatch):
     monkeypatch.syspath_prepend(str(folder))
     importlib.import_module("a_library")

@@ -30,7 +30,7 @@ TEXTS = {
 }
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize("way", ["hy", "run"])
 @pytest.mark.parametrize("language", TEXTS)
 @pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])

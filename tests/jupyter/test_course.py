@@ -31,6 +31,7 @@ def test_the_last_value_of_a_cell_of_hy_is_checked(cells):
     assert "Well done" in cells.run(check).printed
 
 
+@pytest.mark.soak
 def test_a_plan_that_never_ends_ends_the_check_and_not_the_notebook(cells):
     cells.run('(ros-load:load-system "cram_my_beginner_tutorial" :cram-my-beginner-tutorial)\n(in-package :tut)\n(init)')
     cells.run("(defun turn-left () (loop (sleep 1)))")

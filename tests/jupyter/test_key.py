@@ -30,7 +30,7 @@ def launched(tmp_path):
     return launched
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("key", "mode", "why"),
     [

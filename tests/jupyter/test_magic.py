@@ -23,6 +23,7 @@ print([data["text/plain"] for data in shown])
 """
 
 
+@pytest.mark.soak
 def test_a_cell_of_lisp_or_hy_in_ipython(tmp_path):
     pytest.importorskip("IPython", reason="the extra jupyter is not installed")
     done = subprocess.run([sys.executable, "-c", SCRIPT], cwd=tmp_path, capture_output=True, text=True, timeout=200)

@@ -106,6 +106,7 @@ def test_a_system_of_the_workspace_that_is_not_taken_is_told(lisp, workspace, na
     assert lisp.warnings(f"(asdf:load-system :{name})") == ""
 
 
+@pytest.mark.soak
 def test_a_system_of_the_users_that_depends_on_one_is_told_of_it(lisp, workspace):
     source = workspace("cram-math")
     (source / "my_plans").mkdir()

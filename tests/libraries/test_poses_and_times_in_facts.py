@@ -60,6 +60,7 @@ def test_a_timeline_has_its_last_event_at_hand(answers):
                 (eq (slot-value timeline 'btr::last-event) (btr::last-event timeline))))""") == ("((1.0 3.0) T T)")
 
 
+@pytest.mark.soak
 def test_a_grasp_of_an_object_is_one_of_its_type_with_an_arm_of_the_robot(answers):
     answers("(asdf:load-system :cram-pr2-description) (asdf:load-system :cram-knowrob-pick-place)")
     answers("""(btr:add-object btr:*current-bullet-world* :mesh :cup '((0 0 1) (0 0 0 1)) :mass 0.2 :mesh :cup)

@@ -39,7 +39,7 @@ def found(session, monkeypatch):
         systems.forget_system(name)
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("system", "counts"), [("cram-tray-delivery", (15, 38)), ("cram-tray-delivery-tests", (15, 38)), ("cram-cup-counter/test", (6, 19))]
 )

@@ -258,6 +258,7 @@ def test_forms_may_be_nested_deeper_than_pythons_blocks(evaluate, around):
     assert evaluate(f"(let ((total 0)) {nested(30, around, '(incf total 100)')} total)") == "130"
 
 
+@pytest.mark.soak
 def test_ways_out_of_deeply_nested_blocks(evaluate):
     around = "(dolist (x# '(1 2 3)) (unwind-protect (progn (when (= x# 2) (return)) ~) (incf ends)))"
     assert evaluate(f"(let ((ends 0) (found 0)) {nested(25, around, '(incf found)')} (list found ends))") == "(1 50)"

@@ -132,6 +132,7 @@ def test_a_vector_is_of_the_kinds_that_sbcl_says(lisp, specifier):
     assert "".join(found) == KINDS[specifier]
 
 
+@pytest.mark.soak
 def test_functions_compiled_before_a_type_is_defined_or_that_misuse_it_are_defined(lisp):
     lisp("(defun early (x) (declare (type later-type x)) x) (deftype later-type () '(integer 0 3))")
     assert lisp("(list (early 3) (handler-case (early 4) (type-error () :refused)))") == "(3 :REFUSED)"

@@ -85,6 +85,7 @@ def test_equalp_compares_tables_by_their_entries():
     assert equalp(one, two) is None
 
 
+@pytest.mark.soak
 def test_long_lists_are_compared_without_recursion():
     assert equal(list_from(range(100_000)), list_from(range(100_000))) is True
     assert equality.equal_key(list_from(range(100_000))) == equality.equal_key(list_from(range(100_000)))

@@ -89,6 +89,7 @@ def test_internal_names_are_there_and_unknown_ones_say_so(module):
     assert not hasattr(module, "__path__")
 
 
+@pytest.mark.soak
 def test_dir_and_documentation(module):
     assert {"area", "two_values", "speed", "internal", "is_big_p"} <= set(dir(module))
     assert module.__doc__ == "A package."

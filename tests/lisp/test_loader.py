@@ -307,6 +307,7 @@ def test_load_time_values_of_the_repl_are_apart(session):
     assert session.evaluate_text("(equal (list (loaded-box) (other-loaded-box)) '((1) (2)))") == [True]
 
 
+@pytest.mark.soak
 def test_a_kept_file_runs_in_a_process_that_compiles_nothing(tmp_path):
     """What expansions call is there without the macros: LOOP's collecting was not."""
     path = write(

@@ -60,6 +60,7 @@ def test_a_system_in_the_central_registry(lisp, tmp_path, name):
     assert lisp.said().count(f"; The system {name} is that of {path}, not the one that cramhy contains.\n") == 1
 
 
+@pytest.mark.soak
 def test_a_library_of_all_lisps_on_the_package_path(tmp_path):
     path = write(tmp_path, "split-sequence", "(defvar cl-user::*own-four* 4)")
     text = '(asdf:load-system "split-sequence") cl-user::*own-four* (asdf:load-system "alexandria")'

@@ -292,6 +292,7 @@ def read_all(text, strict):
     return None
 
 
+@pytest.mark.soak
 def test_reading_anything_gives_objects_or_a_reader_error():
     chance, slowest = random.Random(20261121 if not SOAK else None), 0
     package = Package("SCRATCH", use=[find_package("COMMON-LISP")])

@@ -260,6 +260,7 @@ PROGRAM = """
 """
 
 
+@pytest.mark.soak
 def test_hooks_run_before_the_debugger_and_at_the_end(tmp_path, lisp):
     assert (
         lisp("""(block nil

@@ -141,7 +141,7 @@ def test_the_symbol_answers_as_in_sbcl(session, questions, request):
             assert lines[0] == lines[1], form
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.skipif(shutil.which("sbcl") is None, reason="SBCL is not installed")
 @pytest.mark.parametrize("chapter", ["corners", "details"])
 def test_sbcl_answers_again_as_recorded(chapter):

@@ -35,6 +35,7 @@ def shown(session, form):
         return f"ERROR {condition_of(problem).lisp_name.rpartition(':')[2]}"
 
 
+@pytest.mark.soak
 def test_as_sbcl_answers(session, tmp_path):
     """One after the other, since some use what others define."""
     different = []

@@ -131,6 +131,7 @@ TWINS = {
 }
 
 
+@pytest.mark.soak
 def test_symbols_of_one_name_are_told_apart_by_their_packages(editor, tmp_path):
     for name, text in TWINS.items():
         (tmp_path / name).write_text(text, encoding="utf-8")

@@ -7,7 +7,7 @@ import pytest
 from cramhy_runtime.lsp import documents, surroundings
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize(
     "text",
     [

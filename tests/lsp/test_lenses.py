@@ -70,6 +70,7 @@ ENDLESS = """(cl:defun endless ()
 """
 
 
+@pytest.mark.soak
 def test_a_plan_without_end_is_interrupted_and_the_server_answers_meanwhile(editor, tmp_path):
     file = tmp_path / "endless.lisp"
     file.write_text(ENDLESS, encoding="utf-8")

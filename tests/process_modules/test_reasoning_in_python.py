@@ -71,6 +71,7 @@ def test_the_example_is_a_script():
     assert python(EXAMPLE) == (STORY, "")
 
 
+@pytest.mark.soak
 def test_the_example_tells_the_same_story_on_both_back_ends_and_with_any_seed():
     assert python("-c", RUNS) == (STORY * 14, "")
 

@@ -135,6 +135,7 @@ def test_a_goal_sees_the_facts_that_were_there_when_it_was_entered():
     assert ask("(seen ?where ?n)") == "(((?WHERE POSE Q (AT 9 3)) (?N . 99)))"
 
 
+@pytest.mark.soak
 def test_facts_of_other_arities_and_rules_are_found_beside_them():
     group("mixed", *(f"((thing (part p{i})))" for i in range(20)), "((thing a b))", "((thing))")
     assert ask("(thing (part p7))") == "(NIL)" and ask("(thing a ?x)") == "(((?X . B)))" and ask("(thing)") == "(NIL)"

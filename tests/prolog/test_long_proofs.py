@@ -30,7 +30,7 @@ def run(functor, *arguments):
     return m
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize(
     "start, clauses",
     [

@@ -161,6 +161,7 @@ def test_a_test_of_ones_own():
     assert show(rete.rete_holds(pattern, equalp)).startswith("(NIL")
 
 
+@pytest.mark.soak
 def test_a_join_of_three_patterns_over_ten_thousand_facts():
     """A chain of 5,000 links and as many labels: each new fact is joined with its neighbours only, not with all facts."""
     found = []

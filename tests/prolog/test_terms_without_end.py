@@ -76,7 +76,7 @@ def nested(depth, innermost, rest=None):
     return term
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize("depth", [10, 3_000])
 def test_deeply_nested_terms_are_terms_like_others(depth):
     x, names = read("?x"), {}

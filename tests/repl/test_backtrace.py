@@ -46,6 +46,7 @@ def test_lisp_calls_are_shown_when_they_are_asked_for(cramhy, plan, options, tex
     assert cramhy("run", "plan.lisp", "--time", "virtual", *options).stderr == text
 
 
+@pytest.mark.soak
 def test_python_frames_are_shown_when_they_are_asked_for(cramhy, plan):
     shown = cramhy("run", "plan.lisp", "--time", "virtual", "--backtrace", "python").stderr
     assert shown.startswith(ERROR + "\nPython frames:\n  File ")

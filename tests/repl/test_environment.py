@@ -168,7 +168,7 @@ class TestStreams:
         assert (done.returncode, done.stderr) == (1, FULL)
         assert (tmp_path / "cleaned").exists() and not (tmp_path / "went-on").exists()
 
-    @pytest.mark.soak(all_but=1)
+    @pytest.mark.soak
     @linux
     @pytest.mark.parametrize("time", ["virtual", "wall"])
     def test_the_branches_beside_it_are_ended_through_their_cleanup(self, shell, tmp_path, backend, time):
@@ -425,6 +425,7 @@ class TestLimits:
             assert NO_FILES.encode() in done.stderr or b"Too many open files" in done.stderr
             assert options and b"cramhy: " in done.stderr
 
+    @pytest.mark.soak
     @pytest.mark.parametrize("kilobytes", [256, 1024])
     def test_a_small_stack(self, shell, kilobytes):
         works(shell(f"ulimit -s {kilobytes}; echo '(+ 1 2)' | {CRAMHY} repl"), "CL-USER> 3\nCL-USER> ")

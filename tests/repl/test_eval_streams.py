@@ -97,6 +97,7 @@ def test_a_form_that_ends_the_program_is_answered_before(tmp_path, form, status)
     assert found == [{"output": "12\n", "values": [], "error": None}] and errors == "" and ended == status
 
 
+@pytest.mark.soak
 @posix
 def test_what_is_printed_before_and_after_the_forms_is_no_answer(tmp_path):
     before = '(progn (princ 1) (py:print 2) (py:call "os.system" "echo 3"))'

@@ -137,6 +137,7 @@ def test_ctrl_c_with_the_editor_of_prompt_toolkit():
         within_soon(attempt)
 
 
+@pytest.mark.soak
 def test_ctrl_c_ends_a_program_that_is_run(tmp_path):
     program = tmp_path / "endless.lisp"
     program.write_text("(unwind-protect (progn (print :running) (finish-output) (loop)) (print :cleaned))")

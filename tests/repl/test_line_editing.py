@@ -154,7 +154,7 @@ def test_hy_says_what_is_open_and_keeps_forms_in_a_file_of_ours_alone(tmp_path):
 # ------------------------------------------------------------------------------------------------- a terminal that cannot draw
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize("arguments", [["repl"], ["repl", "--hy"]], ids=["lisp", "hy"])
 def test_on_a_dumb_terminal_nothing_is_echoed_and_no_escape_sequence_is_written(arguments, tmp_path):
     """Emacs switches the echo of the terminal off, and shows what is typed itself."""

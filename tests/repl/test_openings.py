@@ -192,6 +192,7 @@ def test_a_picture_of_the_whole_way(cramhy, tmp_path):
     assert (tmp_path / "way.replay.svg").read_text().count("stroke-dashoffset") == 1
 
 
+@pytest.mark.soak
 def test_a_picture_without_a_turtle_is_a_problem_that_is_told(cramhy, tmp_path):
     (tmp_path / "plan.lisp").write_text("(+ 1 2)")
     done = cramhy("run", "plan.lisp", "--time", "virtual", "--picture", "x.png")

@@ -260,6 +260,7 @@ def test_the_hint_calls_cramhy_as_the_user_did(tmp_path, monkeypatch, called, on
 # ------------------------------------------------------------------------------------------------------------ installed
 
 
+@pytest.mark.soak
 def test_they_are_installed_into_a_folder(clone, tmp_path):
     def install():
         return subprocess.run(

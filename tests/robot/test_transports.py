@@ -45,6 +45,7 @@ def test_what_falls_from_its_place_is_not_delivered(kitchen):
     assert kitchen.place("cup-1")[2] < 0.3 and kitchen.held() == {}
 
 
+@pytest.mark.soak
 def test_placing_looks_where_the_thing_is_then(kitchen):
     def plan():
         cup = robot.pick_up(a_cup())

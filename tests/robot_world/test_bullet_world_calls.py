@@ -132,6 +132,7 @@ ACTIONS = {
 """How a test performs the action of a plan, or is called."""
 
 
+@pytest.mark.soak
 def test_each_name_is_called_by_a_test():
     files = [path for path in TESTS.rglob("*") if path.suffix in (".py", ".lisp", ".hy") and path != Path(__file__)]
     text = "\n".join(path.read_text(errors="replace") for path in files)

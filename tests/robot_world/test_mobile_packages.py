@@ -116,6 +116,7 @@ def test_a_system_that_depends_on_them(session, tmp_path):
     assert session.evaluate_text("(asdf:load-system :tea) (fboundp 'tea::rest-arms)", "<test>")[0]
 
 
+@pytest.mark.soak
 def test_an_image_that_names_none_of_them_has_none():
     program = (
         "from cramhy_runtime.session.boot import boot; boot()\n"

@@ -210,6 +210,7 @@ PICKED = (
 )
 
 
+@pytest.mark.soak
 def test_picking_up_and_placing(robot, told, capsys):
     robot(PICKING)
     assert told() == (PICKED, [MOVED] * 5 + ["OBJECT-ATTACHED"] + [MOVED] * 2)

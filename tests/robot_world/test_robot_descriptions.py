@@ -32,6 +32,7 @@ UNKNOWN = (
 )
 
 
+@pytest.mark.soak
 def test_nothing_is_known_without_a_description(lisp):
     """It comes first: the tests behind it load a description."""
     lisp("(asdf:load-system :cram-robot-interfaces)")

@@ -82,6 +82,7 @@ def test_an_empty_world_has_a_floor_and_a_sky(empty):
     assert set(level.shown.ravel()) == {drawing.FLOOR, drawing.SKY}
 
 
+@pytest.mark.soak
 def test_the_overview_has_all_things_in_it_and_the_same_world_gives_the_same_pixels(world):
     world.add_item("bottle", (Shape("cylinder", (0.1, 0.4)),), placement((-2, -0.9, 1.0)), colour=RED)
     one, other = (stills.picture(world, None, 80, 60, 1) for _ in range(2))

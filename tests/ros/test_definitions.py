@@ -274,7 +274,7 @@ class TestOnesOwn:
             f"user is defined in {tmp_path}/user/user.asd."
         )
 
-    @pytest.mark.soak(all_but=1)
+    @pytest.mark.soak
     @pytest.mark.parametrize(
         "form, wanted",
         [

@@ -57,6 +57,7 @@ def test_the_bytes_of_a_topic_until_ctrl_c(far_shell):
     )
 
 
+@pytest.mark.soak
 def test_a_topic_that_nobody_publishes_on_yet_is_waited_for(far_shell):
     node = []
 

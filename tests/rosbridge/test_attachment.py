@@ -126,6 +126,7 @@ def arrive(robot, drive, x, y):
     pytest.fail(f"It drove to {pose}, not to {x}, {y}.")
 
 
+@pytest.mark.soak
 def test_the_connection_ends_with_the_session_and_after_the_cleanup_of_its_plans(robot, joined):
     evaluate, link = joined
     evaluate('(roslisp:start-ros-node "lisp")')

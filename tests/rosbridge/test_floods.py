@@ -153,6 +153,7 @@ def test_too_many_clients_are_refused_and_the_others_stay(serve, outside):
     outside(client)
 
 
+@pytest.mark.soak
 def test_connections_that_say_nothing_do_not_use_up_the_server(serve, outside):
     server = serve(connections=10, silent=50, first_message=0.5)
 

@@ -247,6 +247,7 @@ def test_the_robot_calls_a_service_of_the_plan(robot, join):
     assert until(lambda: robot.calls()[0], "the answer") == [True, {"sum": 42}]
 
 
+@pytest.mark.soak
 def test_a_failure_of_a_service_of_the_plan_reaches_its_caller_and_the_service_stays(robot, join):
     evaluate, _ = join()
     offered(robot, evaluate)

@@ -106,7 +106,7 @@ def test_the_server_ends_with_the_kernel(serve, outside, backend):
     assert not server.company.alive and server.company.failure is None
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 def test_every_client_hears_why_the_session_ends_however_busy_the_server_is(serve, outside, backend):
     """uvicorn closes whom it still finds with a mere number; so it is told only when all have had their reason."""
     server = serve(backend=backend)

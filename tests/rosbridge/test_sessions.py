@@ -347,6 +347,7 @@ def test_what_is_surely_dead_goes(announced, values):
     assert sessions.living() == [] and not path.exists()
 
 
+@pytest.mark.soak
 def test_where_the_system_does_not_tell_every_process_counts_as_alive(announced, monkeypatch):
     monkeypatch.setattr(processes, "own", lambda: processes.Identity(os.getpid(), "machine"))
     path = announced("session-1-1.json", made_up(pid=2**22 + 1, machine="machine", boot="", namespace="", process=""))

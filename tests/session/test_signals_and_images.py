@@ -51,7 +51,7 @@ def status_of(number):
     return 128 + number if number == signal.SIGTERM else -number  # as a shell says it; Python ends by SIGINT itself
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_between_images_ends_the_program_at_once_and_all_clean_up(number):
     status, lines, complaints = run(

@@ -64,6 +64,7 @@ def prompt(typed, *words):
     return done.stdout
 
 
+@pytest.mark.soak
 def test_a_prompt_that_waits_has_loaded_common_lisp_only():
     assert prompt("").endswith("CL-USER> rooms: []\n")
     assert prompt("1\n").endswith("rooms: ['cramhy_runtime.designators', 'cramhy_runtime.languages.commonlisp.faces.cpl.package']\n")

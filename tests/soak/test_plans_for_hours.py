@@ -19,7 +19,7 @@ MORE_OBJECTS = 500
 MORE_KILOBYTES = 4_000  # of some 23,000; a hundredth of a kilobyte for each task would be 1,000
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize("backend", ["threads", "greenlet"])
 def test_nothing_grows(backend):
     if backend == "greenlet":

@@ -42,6 +42,7 @@ def seeded(unseeded):
     return dict(zip(SEEDS, typed([(seed, "threads") for seed in SEEDS]), strict=True))
 
 
+@pytest.mark.soak
 def test_the_run_without_a_seed_shows_what_the_slides_show(unseeded):
     """So that the comparisons below compare something."""
     told = lectures.visible(unseeded)

@@ -240,7 +240,7 @@ def test_a_page_that_cannot_be_written_is_not_shown(tmp_path, monkeypatch):
         assert len(list(tmp_path.iterdir())) == len(shown)
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize("before", [True, False], ids=["replaced", "new"])
 def test_a_recording_costs_its_rest_and_never_an_older_one(session, tmp_path, monkeypatch, capsys, before):
     pytest.importorskip("mcap")

@@ -152,6 +152,7 @@ PROGRAM = """
 """
 
 
+@pytest.mark.soak
 def test_a_lisp_program_that_is_killed_leaves_the_old_file_and_the_next_start_tidies_up(tmp_path):
     (tmp_path / "x").write_text("old")
     (tmp_path / "p.lisp").write_text(PROGRAM)

@@ -201,6 +201,7 @@ def test_what_has_changed_in_a_file_that_the_file_itself_loads_is_seen(files):
     assert found(use) == "2" and loader.why_not_kept(use) is None
 
 
+@pytest.mark.soak
 def test_forms_before_the_change_are_not_run_twice(files):
     definitions, use = files
     use.write_text(f"(defvar *runs* 0)\n(incf *runs*)\n(defun use () (list *runs* (m)))\n(defun again () (m))\n{USE}")

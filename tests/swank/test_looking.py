@@ -173,6 +173,7 @@ def test_definitions_in_python(emacs, name, file, text):
     assert told and where(told[0][1])[1].startswith(text)
 
 
+@pytest.mark.soak
 def test_definitions_of_what_was_typed_and_of_nothing(emacs):
     emacs.repl("(defun typed-one (x) x)")
     [[label, location]] = emacs.call('(swank:find-definitions-for-emacs "typed-one")')

@@ -277,7 +277,7 @@ def test_emacs_beside_a_prompt_in_virtual_time(tmp_path):
     assert status == 0 and "debugger invoked on a TYPE-ERROR" in out and out.endswith("CL-USER> 8\nCL-USER> ") and err == ""
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("words", "why"),
     [

@@ -42,6 +42,7 @@ def test_the_neighbours_answer(first, apart):
         assert transform.translation.y == pytest.approx(-time) and transform.stamp == time
 
 
+@pytest.mark.soak
 @settings(max_examples=200, deadline=None)
 @given(st.lists(st.floats(0.05, 8.0), min_size=2, max_size=40), st.floats(0.0, 1.0))
 def test_whatever_the_gaps(gaps, share):

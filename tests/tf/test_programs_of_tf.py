@@ -94,7 +94,7 @@ def test_a_broadcaster_that_knows_no_turtle_says_how_to_name_one(simulator, exec
     assert "/turtle_tf_broadcaster" not in graph.active().nodes
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize("two", ["", "2"])
 def test_the_second_turtle_follows_the_first_one(simulator, two):
     package = f"turtle_tf{two}"

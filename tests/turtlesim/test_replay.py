@@ -163,6 +163,7 @@ class TestSvg:
 
 
 class TestGif:
+    @pytest.mark.soak
     def test_it_shows_the_way_and_rests_at_the_end(self, kept, tmp_path):
         from PIL import Image
 

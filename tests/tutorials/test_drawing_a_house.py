@@ -56,7 +56,7 @@ def test_the_house_stands_where_it_should_wherever_the_turtle_comes_from(seed, c
     assert "WARN" not in told.out and told.err == ""
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_between_the_parts_the_pen_is_up(backend):
     """The turtle goes from the middle to the first corner and from part to part, and no line leads there."""

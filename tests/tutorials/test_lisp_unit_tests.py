@@ -44,7 +44,7 @@ def test_pytest_runs_them(workspace, what):
     assert done.returncode == 0 and "3 passed" in done.stdout, done.stdout + done.stderr
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize("backend", ["threads", "greenlet"])
 def test_cramhy_runs_them(workspace, backend):
     done = python(workspace, "cramhy_runtime.cli", "test", "--backend", backend, SYSTEM)

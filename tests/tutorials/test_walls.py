@@ -40,7 +40,7 @@ def assert_recovered(turtle, x, y, told):
     assert all(0.4 < min(place) and max(place) < 10.6 for place in turtle.poses)
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_target_behind_a_wall_is_reached_as_nearly_as_may_be(seed, capsys):
     luck = random.Random(seed)

@@ -112,7 +112,7 @@ debugger invoked on a SB-PCL::NO-APPLICABLE-METHOD-ERROR:
     )
 
 
-@pytest.mark.soak(all_but=1)
+@pytest.mark.soak
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_after_a_mistake_the_session_goes_on(backend, tmp_path):
     """Law 8: bad input costs nothing."""

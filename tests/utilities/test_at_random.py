@@ -130,6 +130,7 @@ def test_a_lazy_list_is_the_plain_one_in_whatever_order_it_is_looked_at(items, p
     assert forced(made) == items and ll.lazy_list_p(made) is None
 
 
+@pytest.mark.soak
 @few
 @given(lists, lists, st.integers(0, 10))
 def test_functions_on_lazy_lists_are_those_on_plain_ones(left, right, n):

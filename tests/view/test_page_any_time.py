@@ -186,6 +186,7 @@ def test_the_page_goes_to_no_other_address(fake, visit):
     assert page.url == before
 
 
+@pytest.mark.soak
 def test_without_a_session_a_simulator_of_its_own_is_shown_and_that_is_said(tmp_path, visit):
     process = subprocess.Popen(
         [sys.executable, "-m", "cramhy_runtime.cli", "view"],

@@ -59,6 +59,7 @@ def test_in_a_string_files_are_completed(ask, tmp_path):
     assert ask("complete", text='(open "wa', language="hy") == {"length": 2, "options": [["walk.lisp", ""]]}
 
 
+@pytest.mark.soak
 def test_hy_is_completed_once_there_is_a_prompt_of_hy(ask):
     assert ask("complete", text="(defn wal", language="hy") == {"length": 3, "options": []}
     module = types.ModuleType("typed_here")

@@ -265,6 +265,7 @@ def site_of(folder, **files):
     return folder
 
 
+@pytest.mark.soak
 def test_the_local_host_serves_the_site_and_nothing_else(tmp_path):
     (tmp_path / "secret").write_text("secret")
     folder = site_of(tmp_path / "site", **{"pyodide/a.wasm": "2"})
