@@ -370,6 +370,7 @@ for name in ("cramhy_runtime.kernel.anything", "pytest"):
     assert (done.stdout, done.stderr) == ("False False\nNo module named 'termios' (hidden by a test)\nTrue True\n", "")
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     "room", [room if room in ("kernel", "cpl") else pytest.param(room, marks=pytest.mark.soak) for room in portable.SUITES]
 )

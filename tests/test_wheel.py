@@ -243,17 +243,20 @@ def check_lectures(repl, home):
     assert (home / "turtle.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.soak
 def test_an_empty_environment_with_the_wheel_is_small(environment):
     size = sum(path.lstat().st_size for path in environment.rglob("*"))
     assert size < 65 * 2**20
 
 
+@pytest.mark.soak
 def test_the_prompt_of_the_wheel_without_extras_does_both_lectures(environment, tmp_path):
     for extra in ("prompt_toolkit", "uvicorn", "greenlet"):
         assert subprocess.run([str(program(environment, "python")), "-c", f"import {extra}"], capture_output=True).returncode
     check_lectures(program(environment, "roslisp_repl"), tmp_path)
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("tool", "command", "homes"),
     [

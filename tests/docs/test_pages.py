@@ -86,6 +86,7 @@ def test_digits_below_a_millimetre_are_not_compared(text, same):
     assert rounded(f"({text} 7)") == rounded(f"({same} 7)") != rounded("(0.671 7)")
 
 
+@pytest.mark.soak(only=("actions.md", "command-line.md"))
 @pytest.mark.parametrize("path", PAGES, ids=name_of)
 def test_what_happens_is_what_the_page_shows(path, plays):
     shows(path, plays)

@@ -27,6 +27,7 @@ def test_every_answer_is_that_of_the_original(shared, name):
     assert passed == total, output
 
 
+@pytest.mark.soak
 def test_the_page_shows_the_score(shared):
     page = (ROOT / "docs" / "explanation" / "how-near.md").read_text()
     for line in score(sorted((shared / "golden").glob("*.jsonl"))).splitlines():

@@ -15,6 +15,8 @@ from cramhy_runtime.repl.listener import Listener
 
 from .conftest import REQUIRE, Door
 
+pytestmark = pytest.mark.soak
+
 ANSWERS = {
     "a plan that fails": (
         '(top-level (par (sleep 1) (fail "Lost.")))',

@@ -5,6 +5,8 @@ import sys
 
 import pytest
 
+pytestmark = pytest.mark.soak
+
 PLAIN = """\
 (require cramhy *)
 (import cramhy_runtime.cpl *)

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.soak
+
 OLDER = """\
 import cramhy, sys
 import cramhy_runtime.languages.kept_hy as kept_hy

@@ -67,6 +67,7 @@ def outcome(done):
     return done.returncode, done.stdout, done.stderr
 
 
+@pytest.mark.soak
 def test_the_course_gives_the_same_output_in_four_ways(write, program, python):
     path = write("course.hy", course())
     first = program("hy", "course.hy")
@@ -80,6 +81,7 @@ def test_the_course_gives_the_same_output_in_four_ways(write, program, python):
     assert outcome(python("course_in_python.py")) == outcome(first)
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("again", [False, True])
 def test_what_follows_the_load_of_a_system_may_use_its_package(write, program, again):
     write("uses.hy", USES)
@@ -193,6 +195,7 @@ BENCH = """\
 """
 
 
+@pytest.mark.soak
 def test_kept_code_runs_as_fast_as_with_cramhy_run(write, program, tmp_path):
     """Processor time of the second run, by the best of three, so that a busy machine does not matter."""
     resource = pytest.importorskip("resource")

@@ -227,6 +227,7 @@ def test_a_form_that_is_printed_reads_back_as_the_same(form, values, case):
     assert same(form, found, sharing=False), text
 
 
+@pytest.mark.soak
 @PROPERTY
 @given(knots(), st.fixed_dictionaries(SETTINGS), st.sampled_from(CASES))
 def test_shared_and_circular_parts_are_shared_and_circular_again(form, values, case):

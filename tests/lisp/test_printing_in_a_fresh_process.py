@@ -6,6 +6,8 @@ import sys
 
 import pytest
 
+pytestmark = pytest.mark.soak
+
 CLASSES = {
     "t": "#<SB-PCL:SYSTEM-CLASS COMMON-LISP:T>",
     "sequence": "#<SB-PCL:SYSTEM-CLASS COMMON-LISP:SEQUENCE>",

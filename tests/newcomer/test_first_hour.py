@@ -54,6 +54,7 @@ class Prompt:
         return self.terminal.text[begin : self.terminal.seen]
 
 
+@pytest.mark.soak
 def test_the_commands_of_the_readme_make_a_small_environment_and_a_picture(newcomer):
     assert [command.split()[0] for command in commands_of_the_readme()] == [
         "python3",
@@ -73,6 +74,7 @@ def test_the_last_command_of_the_readme_opens_a_prompt_and_a_page(newcomer):
         assert terminal.status() == 0
 
 
+@pytest.mark.soak
 def test_make_tutorial_types_both_lectures(newcomer):
     printed = newcomer.run("make tutorial")
     assert "LECTURE 38" in printed.upper() and printed.rstrip().endswith("\nT")
@@ -212,6 +214,7 @@ STAYS = """() => {
 }"""
 
 
+@pytest.mark.soak
 def test_the_page_of_make_view_never_scrolls(newcomer):
     with chromium() as browser, newcomer.terminal("make view") as terminal:
         address = terminal.expect(r"http://127\.0\.0\.1:\d+/\S+").split()[-1]

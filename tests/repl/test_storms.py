@@ -134,6 +134,7 @@ def test_the_session_lives_through_a_storm(storm):
     assert "Traceback" not in storm.text
 
 
+@pytest.mark.soak(all_but=1)
 def test_no_line_that_is_typed_is_lost(storm, tmp_path):
     """Ctrl-C before a line, or after it, or while a form runs and lines are typed ahead."""
     if storm.way == "sent":

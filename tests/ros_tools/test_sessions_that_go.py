@@ -20,6 +20,8 @@ sys.path.append(str(Path(__file__).parents[1] / "rosbridge"))
 from bridge_clients import Wire  # noqa: E402
 from processes_of_sessions import SessionProcess, wait_until  # noqa: E402
 
+pytestmark = pytest.mark.soak
+
 PATIENCE = 60
 
 

@@ -183,6 +183,7 @@ def test_services_whose_types_nobody_tells_are_named_and_do_not_keep_the_session
     evaluate("""(roslisp:call-service "/turtle1/teleport_absolute" 'turtlesim-srv:TeleportAbsolute :x 1 :y 2 :theta 0)""")
 
 
+@pytest.mark.soak
 def test_a_robot_that_does_not_answer_while_the_session_joins_is_told_as_that(robot, proxy, join):
     from cramhy_runtime.rosbridge.server import ServerError
 
@@ -314,6 +315,7 @@ pytestmark_posix = pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="no
 HOW = pytest.mark.parametrize("how", ["network", pytest.param("process", marks=pytestmark_posix)])
 
 
+@pytest.mark.soak(only=("process",))
 @HOW
 def test_a_stall_is_told_within_three_seconds_and_what_waits_fails_with_that_reason(robot, proxy, join, capsys, how):
     evaluate, link = join()
@@ -341,6 +343,7 @@ def test_a_stall_is_told_within_three_seconds_and_what_waits_fails_with_that_rea
     pytest.fail(f"It was told after {times} s.")
 
 
+@pytest.mark.soak
 @HOW
 def test_commands_of_a_stall_are_dropped_but_the_last_one_and_that_is_told(robot, proxy, join, capsys, how):
     evaluate, link = join()
@@ -393,6 +396,7 @@ def test_a_stop_command_that_was_under_way_when_the_network_went_arrives_when_it
     until(lambda: [each for _, each in robot.heard("publish") if each["msg"]["linear"]["x"] == 7.0], "the command")
 
 
+@pytest.mark.soak
 def test_a_hiccup_of_the_network_costs_no_message(robot, proxy, join):
     evaluate, link = join()
     evaluate('(defparameter *chat* (roslisp:advertise "/chat" "std_msgs/String"))')
@@ -413,6 +417,7 @@ def test_a_hiccup_of_the_network_costs_no_message(robot, proxy, join):
     pytest.fail(f"Of five messages came {sent}")
 
 
+@pytest.mark.soak
 def test_a_session_that_was_stopped_itself_takes_nothing_for_a_stall(robot, proxy, tmp_path):
     if not hasattr(signal, "SIGSTOP"):
         pytest.skip("no process can be stopped here")

@@ -240,6 +240,7 @@ def lecture(seed, backend, order):
     return draw
 
 
+@pytest.mark.soak
 def test_two_images_run_the_lecture_at_once_each_with_its_turtle(backend, quick_turns):
     order = []
     (one, place_of_one, _), (other, place_of_other, _) = together(lecture(1, backend, order), lecture(2, backend, order))
@@ -343,6 +344,7 @@ NAMES = st.sampled_from(
 )
 
 
+@pytest.mark.soak
 @settings(deadline=None)
 @given(st.lists(st.tuples(DEFINITIONS, NAMES), min_size=1, max_size=4))
 def test_whatever_is_defined_the_image_outside_stays_as_it_was(definitions):

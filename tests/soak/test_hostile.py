@@ -61,6 +61,7 @@ def evaluate(forms, *options):
     return answers
 
 
+@pytest.mark.soak
 def test_recursion_without_end_is_an_error_in_the_main_task_and_in_branches(backend):
     forms = []
     for definition in ENDLESS.values():
@@ -74,6 +75,7 @@ def test_recursion_without_end_is_an_error_in_the_main_task_and_in_branches(back
         assert after["values"] == ["3"], name
 
 
+@pytest.mark.soak(only=("greenlet",))
 def test_recursion_that_ends_may_be_deep(backend):
     defined, main, branch = evaluate(
         ["(defun sum (n) (if (= n 0) 0 (+ n (sum (- n 1)))))", "(sum 4000)", "(top-level (par (sum 4000)))"], "--backend", backend
@@ -81,6 +83,7 @@ def test_recursion_that_ends_may_be_deep(backend):
     assert main["values"] == branch["values"] == ["8002000"]
 
 
+@pytest.mark.soak
 def test_branches_within_branches_without_end_are_an_error(backend):
     _, answer, after = evaluate(["(defun endless (n) (par (endless n)))", "(top-level (endless 1))", "(+ 1 2)"], "--backend", backend)
     assert answer["error"]["message"] == "Branches within branches, 1000 deep: a plan starts itself, perhaps without end."
@@ -94,6 +97,7 @@ def test_a_thousand_branches(backend):
     assert first["values"] == ["7"] and second["values"] == ["3"]
 
 
+@pytest.mark.soak(only=("greenlet",))
 def test_thousands_of_tasks_are_evaporated_and_each_cleans_up(backend):
     count = "(let ((n 0)) (dotimes (i 20) (top-level (pursue (sleep 1) {}))) n)"
     branches = " ".join(["(unwind-protect (sleep 1000) (incf n))"] * 100)
@@ -161,6 +165,7 @@ print(after[0] - before[0], after[1] - before[1])
 """
 
 
+@pytest.mark.soak(only=("greenlet",))
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="only Linux tells")
 def test_memory_does_not_grow_when_a_plan_is_repeated(backend):
     times = 1000 if SOAK else 200

@@ -71,6 +71,7 @@ def without_order(told):
     ]
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_seed_changes_nothing_that_the_slides_show(seed, seeded, unseeded):
     told = lectures.visible(seeded[seed])

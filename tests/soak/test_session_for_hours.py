@@ -36,6 +36,7 @@ def test_a_session_does_not_grow():
     assert told["grown"] < (MORE_KILOBYTES if SOAK else MORE_IN_A_MINUTE), told
 
 
+@pytest.mark.soak
 def test_the_past_takes_little_however_long_it_was():
     """A turtle that drives and draws, as the board notes it: what the history holds stays the same from the tenth minute."""
     import tracemalloc

@@ -10,6 +10,8 @@ import sys
 import pytest
 from systems import has_module
 
+pytestmark = pytest.mark.soak
+
 RUN = [sys.executable, "-m", "cramhy_runtime.cli", "run", "--time", "virtual"]
 DRIVE = '(roslisp:start-ros-node "n") (dotimes (i 20) (turtlesim:press :up) (turtlesim:press :left) (sleep 1))'
 FULL = "No space left on device. Make room on that disk, or choose another place."

@@ -151,6 +151,7 @@ def copied(tmp_path):
     return tmp_path
 
 
+@pytest.mark.soak
 def test_hy_draws_the_paper_and_says_where_it_is(copied):
     first = hy(copied, "hy", "turtlesim_in_hy/draw.hy")
     assert first.returncode == 0, first.stderr
@@ -162,6 +163,7 @@ def test_hy_draws_the_paper_and_says_where_it_is(copied):
     assert picture.startswith(b"<svg") and (copied / "turtlesim_in_hy" / "again.svg").read_bytes() == picture
 
 
+@pytest.mark.soak
 def test_a_picture_of_no_kind_is_refused_before_anything_is_drawn(copied):
     done = hy(copied, "hy", "turtlesim_in_hy/draw.hy", "turtle.txt")
     assert done.returncode == 1 and "What kind of picture is turtle.txt to be?" in done.stderr and "TurtleSim" not in done.stdout

@@ -51,6 +51,7 @@ def terminal(tmp_path):
     return run
 
 
+@pytest.mark.soak
 def test_another_terminal_opens_the_page_of_a_plan_that_runs(repl, terminal, visit):
     session = repl("--serve", view=False)
     session.type(NODE)
@@ -89,6 +90,7 @@ def test_the_prompt_opens_the_page_and_other_terminals_find_it(repl, terminal, v
     assert not [path for path in tmp_path.rglob("*") if path.is_file()]
 
 
+@pytest.mark.soak
 def test_virtual_time_passes_as_the_walls_from_then_on_and_can_be_paused_and_stepped(repl, terminal, visit):
     session = repl("--serve", "--time", "virtual", view=False)
     session.type("(progn (cpl:sleep 20) (print 'slept))")  # as fast as the machine computes
@@ -108,6 +110,7 @@ def test_virtual_time_passes_as_the_walls_from_then_on_and_can_be_paused_and_ste
     session.wait_for("NIL\nCL-USER> ")
 
 
+@pytest.mark.soak
 def test_make_view_draws_in_virtual_time_so_that_it_can_be_paused_and_stepped(repl, visit):
     (recipe,) = re.findall(r"^view: .*\n((?:\t.*\n)+)", (ROOT / "Makefile").read_text(), re.M)
     program, *words = shlex.split(recipe.replace("\\\n", " "))
@@ -143,6 +146,7 @@ def test_without_the_extra_the_error_says_what_to_install(repl, missing):
     session.wait_for("3\n")
 
 
+@pytest.mark.soak
 def test_the_page_goes_with_the_turtle_to_the_session_of_the_prompt(repl, tmp_path, visit):
     """What the slides have: the simulator first, in a terminal of its own, and then the prompt."""
     simulator = subprocess.Popen(
@@ -225,6 +229,7 @@ def test_a_program_in_python_that_offers_no_page_says_how_to_open_one(python, te
     assert complaints.startswith(f"cramhy: The session of process {program.pid} {text}")
 
 
+@pytest.mark.soak
 def test_a_page_that_a_program_in_python_has_opened_is_found(python, terminal, visit):
     python("page = view.start()")
     out, complaints, status = terminal("view")

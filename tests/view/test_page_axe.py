@@ -68,6 +68,7 @@ def test_axe_would_find_something(fake, visit, axe):
     assert "select-name" in page.evaluate("async () => (await axe.run()).violations.map(({ id }) => id)")
 
 
+@pytest.mark.soak
 def test_what_is_read_out_changes_seldom(fake, visit):
     page = visit(fake.address)
     assert page.evaluate(LIVE) == ["connection", "banner", "notice"]
@@ -85,6 +86,7 @@ def test_what_is_read_out_changes_seldom(fake, visit):
     assert page.evaluate("() => said") == []
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("motion", ["reduce", "no-preference"])
 def test_nothing_moves_by_itself_for_those_who_do_not_want_it(fake, visit, motion):
     page = visit(fake.address, reduced_motion=motion)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from fake_session import fluent, task, turtle
 from test_page import BLUE, near, pixel, wait_for_pixel, wait_for_reading, wait_for_text, wait_for_texts
 from test_page_time import seek
@@ -20,6 +22,7 @@ def unlike(page, x, y, colour):
     )
 
 
+@pytest.mark.soak
 def test_a_grid_of_metres_can_be_shown_and_is_kept(fake, visit):
     page = visit(fake.address)
     fake.world([turtle(x=9.5, y=9.5)])
@@ -58,6 +61,7 @@ def test_goals_of_running_motions_are_marked_until_they_are_reached(fake, visit)
     wait_for_pixel(page, 6.2, 2.0, BLUE)
 
 
+@pytest.mark.soak
 def test_the_way_is_shown_though_the_pen_is_up_and_as_it_was(fake, visit):
     page = visit(fake.address)
     for step in range(41):
@@ -77,6 +81,7 @@ def test_the_way_is_shown_though_the_pen_is_up_and_as_it_was(fake, visit):
     wait_for_pixel(page, 3, 3, BLUE)
 
 
+@pytest.mark.soak
 def test_the_pointer_tells_where_it_is(fake, visit):
     page = visit(fake.address)
     box = page.locator("#paper").bounding_box()
@@ -99,6 +104,7 @@ def test_fluents_of_process_modules_are_shown_when_somebody_asks(fake, visit):
     wait_for_texts(page, "#fluents .name", ["NAVIGATION-STATUS", "TURTLE-POSE"])
 
 
+@pytest.mark.soak
 def test_for_a_projector_letters_are_large_and_stay_so(fake, visit):
     page = visit(fake.address, width=1920, height=1080)
     size = lambda: page.evaluate("() => parseFloat(getComputedStyle(document.getElementById('pause')).fontSize)")  # noqa: E731
@@ -116,6 +122,7 @@ def test_for_a_projector_letters_are_large_and_stay_so(fake, visit):
     assert size() == usual
 
 
+@pytest.mark.soak
 def test_a_name_has_one_line_however_long_it_is(fake, visit):
     page = visit(fake.address, width=1280, height=720)
     name = "[A-VERY-LONG-NAME-" * 20

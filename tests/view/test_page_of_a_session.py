@@ -109,6 +109,7 @@ def test_a_step_moves_the_clock_though_nothing_else_happens(course):
     step(page, 1)
 
 
+@pytest.mark.soak
 def test_a_page_that_comes_late_sees_what_was_before(course, visit):
     session, page = course
     session.type("(drive 2 2)\n(sleep 0.5)\n(call-set-pen 255 0 0 5 0)\n(drive 2 0)\n(sleep 1.5)")
@@ -124,6 +125,7 @@ def test_a_page_that_comes_late_sees_what_was_before(course, visit):
     wait_for_reading(late, "pen", "3 px")
 
 
+@pytest.mark.soak
 def test_in_wall_time_the_turtle_moves_and_cannot_be_paused(repl, visit):
     session = repl("--time", "wall")
     page = visit(session.url)
@@ -144,6 +146,7 @@ def test_when_the_session_ends_the_page_says_so(repl, visit):
     wait_for_text(page, "#connection", "connection lost")
 
 
+@pytest.mark.soak
 def test_a_session_that_is_stopped_is_said_to_be_lost_and_shown_again_when_it_goes_on(repl, visit):
     session = repl("--time", "wall")
     page = visit(session.url)
@@ -165,6 +168,7 @@ def test_a_session_that_is_stopped_is_said_to_be_lost_and_shown_again_when_it_go
     page.wait_for_function("(x) => document.querySelector('[data-reading=x]').textContent !== x", arg=x)
 
 
+@pytest.mark.soak
 def test_another_session_on_the_port_of_one_that_was_killed_is_not_mistaken_for_it(repl, visit):
     session = repl("--time", "wall")
     page = visit(session.url)
@@ -184,6 +188,7 @@ def test_another_session_on_the_port_of_one_that_was_killed_is_not_mistaken_for_
     visit(other.url)
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("way", ["silent", "no token", "half a request"])
 def test_the_page_comes_though_strangers_take_all_the_connections_they_can_get(repl, visit, way):
     session = repl("--time", "wall")
@@ -207,6 +212,7 @@ WAITS = """(cpl:top-level (loop until (< (cl-transforms:y (cl-transforms:origin 
                  finally (return :it-was-moved)))"""
 
 
+@pytest.mark.soak
 def test_an_object_that_is_dragged_arrives_in_the_world_while_a_plan_runs(repl, visit):
     pytest.importorskip("mujoco", reason="pip install 'cramhy[robot]'")
     from test_page_room import Picture, drag, red

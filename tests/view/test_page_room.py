@@ -120,6 +120,7 @@ def at_rest(page):
     )
 
 
+@pytest.mark.soak
 def test_the_room_on_one_page(page, fake):
     """Its parts are functions, since a page that draws without a graphics card takes seconds to begin."""
     for part in (

@@ -135,6 +135,7 @@ def test_the_document_is_as_high_as_the_window_and_every_control_can_be_reached(
                 assert page.evaluate(REACHED) == [], (width, height, name)
 
 
+@pytest.mark.soak
 def test_what_is_placed_in_a_list_scrolls_with_the_list(fake, visit):
     page = visit(fake.address)
     fill(fake, page, 60)
@@ -170,6 +171,7 @@ def test_the_wheel_scrolls_a_list_and_never_the_page(fake, visit):
     assert page.evaluate("() => [seen.scrolled, seen.beyond]") == [0, 0]
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("size", ["tablet", "phone"])
 @pytest.mark.parametrize("hand", ["wheel", "finger"])
 def test_on_a_small_screen_lists_scroll_and_the_page_does_not(fake, visit, size, hand):
@@ -198,6 +200,7 @@ def test_on_a_small_screen_lists_scroll_and_the_page_does_not(fake, visit, size,
     assert page.evaluate("() => [seen.scrolled, seen.beyond]") == [0, 0]
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("size", SIZES)
 def test_the_focus_is_not_lost_when_its_row_ends(fake, visit, size):
     page = visit(fake.address, *SIZES[size])
