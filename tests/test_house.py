@@ -409,6 +409,7 @@ def test_a_room_that_says_where_its_parts_are_names_them_all(room):
     assert parts - set(re.findall(r"`(\w+)`", told)) == {"__init__"}
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("files", ["packages", *(["all"] if SOAK else [])])
 def test_any_module_can_be_imported_first(files):
     """No module relies on another one having been imported before it. The short form takes packages and each twentieth module."""
