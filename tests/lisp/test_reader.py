@@ -11,10 +11,11 @@ from cramhy_runtime.lisp_core.floats import SingleFloat
 from cramhy_runtime import kernel
 from cramhy_runtime.session import boot
 from cramhy_runtime.lisp_core.conditions import Condition, Warning_, handler_bind, muffle_warning
-from cramhy_runtime.lisp_core.data import Character, Cons, Symbol, lisp_list, list_from
+from cramhy_runtime.lisp_core.data import Character, Cons, Symbol, lisp_list, list_from, one
 from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.lisp_core.packages import find_package, intern, keyword, sym
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
+from cramhy_runtime.languages.commonlisp.evaluation.evaluator import evaluate
 from cramhy_runtime.languages.commonlisp.syntax import backquote
 from cramhy_runtime.languages.commonlisp.reader.reader import Reader, incomplete, read, read_from_string
 from cramhy_runtime.languages.commonlisp.files.file_streams import open_
@@ -359,3 +360,34 @@ def test_a_list_made_by_hand_prints_and_reads_back():
 
 def test_a_conditional_within_a_skipped_form_skips_as_well():
     assert prin1_to_string(read_from_string("(1 #+lispworks #+lispworks :element-type 'lw:char 2)")[0]) == "(1 2)"
+
+
+def in_own_table(change, text):
+    return f'(let ((*readtable* (copy-readtable))) {change} (read-from-string "{text}"))'
+
+
+NUMERALS = [
+    ("'(#xFF #xfF #b101 #o17 #x-1A #X+1f #B-0 #O+7)", "(255 255 5 15 -26 31 0 7)"),
+    ("'(#(#x1 #b0) #x1/2 #x10. #xAB(1))", "(#(1 0) 1/2 10 171 (1))"),
+    ('(let ((*read-base* 16)) (read-from-string "(#b11 #o11 #x11 11 #x FF)"))', "(3 9 17 17 255)"),
+    (in_own_table(r"(set-dispatch-macro-character #\# #\x (lambda (s c n) c n (list 1 (read s))))", "(#x12 #b11 #X5)"), "((1 12) 3 (1 5))"),
+    (in_own_table(r"(set-syntax-from-char #\F #\Space)", "(#xAF1)"), "(10 1)"),
+    (in_own_table(r"(set-macro-character #\1 (lambda (s c) s c 7))", "(#b01)"), "(0 7)"),
+    ("(list #+nil #xZZ #-nil #xA)", "(10)"),
+    *(
+        (f'(handler-case (read-from-string "({text})") (reader-error () :no))', ":NO")
+        for text in ("#b102", "#xF|a|", "#x0x10", "#x1_0", "#xG")
+    ),
+]
+
+
+@pytest.mark.parametrize("form, answer", NUMERALS)
+def test_a_number_in_a_radix_is_read_as_the_function_of_the_readtable_would_read_it(form, answer):
+    assert prin1_to_string(one(evaluate(first(form)))) == answer
+
+
+def test_a_table_of_numbers_is_read_without_a_call_for_each():
+    text = "(" + "#x1F " * 1000 + "0)"
+    form, calls = Reader(text), []
+    form.read_char = lambda: calls.append(1)  # the function of #x reads its characters
+    assert prin1_to_string(form.read().car) == "31" and not calls

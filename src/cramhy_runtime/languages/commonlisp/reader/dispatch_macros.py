@@ -32,7 +32,7 @@ from ..syntax.backquote import COMMA, COMMA_KINDS, Comma
 from .reader_errors import fail, place
 from .readtables import READTABLE, call
 from .shared_structure import sharp_equal, sharp_sharp
-from .text_reader import PACKAGE, SUPPRESS, as_reader, read_list, sharp_quote
+from .text_reader import PACKAGE, RADIXES, SUPPRESS, as_reader, read_list, sharp_quote
 
 READ_EVAL = special("*READ-EVAL*", True)
 FEATURES = special(
@@ -296,6 +296,8 @@ def _radix_reader(fixed):
             )
         return number
 
+    if fixed:
+        RADIXES[function] = fixed
     return function
 
 

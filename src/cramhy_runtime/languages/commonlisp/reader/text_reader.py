@@ -11,6 +11,7 @@ Source: ANSI 2.2 and 2.3.
 
 from __future__ import annotations
 
+from cramhy_runtime.kernel.late_patterns import late_pattern
 from cramhy_runtime.lisp_core.data import NO_VALUES, Character, Cons, MultipleValues, Symbol, list_from, one
 from cramhy_runtime.lisp_core.dynamic import special
 from cramhy_runtime.lisp_core.packages import COMMON_LISP_USER, sym
@@ -24,6 +25,11 @@ from .unmatched_closes import left_out, unmatched_closes
 
 PACKAGE = special("*PACKAGE*", COMMON_LISP_USER)
 QUOTE, FUNCTION = sym("QUOTE"), sym("FUNCTION")
+
+RADIXES = {}
+"""The standard functions of ``#b``, ``#o`` and ``#x``, and their bases: tables of numbers are read in one go."""
+_RADIX_LETTERS = ("b", "B", "o", "O", "x", "X")
+_DIGITS = late_pattern("[+-]?[0-9a-fA-F]{1,99}")
 
 NOTHING = object()
 """What reading gives when the text ends before an object begins."""
@@ -241,6 +247,8 @@ class Reader(InputStream, FdStream):
                     self.offset = end + 2
                     frames.append([None, end, FUNCTION, "#'"])
                     continue
+                elif handler.__class__ is DispatchTable and (number := self._numeral(handler, end, table)) is not None:
+                    found = number
                 else:
                     found = self.call_macro(handler, char, end)
                     if found is NOTHING:
@@ -337,6 +345,22 @@ class Reader(InputStream, FdStream):
             found, status = package.lookup(name)
             return found if status else package.intern(name)
         return tokens.qualified_symbol(self, word.split(":"), convert, word, start)
+
+    def _numeral(self, handler, start, table):
+        """The integer such as ``#xFF`` at ``start``, read in one go; ``None`` where the readtable's own function has to look."""
+        text = self.text
+        if text[start + 1 : start + 2] not in _RADIX_LETTERS or SUPPRESS.value is not None:
+            return None
+        base = RADIXES.get(handler.functions.get(text[start + 1].upper()))
+        match = table.scanner.match(text, start + 2)
+        if base is None or match.start(1) > start + 2 or match.end() > match.end(1) or match.end() == len(text):
+            return None
+        try:
+            number = int(match[1], base) if _DIGITS.fullmatch(match[1]) else None
+        except ValueError:  # a digit that the base has not
+            return None
+        self.offset = match.end()
+        return number
 
     def _escaped_token(self, start, table):
         """The symbol of a token with ``\\`` or ``|``; those characters are taken as they are, and it is never a number."""
