@@ -355,8 +355,10 @@ class Reader(InputStream, FdStream):
         match = table.scanner.match(text, start + 2)
         if base is None or match.start(1) > start + 2 or match.end() > match.end(1) or match.end() == len(text):
             return None
+        if not _DIGITS.fullmatch(match[1]):
+            return None
         try:
-            number = int(match[1], base) if _DIGITS.fullmatch(match[1]) else None
+            number = int(match[1], base)
         except ValueError:  # a digit that the base has not
             return None
         self.offset = match.end()
