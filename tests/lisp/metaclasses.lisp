@@ -362,3 +362,23 @@
 (defclass a () ((x :initarg :x :accessor x)) (:metaclass m)) (defclass b () ((x :accessor x) (y :initform 2 :accessor y)) (:metaclass m))
 (let ((i (make-instance 'a :x 5))) (change-class i 'b) (show (x i) (y i) (class-name (class-of i))))
 ;=> 5 2 B
+
+;;;; which initargs a defclass form gives its metaclass
+(defclass told-class (standard-class) ((extra :initarg :extra :initform nil)))
+(defmethod sb-mop:validate-superclass ((a told-class) (b standard-class)) t)
+(defvar *told* nil)
+(defun told (keys) (push (loop for k in keys by #'cddr when (member k '(:name :direct-superclasses :direct-slots :documentation :direct-default-initargs :extra)) collect k) *told*))
+(defmethod initialize-instance :around ((c told-class) &rest keys) (told keys) (call-next-method))
+(defmethod reinitialize-instance :around ((c told-class) &rest keys) (told keys) (call-next-method))
+(defclass a1 () () (:metaclass told-class))
+(show (shiftf *told* nil))
+(defclass a2 (a1) ((x :initarg :x)) (:metaclass told-class) (:documentation "d") (:default-initargs :x 1) (:extra 1 2))
+(show (shiftf *told* nil))
+(defvar *a2* (make-instance 'a2))
+(defclass a2 () () (:metaclass told-class))
+(show (shiftf *told* nil))
+(show (slot-exists-p *a2* 'x) (sb-mop:class-direct-default-initargs (find-class 'a2)) (documentation 'a2 'type) (mapcar #'class-name (sb-mop:class-direct-superclasses (find-class 'a2))))
+;=> ((:NAME :DIRECT-SUPERCLASSES :DIRECT-SLOTS :DIRECT-DEFAULT-INITARGS))
+;=> ((:NAME :DIRECT-SUPERCLASSES :DIRECT-SLOTS :DOCUMENTATION :DIRECT-DEFAULT-INITARGS :EXTRA))
+;=> ((:DIRECT-SUPERCLASSES :DIRECT-SLOTS :DIRECT-DEFAULT-INITARGS))
+;=> NIL NIL "d" (STANDARD-OBJECT)

@@ -137,10 +137,11 @@ def _defined_by_protocol(name, superclasses, slots, default_initargs, metaclass,
 
     given = {"DIRECT-SUPERCLASSES": list_from(superclasses), "DIRECT-SLOTS": list_from([_plist_of_slot(slot) for slot in slots])}
     defaults = [python_list(entry) for entry in python_list(default_initargs)]
+    if documentation is not None:
+        given["DOCUMENTATION"] = documentation
     given["DIRECT-DEFAULT-INITARGS"] = list_from([list_from([key, form, thunk]) for key, thunk, form in defaults])
-    given["DOCUMENTATION"] = documentation
     given["METACLASS"] = metaclass
-    initargs = [part for key, value in given.items() if value is not None for part in (keyword(key), value)]
+    initargs = [part for key, value in given.items() for part in (keyword(key), value)]
     return ensure_class(name, *initargs, *python_list(others))
 
 

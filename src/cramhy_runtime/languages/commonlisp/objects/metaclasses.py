@@ -99,10 +99,13 @@ def ensure_class_using_class(class_, name, *initargs):
     """``sb-mop:ensure-class-using-class``: ``class_`` is the class that ``name`` names, or nil."""
     given = _by_name(initargs)
     metaclass = find_class_or_error(given.pop("METACLASS", StandardClass if class_ is None else class_of(class_)))
-    initargs = [part for key, value in zip(initargs[::2], initargs[1::2]) if symbol_name(key) != "METACLASS" for part in (key, value)]
+    pairs = [
+        (key, value) for key, value in zip(initargs[::2], initargs[1::2]) if symbol_name(key) not in ("METACLASS", "DIRECT-SUPERCLASSES")
+    ]
     if "DIRECT-SUPERCLASSES" in given:
         bases = [class_definition.superclass(name, base) for base in python_list(given["DIRECT-SUPERCLASSES"])]
-        initargs = [keyword("DIRECT-SUPERCLASSES"), list_from(bases), *initargs]
+        pairs.insert(0, (keyword("DIRECT-SUPERCLASSES"), list_from(bases)))
+    initargs = [part for pair in pairs for part in pair]
     old = registered_class(name)
     if old is not None and vars(old).get("lisp_forward_reference"):
         old.__class__ = metaclass
