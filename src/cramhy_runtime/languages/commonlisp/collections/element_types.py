@@ -30,6 +30,8 @@ _NAMES = {
 }
 _UNSIGNED_BITS = (1, 2, 4, 7, 8, 15, 16, 31, 32, 62, 63, 64)
 _SIGNED_BITS = (8, 16, 32, 63, 64)
+_of_bits: dict = {}
+"""(UNSIGNED-BYTE or SIGNED-BYTE, number of bits) → the element type for such a list as ``(unsigned-byte 8)``, once it was asked for."""
 _UNSIGNED = {bits: lisp_list(sym("UNSIGNED-BYTE"), bits) for bits in _UNSIGNED_BITS}
 _SIGNED = {bits: lisp_list(sym("SIGNED-BYTE"), bits) for bits in _SIGNED_BITS}
 LIMITS = {
@@ -43,6 +45,10 @@ def upgraded_element_type(specifier):
     """``upgraded-array-element-type``: the element type that an array for ``specifier`` really has; ``True`` for T."""
     if isinstance(specifier, Symbol) and specifier.package is BIT.package:
         return _NAMES.get(specifier.name, True) if specifier.name != "UNSIGNED-BYTE" else True
+    if specifier.__class__ is Cons and specifier.cdr.__class__ is Cons and specifier.cdr.cdr is None and specifier.cdr.car.__class__ is int:
+        found = _of_bits.get((specifier.car, specifier.cdr.car)) if specifier.car.__class__ is Symbol else None
+        if found is not None:
+            return found
     if isinstance(specifier, Cons) and isinstance(specifier.car, Symbol):
         if specifier.car.package is not BIT.package and (expansion := PORTS.types.expand(specifier)) is not specifier:
             return upgraded_element_type(expansion)
@@ -53,7 +59,10 @@ def upgraded_element_type(specifier):
             return _for_characters(parameters)
         if parameters and parameters[0].__class__ is int or name in ("INTEGER", "MEMBER", "EQL"):
             limits = _integer_limits(name, parameters)
-            return _for_integers(*limits) if limits else True
+            found = _for_integers(*limits) if limits else True
+            if name in ("UNSIGNED-BYTE", "SIGNED-BYTE") and len(parameters) == 1:
+                _of_bits[specifier.car, parameters[0]] = found
+            return found
         return True
     if isinstance(specifier, (Symbol, type)):
         expansion = PORTS.types.expand(specifier)

@@ -132,12 +132,7 @@ class FileStream(FdStream, FileStreamClass):
         if self._text:
             self._forget_fetched()
         octets = self.format.encode(text, self)
-        if self.waits:
-            return self._system(lambda: self.file.write(octets), "write to")
-        try:
-            return self.file.write(octets)
-        except (OSError, ValueError) as problem:
-            return self._failed("write to", problem)
+        return self._put(octets)
 
     def flush(self):
         if self.is_output and not self.closed:
@@ -151,8 +146,12 @@ class FileStream(FdStream, FileStreamClass):
             return complain_closed(self)
         if not (self.is_input and self.bytes):
             return misused(self, "binary input")
-        self._forget_fetched()
-        octets = self._system(lambda: self.file.read(self.size))
+        if self._text:
+            self._forget_fetched()
+        try:
+            octets = kernel.run_blocking(lambda: self.file.read(self.size)) if self.waits else self.file.read(self.size)
+        except (OSError, ValueError) as problem:
+            return self._failed("read from", problem)
         return int.from_bytes(octets, "little", signed=self.signed) if len(octets) == self.size else None
 
     def write_byte(self, number):
@@ -164,7 +163,34 @@ class FileStream(FdStream, FileStreamClass):
             octets = number.to_bytes(self.size, "little", signed=self.signed)
         except (OverflowError, AttributeError):
             return type_error(number, self.element_type())
-        return self._system(lambda: self.file.write(octets), "write to")
+        return self._put(octets)
+
+    def write_bytes(self, numbers):
+        """Write ``numbers``, a list, at once. Returns whether that was possible: each must be an element of the file, of one byte."""
+        if self.closed or not (self.is_output and self.bytes and self.size == 1) or self.signed:
+            return False
+        try:
+            octets = bytes(numbers)
+        except (TypeError, ValueError):
+            return False
+        self._put(octets)
+        return True
+
+    def read_bytes(self, count):
+        """The next elements of a binary file, at most ``count``, as a list; ``None`` where they must be read one by one."""
+        if self.closed or not (self.is_input and self.bytes and self.size == 1) or self.signed or self.waits:
+            return None
+        if self._text:
+            self._forget_fetched()
+        return list(self._system(lambda: self.file.read(count)))
+
+    def _put(self, octets):
+        if self.waits:
+            return self._system(lambda: self.file.write(octets), "write to")
+        try:
+            return self.file.write(octets)
+        except (OSError, ValueError) as problem:
+            return self._failed("write to", problem)
 
     # --------------------------------------------------------------------------------------------------------- position
 

@@ -6,6 +6,8 @@ byte specifier is the pair ``(size . position)``. Source: ANSI 12.1.1.3.2.
 
 from __future__ import annotations
 
+import operator
+
 from cramhy_runtime.lisp_core.conditions import type_error
 from cramhy_runtime.lisp_core.data import Cons, boolean
 from cramhy_runtime.lisp_core.packages import sym
@@ -17,8 +19,9 @@ integer-length byte byte-size byte-position ldb ldb-test dpb mask-field deposit-
 
 def ash(integer, count):
     """``integer`` shifted left by ``count`` bits, right when ``count`` is negative."""
-    need_integer(integer)
-    need_integer(count)
+    if integer.__class__ is not int or count.__class__ is not int:
+        need_integer(integer)
+        need_integer(count)
     return integer << count if count >= 0 else integer >> -count
 
 
@@ -26,7 +29,7 @@ def _fold(name, start, operation):
     def function(*integers):
         result = start
         for integer in integers:
-            result = operation(result, need_integer(integer))
+            result = operation(result, integer if integer.__class__ is int else need_integer(integer))
         return result
 
     function.__name__ = function.__qualname__ = name
@@ -34,9 +37,9 @@ def _fold(name, start, operation):
     return function
 
 
-logand = _fold("logand", -1, lambda a, b: a & b)
-logior = _fold("logior", 0, lambda a, b: a | b)
-logxor = _fold("logxor", 0, lambda a, b: a ^ b)
+logand = _fold("logand", -1, operator.and_)
+logior = _fold("logior", 0, operator.or_)
+logxor = _fold("logxor", 0, operator.xor)
 logeqv = _fold("logeqv", -1, lambda a, b: ~(a ^ b))
 
 
@@ -118,8 +121,12 @@ def _mask(bytespec):
 
 def ldb(bytespec, integer):
     """The byte of ``integer``, moved to position 0."""
+    if bytespec.__class__ is Cons:
+        size, position = bytespec.car, bytespec.cdr
+        if size.__class__ is position.__class__ is integer.__class__ is int and size >= 0 <= position:
+            return integer >> position & (1 << size) - 1
     mask = _mask(bytespec)
-    return (integer if integer.__class__ is int else need_integer(integer)) >> bytespec.cdr & mask
+    return need_integer(integer) >> bytespec.cdr & mask
 
 
 def ldb_test(bytespec, integer):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from ..collections.element_types import upgraded_element_type
 from ..collections.sequence_types import INDEX_TYPE, bounds, elements, part
-from cramhy_runtime.lisp_core.arrays import BASE_CHAR, CHARACTER
+from cramhy_runtime.lisp_core.arrays import BASE_CHAR, CHARACTER, TypedVector
 from cramhy_runtime.lisp_core.conditions import EndOfFile, error, type_error
 from cramhy_runtime.lisp_core.data import (
     WRITABLE_STRINGS,
@@ -111,7 +111,10 @@ def write_sequence(sequence, stream, *, start=0, end=None):
         start, end = bounds(start, end, len(text))
         stream.write(text[start:end])
         return sequence
-    for element in part(sequence, start, end):
+    items = part(sequence, start, end)
+    if hasattr(stream, "write_bytes") and items.__class__ in (list, TypedVector) and stream.write_bytes(items):
+        return sequence
+    for element in items:
         if isinstance(element, Character):
             stream.write(element.char)
         elif hasattr(stream, "write_byte"):
@@ -225,10 +228,16 @@ def read_sequence(sequence, stream, *, start=0, end=None):
 
 def fill_sequence(sequence, stream, start, end):
     """Fill ``sequence`` from ``start`` to ``end`` with what is read, element by element; the index of the first that was not filled."""
+    by_characters = sequence.__class__ in WRITABLE_STRINGS or stream.element_type() is CHARACTER
+    if not by_characters and hasattr(stream, "read_bytes") and sequence.__class__ in (list, TypedVector):
+        octets = stream.read_bytes(end - start)
+        if octets is not None:
+            sequence[start : start + len(octets)] = octets
+            return start + len(octets)
     is_string, cell = sequence.__class__ in WRITABLE_STRINGS, sequence
     for _ in range(start if isinstance(sequence, Cons) else 0):
         cell = cell.cdr
-    next_element = stream.read_char if is_string or stream.element_type() is CHARACTER else stream.read_byte
+    next_element = stream.read_char if by_characters else stream.read_byte
     for index in range(start, end):
         element = next_element()
         if element == "" or element is None:
