@@ -72,3 +72,15 @@ def test_the_compiler_of_c_is_not_called(values, call):
     assert values("(list (stringp cffi-toolchain:*cc*) (listp cffi-toolchain:*cc-flags*))") == "(T T)"
     refusal = f"(handler-case {call} (cffi:foreign-not-implemented (e) (subseq (princ-to-string e) 0 11)))"
     assert values(refusal) in ('"CC-COMPILE "', '"LINK-SHARED"')
+
+
+def test_libffi_brings_grovel_for_the_system_whose_file_asks_for_it_alone(session, tmp_path, monkeypatch):
+    """CFFI's own cffi-libffi loads cffi-grovel, and GSLL's .asd file counts on it."""
+    (tmp_path / "by-value.asd").write_text(
+        """(eval-when (:compile-toplevel :load-toplevel :execute) (asdf:oos 'asdf:load-op :cffi-libffi))
+        (defsystem "by-value" :components ((cffi-grovel:grovel-file "one") (:file "six" :depends-on ("one"))))"""
+    )
+    (tmp_path / "one.lisp").write_text('(include "math.h")')
+    (tmp_path / "six.lisp").write_text("(defvar cl-user::*by-value* 7)")
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
+    assert session.evaluate_text('(progn (asdf:load-system "by-value") cl-user::*by-value*)') == [7]

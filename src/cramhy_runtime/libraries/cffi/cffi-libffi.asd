@@ -1,3 +1,3 @@
 (defsystem "cffi-libffi"
   :description "Nothing: C is neither asked nor compiled here. See cffi."
-  :depends-on ("cffi"))
+  :depends-on ("cffi" "cffi-grovel"))
