@@ -93,6 +93,34 @@ CASES = {
         "(defun cl-user::use () (user::use))\n(in-package :user)\n(defun use () (g))\n",
     ),
     "feature": ("(push :one *features*)", "(push :two *features*)", "(defun use () #+one 1 #+two 2)"),
+    **{
+        f"feature in {expression}": (
+            "(push :one *features*)",
+            "(push :two *features*)",
+            f"(defun use () (list #+{expression} 1 #-{expression} 2))",
+        )
+        for expression in (":one", "(or :no (and one (not three)))", "(:and\n:one)", "(or ;; more\n one)", "#.'(or one)")
+    },
+    "feature that a computed expression asks for": (
+        "(push :one *features*)",
+        "(push :two *features*)",
+        '(defun use () (list #+#.(cl:intern (cl:string-upcase "one") :keyword) 1 2))',
+    ),
+    "feature that a reading function of a macro asks for": (
+        "(push :one *features*)",
+        "(push :two *features*)",
+        '(defmacro m () (read-from-string "(list #+one 1 2)")) (defun use () (m))',
+    ),
+    "feature that a macro asks for": (
+        "(push :one *features*)",
+        "(push :two *features*)",
+        "(defmacro m () (if (member :one *features*) 1 2)) (defun use () (m))",
+    ),
+    "feature in a readtable where a name may have a comma": (
+        '(push (intern "A,B" :keyword) *features*)',
+        "(push :two *features*)",
+        "(eval-when (:compile-toplevel :load-toplevel :execute) (set-syntax-from-char #\\, #\\a)) (defun use () (list #+a,b 1 2))",
+    ),
     "reader macro": (
         "(set-macro-character #\\! (lambda (s c) (declare (ignore c)) (list '+ 1 (read s t nil t))))",
         "(set-macro-character #\\! (lambda (s c) (declare (ignore c)) (list '+ 2 (read s t nil t))))",
@@ -217,6 +245,22 @@ def test_a_definition_that_the_file_does_not_use_changes_nothing(files):
     found(*files)
     definitions.write_text(";; moved down\n\n(defun g () 2) (defmacro n () 2) (defun f () 2)\n(defmacro m () 1)")
     assert found(*files) == "1" and loader.why_not_kept(use) is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "(defun use () (list #+one 1 #-(and one (or :three four)) 3 '(#+x y)))",
+        '(defmacro m () (intern (format nil "A~d" 1))) (defun use () \'(m)) #+one (defun two () 2)',
+    ],
+)
+def test_a_feature_that_nothing_asks_for_changes_nothing(files, text):
+    """Libraries push features when they are loaded; those that were kept before are not compiled again for that."""
+    use = files[1]
+    use.write_text(text + "\n" + USE)
+    before = found(use, before="(push :one *features*)")
+    assert found(use, before="(push :one *features*) (push :two *features*)") == before and loader.why_not_kept(use) is None
+    assert found(use, before="(push :one *features*) (push 7 *features*)") == before and loader.why_not_kept(use) is None
 
 
 def test_the_package_in_which_a_file_without_in_package_is_loaded_counts(files):

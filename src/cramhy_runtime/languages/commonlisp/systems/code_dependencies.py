@@ -98,10 +98,12 @@ def _given_names(form: object) -> Iterator[Symbol]:
 
 
 def reading_state(text: str) -> str:
-    """What ``text`` is read with: the current package, readtable and number formats, and the features if it asks for any."""
+    """What ``text`` is read with: the current package, readtable and number formats, and the features among those that it asks for."""
     words = [PACKAGE.value.name, str(sym("*READ-BASE*").value), str(sym("*READ-DEFAULT-FLOAT-FORMAT*").value)]
     if "#+" in text or "#-" in text:
-        words += [str(feature) for feature in sym("*FEATURES*").value or ()]
+        asked = features_asked(text)
+        present = list(sym("*FEATURES*").value or ())
+        words += sorted(str(each) for each in present if asked is None or getattr(each, "name", "").upper() in asked)
     table = READTABLE.value
     if not _standard(table):
         sets = table.whitespace, table.macros, table.non_terminating, table.single_escapes, table.multiple_escapes
@@ -111,6 +113,35 @@ def reading_state(text: str) -> str:
             facts += [function] if function.__class__ is not DispatchTable else [list(pair) for pair in sorted(function.functions.items())]
         words.append(_digest(facts)[0])
     return " ".join(words)
+
+
+_CONDITIONAL = late_pattern(r"#[+-]\s*")
+_EXPRESSION = late_pattern(r"[^()]*[()]")
+_NAME = late_pattern(r"[^\s()]*")
+_ODD = late_pattern(r"""[#'`,;"|\\]""")
+_WORD = late_pattern(r"[^\s():]+")
+
+
+def features_asked(text: str) -> set[str] | None:
+    """The names in the feature expressions of ``text``, in upper case; ``None`` if one of them is made of more than names and parentheses.
+
+    What looks like a feature expression in a string or a comment counts, too: a name too many costs no more than a compilation.
+    """
+    expressions: set[str] = set()
+    for match in _CONDITIONAL.finditer(text):
+        end = match.end()
+        if not text.startswith("(", end):
+            expressions.add(_NAME.match(text, end)[0])
+            continue
+        depth = 0
+        for part in _EXPRESSION.finditer(text, end):
+            depth += 1 if part[0].endswith("(") else -1
+            if depth == 0:
+                expressions.add(text[end : part.end()])
+                break
+    if any(_ODD.search(expression) for expression in expressions):
+        return None
+    return {word.upper() for expression in expressions for word in _WORD.findall(expression)}
 
 
 def _standard(table: Readtable) -> bool:

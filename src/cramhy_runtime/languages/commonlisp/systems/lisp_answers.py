@@ -26,7 +26,7 @@ _ATOMS = (str, bytes, int, float, complex, bool, type(None), type(...))
 _COUNTERS = {sym("*RANDOM-STATE*"): "it depends on chance", sym("*GENSYM-COUNTER*"): "it depends on how many symbols were made before"}
 _PRINTING = """*PRINT-ARRAY* *PRINT-BASE* *PRINT-CASE* *PRINT-CIRCLE* *PRINT-ESCAPE* *PRINT-GENSYM* *PRINT-LENGTH* *PRINT-LEVEL*
 *PRINT-LINES* *PRINT-MISER-WIDTH* *PRINT-PRETTY* *PRINT-RADIX* *PRINT-READABLY* *PRINT-RIGHT-MARGIN* *READ-BASE* *READ-DEFAULT-FLOAT-FORMAT*
-*READ-EVAL* *READ-SUPPRESS* *DEFAULT-PATHNAME-DEFAULTS* *FEATURES*""".split()
+*READ-EVAL* *READ-SUPPRESS* *DEFAULT-PATHNAME-DEFAULTS*""".split()
 """Variables that functions of Common Lisp look at, so that the code which calls them need not name them."""
 
 Name = tuple[str, str]
@@ -209,6 +209,7 @@ _KINDS = {
         lambda _: "the packages that there are",
     ),
     "settings": Kind(lambda _: value_digest([sym(name).value for name in _PRINTING]), lambda _: "how Lisp reads and prints"),
+    "features": Kind(lambda _: value_digest(sym("*FEATURES*").value), lambda _: "the features"),
 }
 KINDS.update(_KINDS)
 

@@ -104,27 +104,31 @@ _ASK: dict[str, Callable[[Trace, Any], None]] = {
 
 
 _LISP = "cramhy_runtime.languages.commonlisp"
-_PRINTS = tuple(f"{_LISP}.{part}." for part in ("printer", "format", "reader", "files", "pathnames", "streams"))
-"""The modules whose functions look at how Lisp reads and prints."""
+_SETTINGS = {
+    "settings": tuple(f"{_LISP}.{part}." for part in ("printer", "format", "reader", "files", "pathnames", "streams")),
+    "features": (f"{_LISP}.reader.",),
+}
+"""Kind of answer → the modules whose functions look at how Lisp reads and prints, and at the features."""
 
-_uses: dict[int, tuple[types.CodeType, bool, list[tuple[Symbol, frozenset[str]]]]] = {}
-"""Number of a code object → it, whether it reads or prints, and the symbols that it uses, with the attributes of them. The hash of a code
-object would take longer than what is looked up."""
+_uses: dict[int, tuple[types.CodeType, set[str], list[tuple[Symbol, frozenset[str]]]]] = {}
+"""Number of a code object → it, what it asks for of `_SETTINGS`, and the symbols that it uses, with the attributes of them. The hash of a
+code object would take longer than what is looked up."""
 
 
-def _uses_of(code: types.CodeType, names: dict[str, Any]) -> tuple[types.CodeType, bool, list[tuple[Symbol, frozenset[str]]]]:
+def _uses_of(code: types.CodeType, names: dict[str, Any]) -> tuple[types.CodeType, set[str], list[tuple[Symbol, frozenset[str]]]]:
     known = _uses.get(id(code))
     if known is None:
-        prints, symbols = False, []
+        settings, symbols = set(), []
         for name, attributes in globals_of(code):
             value = names.get(name)
             if not isinstance(value, Symbol):
-                prints = prints or (getattr(value, "__module__", None) or "").startswith(_PRINTS)
+                module = getattr(value, "__module__", None) or ""
+                settings |= {kind for kind, modules in _SETTINGS.items() if module.startswith(modules)}
             elif value.package is not None and not value.constant and not (value.package.built_in and "value" not in attributes):
                 symbols.append((value, attributes))
         if len(_uses) > 5000:
             _uses.clear()
-        known = _uses[id(code)] = code, prints, symbols
+        known = _uses[id(code)] = code, settings, symbols
     return known
 
 
@@ -150,9 +154,9 @@ def _observe(trace: Trace, code: types.CodeType, names: dict[str, Any]) -> None:
     """A function in compiled Lisp runs: it reads variables and calls functions."""
     if names.get("__name__") != "cramhy_code":
         return
-    _, prints, symbols = _uses_of(code, names)
-    if prints:
-        trace.ask("settings", "")
+    _, settings, symbols = _uses_of(code, names)
+    for kind in settings:
+        trace.ask(kind, "")
     for symbol, attributes in symbols:
         if "value" in attributes and not isinstance(symbol.value, Stream):
             _ask_symbol("variable", trace, symbol)
