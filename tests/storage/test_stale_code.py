@@ -292,3 +292,16 @@ def test_a_macro_that_calls_itself_and_data_in_a_circle_have_a_digest(files):
     use.write_text("(defun use () (list (m 3) (k)))\n" + USE)
     definitions.write_text(text)
     assert found(*files) == found(*files) == "(1 3)" and loader.why_not_kept(use) is None
+
+
+def test_a_name_that_a_macro_asks_for_and_that_means_nothing_is_as_good_as_one_that_is_not_there(files):
+    """The compiler interned it after the macro had asked. When the kept code asks, nobody has read the name yet."""
+    use = files[1]
+    use.write_text(
+        "(eval-when (:compile-toplevel :load-toplevel :execute) (defun asked (name) (fboundp name)))\n"
+        "(defmacro m (name) (list 'quote (if (asked name) 1 2)))\n"
+        "(defun use () (m no-such-scanner))\n" + USE
+    )
+    assert found(use) == "2"
+    assert found(use) == "2" and loader.why_not_kept(use) is None
+    assert found(use, before="(defun no-such-scanner () 3)") == "1"

@@ -150,7 +150,8 @@ def _function(name: Name) -> str:
     for function in (*(getattr(each, "source", each) for each in expanders(symbol)), symbol.function, symbol.setf_function):
         if isinstance(function, types.FunctionType):
             data += [cell.cell_contents for cell in function.__closure__ or () if _holds_data(cell)]
-    return f"{meanings.of(symbol)} {code_digest(symbol.function)} {code_digest(symbol.setf_function)} {value_digest(data) if data else ''}"
+    digests = meanings.of(symbol), code_digest(symbol.function), code_digest(symbol.setf_function), value_digest(data) if data else ""
+    return " ".join(digests).strip()  # a symbol that means nothing is as good as none
 
 
 def _class(name: Name) -> str:
