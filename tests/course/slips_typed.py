@@ -101,8 +101,7 @@ class Typing(Walk):
         if process == 0:
             os.close(reading)
             begin = len(self.out.getvalue())
-            for line in slip.text.strip("\n").split("\n"):
-                yield line
+            yield from slip.text.strip("\n").split("\n")
             yield ";;;"
             with open(writing, "w", encoding="utf-8") as report:
                 json.dump(self.out.getvalue()[begin:], report)

@@ -15,7 +15,7 @@ from cramhy_runtime.lisp_core.packages import near_names, sym
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
 from cramhy_runtime.ros import graph, rosout
 
-from . import contents
+from . import bodies, contents, plan_places, rules, slips
 from .parts import Task
 from .reading import PageError, page, pages
 from .typed_forms import TypedForms
@@ -69,12 +69,40 @@ def check(
         return {"passed": False, "told": [NOT_TAKEN.format(name_of)]}
     tables = [in_language(table, language) for table in wanted.checks]
     wrong = _quietly(lambda: in_session.faults(wanted.title, tables, evaluate, language, typed.form))
+    if wrong and "ended with an error" not in wrong[0] and (told := _helper(wanted, evaluate, language, typed)) is not None:
+        wrong = [told]
     if wrong and (match := _NO_ANSWER.match(wrong[0])) is not None and _PRINTS.search(typed.definition(match["function"]) or ""):
         wrong.append(PRINTED)
+    wrong = [plan_places.in_check(sentence, typed.definition) for sentence in wrong]
     if wrong and wanted.name in _beginners() and in_session.missing_name(wrong) is None:
         forms = " ".join(table.get("do", "") for table in tables)
         wrong[:0] = [NOTHING_WAITS.format(function) for function in [typed.driving_without_waiting(forms)] if function is not None]
-    return {"passed": not wrong, "told": wrong or [PASSED]}
+    if wrong and (told := _slip(typed, tables, language)) is not None:
+        wrong.append(told)
+    worded = slips.in_words_of_hy if language == "hy" else slips.in_words_of_lisp
+    return {"passed": not wrong, "told": list(map(worded, wrong)) or [PASSED]}
+
+
+def _helper(wanted, evaluate, language, typed):
+    """What to say of a function of an earlier step that is wrong, so that a solution which calls it cannot be right; else ``None``."""
+    for table in wanted.helpers:
+        own = in_language({key: value for key, value in table.items() if key != "name"}, language)
+        if typed.definition(table["name"]) is None:
+            continue
+        wrong = _quietly(lambda own=own: in_session.faults(wanted.title, [own], evaluate, language, typed.form))
+        if wrong and in_session.missing_name(wrong) is None:
+            return table["say"]
+    return None
+
+
+def _slip(typed, tables, language):
+    """What is written otherwise than it was meant in the solution that does not pass; ``None`` if nothing is known to be."""
+    called = " ".join([*(table.get("do", "") for table in tables), *(form for table in tables for form, _ in table.get("ask", ()))])
+    for form in typed.concerned(called):
+        told = rules.of_form(form, language, checked=True) or bodies.of_form(form, language, typed.functions(), in_task=True)
+        if told is not None:
+            return told.removeprefix("; ")
+    return None
 
 
 @functools.cache

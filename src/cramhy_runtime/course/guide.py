@@ -12,7 +12,7 @@ from cramhy_runtime.kernel.typing_names import NamedTuple
 from cramhy_runtime.grading import in_session
 from cramhy_runtime.repl.open_forms import OpenForms
 
-from . import checking, contents, files, mistyped, other_packages, shown, slips
+from . import bodies, checking, contents, files, mistyped, other_packages, rules, shown, slips
 from .parts import Code, File, Task, Text, Typed, text_in
 from .progress import Progress
 from .reading import PageError, page, pages
@@ -226,9 +226,9 @@ class Guide:
 
     def typed(self, text: str) -> None:
         """The student has typed ``text``, whole forms."""
-        self._cue = (
-            self._of_words(text) or mistyped.of_form(text, self.language) or slips.of_line(text, self.language, in_task=self._in_task())
-        )
+        self._cue = self._of_words(text) or mistyped.of_form(text, self.language) or rules.of_form(text, self.language)
+        self._cue = self._cue or slips.of_line(text, self.language, in_task=self._in_task())
+        self._cue = self._cue or bodies.of_form(text, self.language, self._functions() | self._defined, in_task=self._in_task())
         self._by_course, self._coming = self._coming, False
         self._text = text
         self._added = {form for form in map(_squeezed, self._forms(self.steps)) if form in _squeezed(text)} - self._typed
@@ -502,8 +502,7 @@ class Guide:
         unprepared = self._of_missing(missing) if missing is not None else None
         unprepared = unprepared or _of_error_in_check("\n".join(found["told"][:1]), self.language)
         unprepared = unprepared or slips.of_unprepared(*self._untyped())
-        worded = slips.in_words_of_hy if self.language == "hy" else slips.in_words_of_lisp
-        return "\n".join(["Not yet.", *self._filled(map(worded, found["told"])), *filter(None, [unprepared]), hint])
+        return "\n".join(["Not yet.", *self._filled(found["told"]), *filter(None, [unprepared]), hint])
 
     def _filled(self, texts):
         return [shown.filled(line, self.style) for text in texts for line in text.split("\n")]

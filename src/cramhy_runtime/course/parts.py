@@ -79,6 +79,7 @@ class Task:
     """A task. ``markdown``: what to do. ``start``: code to begin with, by language. ``hints``: Markdown, from the first to the last.
 
     ``checks``: tables as below ``[[check]]`` of an exercise (docs/how-to/grading.md). A key that ends in ``-hy`` counts in Hy only.
+    ``helpers``: such tables with the ``name`` of a function of an earlier step, which a solution calls: they are tried when a check has failed.
     """
 
     name: str
@@ -87,6 +88,7 @@ class Task:
     start: dict[str, str] = field(default_factory=dict)
     hints: tuple[str, ...] = ()
     checks: tuple[dict[str, Any], ...] = ()
+    helpers: tuple[dict[str, Any], ...] = ()
 
 
 Part = Text | Code | File | Task

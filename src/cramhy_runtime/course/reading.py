@@ -157,7 +157,7 @@ def _task(page_name, title, name, toml, body):
         table = tomllib.loads(toml)
     except tomllib.TOMLDecodeError as problem:
         raise PageError(f"{where}: the comment is not TOML: {problem}.")
-    checks = table.pop("check", None)
+    checks, helpers = table.pop("check", None), table.pop("helper", ())
     if checks is not None and table:
         raise PageError(f"{where}: beside [[check]] stand {', '.join(table)}. Put them below [[check]].")
     hints = [hint.strip("\n") for hint in _HINT.findall(body)]
@@ -171,5 +171,11 @@ def _task(page_name, title, name, toml, body):
     body = re.sub(r"^<!-- tabs -->\n+(?=\Z|[^`])", "", FENCE.sub(lambda match: "" if match[2] == START else match[0], body), flags=re.M)
     title = title.strip()
     return Task(
-        name, title[:1].upper() + title[1:], re.sub(r"\n{3,}", "\n\n", body).strip("\n"), start, tuple(hints), tuple(checks or [table])
+        name,
+        title[:1].upper() + title[1:],
+        re.sub(r"\n{3,}", "\n\n", body).strip("\n"),
+        start,
+        tuple(hints),
+        tuple(checks or [table]),
+        tuple(helpers),
     )

@@ -11,6 +11,8 @@ import sys
 
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, NamedTuple
 
+from . import plan_places
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -200,6 +202,7 @@ def in_words_of_hy(told: str) -> str:
 
 
 def _in_words_of_pages(told):
+    told = plan_places.at_prompt(told)
     for word, wanted in _ARGUMENTS.items():
         told = told.replace(word, wanted)
     return told

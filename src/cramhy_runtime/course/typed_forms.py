@@ -21,9 +21,12 @@ if TYPE_CHECKING:
     from cramhy_runtime.languages.answered_texts import Answered
 
 _DEFINED = re.compile(r"^\((?:def[\w*-]*|register-[\w-]*)\s+(?:\[[^\]]*\]\s+)?([^\s()\[\]]+)", re.M | re.I)
+_DEFINED_INSIDE = re.compile(r"\((?:def[\w*-]*|register-[\w-]*|setv|setf\s+\((?:symbol-function|fdefinition)\s+')\s*([^\s()\[\]]+)", re.I)
+"""As `_DEFINED`, anywhere in a form: what was answered counts, too, where it stands inside of ``progn`` or ``top-level``."""
 _SETS = re.compile(r"\((?:def(?:var|parameter|constant|global)|p?setf|p?setq|setv|setx)\s", re.I)
 _TOKEN = re.compile(r"\"(?:\\.|[^\"\\])*\"|;[^\n]*|#\\.[\w-]*|[()\[\]{}]|['`,~@]+|[^\s()\[\]{}\";]+", re.S)
 _CALLED = re.compile(r"\(([^\s()\[\]{}\";'`,]+)")
+_GROUP = re.compile(r"\((?:[\w-]+:)?def-fact-group\s", re.I)
 _WAITS = re.compile(r"\((?:sleep|wait)", re.I)
 _WITHOUT_ANSWER = re.compile(r"\((?:import|require)\s")
 
@@ -51,7 +54,8 @@ class TypedForms:
         for each in self.texts:
             for name in _names(each.text[: each.upto]):
                 defined.add(name)
-                refused.pop(name, None)
+            for name in _DEFINED_INSIDE.findall(each.text[: each.upto]):
+                refused.pop(name.lower(), None)
             for name in _names(each.text[each.upto :]) if each.failed else ():
                 refused[name] = None
         return next((name for name in reversed(refused) if name in defined), None)
@@ -60,6 +64,21 @@ class TypedForms:
         """The form that was answered last of those that define ``name``; ``None`` if there is none."""
         found = (form for each in reversed(self.texts) for form in reversed(forms(each.text[: each.upto])))
         return next((form for form in found if (match := _DEFINED.match(form)) is not None and match[1].lower() == name.lower()), None)
+
+    def functions(self) -> set[str]:
+        """The names, in lower case, of all functions that were defined."""
+        return {name for each in self.texts for name in _names(each.text[: each.upto])}
+
+    def concerned(self, form: str) -> list[str]:
+        """The definitions of the functions that ``form`` calls, and of those that these call; then the last group of facts."""
+        names, found = _CALLED.findall(form), []
+        for name in names:  # which grows
+            text = self.definition(name)
+            if text is not None:
+                found.append(text)
+                names += [other for other in _CALLED.findall(text) if other not in names]
+        groups = (form for each in reversed(self.texts) for form in reversed(forms(each.text[: each.upto])) if _GROUP.match(form))
+        return [*found, *([group] if (group := next(groups, None)) is not None else [])]
 
     def driving_without_waiting(self, form: str) -> str | None:
         """The name of a function that ``form`` calls, or one of these, that sends a speed and in which nothing waits; else ``None``."""
