@@ -9,7 +9,7 @@ import sys
 from cramhy_runtime.grading import in_session
 from cramhy_runtime.lisp_core import restarts
 from cramhy_runtime.lisp_core.conditions import handler_bind
-from cramhy_runtime.lisp_core.condition_types import SimpleStyleWarning
+from cramhy_runtime.lisp_core.condition_types import Warning_
 from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.lisp_core.packages import near_names, sym
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, Any
@@ -21,7 +21,7 @@ from .reading import PageError, page, pages
 from .typed_forms import TypedForms
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from types import FrameType
 
@@ -33,6 +33,7 @@ NOT_TAKEN = (
 )
 PRINTED = "Printing is not answering: the answer of a function is the value of its last form."
 _NO_ANSWER = re.compile(r"\((?P<function>[^\s()]+)[^\n]* should give [^\n]+, and gave (?:NIL|None)\.")
+_ASKED = re.compile(r"\(prolog '\(([a-z][\w-]*)")
 _PRINTS = re.compile(r"\((?:print|princ|prin1|format)\s", re.I)
 NOTHING_WAITS = "Nothing waits in {} after send-vel-cmd. The turtle needs a second for what it is told."
 PASSED = "Well done: this task is solved."
@@ -95,11 +96,17 @@ def _helper(wanted, evaluate, language, typed):
     return None
 
 
+def predicates(tables: Iterable[dict[str, Any]]) -> list[str]:
+    """The predicates that the checks of a task ask for by their names."""
+    return list(dict.fromkeys(name for table in tables for form, _ in table.get("ask", ()) for name in _ASKED.findall(form)))
+
+
 def _slip(typed, tables, language):
     """What is written otherwise than it was meant in the solution that does not pass; ``None`` if nothing is known to be."""
     called = " ".join([*(table.get("do", "") for table in tables), *(form for table in tables for form, _ in table.get("ask", ()))])
     for form in typed.concerned(called):
-        told = rules.of_form(form, language, checked=True) or bodies.of_form(form, language, typed.functions(), in_task=True)
+        told = rules.of_predicates(form, predicates(tables)) if "<-" in form else None
+        told = told or rules.of_form(form, language, checked=True) or bodies.of_form(form, language, typed.functions(), in_task=True)
         if told is not None:
             return told.removeprefix("; ")
     return None
@@ -112,13 +119,13 @@ def _beginners():
 
 
 def _quietly(look: Callable[[], list[str]]) -> list[str]:
-    """What ``look`` returns. Meanwhile no log of the robot and no style warning is shown: a check calls the student's functions often."""
+    """What ``look`` returns. Meanwhile no log of the robot and no warning is shown: a check calls the student's functions often."""
     levels = graph.active().debug_levels
     before = dict(levels)
     levels.clear()
     levels[()] = rosout.WARN
     try:
-        return handler_bind([(SimpleStyleWarning, restarts.muffle_warning)], look)
+        return handler_bind([(Warning_, restarts.muffle_warning)], look)
     finally:
         levels.clear()
         levels.update(before)

@@ -227,6 +227,8 @@ class Guide:
     def typed(self, text: str) -> None:
         """The student has typed ``text``, whole forms."""
         self._cue = self._of_words(text) or mistyped.of_form(text, self.language) or rules.of_form(text, self.language)
+        if self._in_task() and "prolog" in text:
+            self._cue = self._cue or rules.of_predicates(text, checking.predicates(self.step.part.checks))
         self._cue = self._cue or slips.of_line(text, self.language, in_task=self._in_task())
         self._cue = self._cue or bodies.of_form(text, self.language, self._functions() | self._defined, in_task=self._in_task())
         self._by_course, self._coming = self._coming, False
@@ -295,6 +297,8 @@ class Guide:
 
     def failed(self, missing: str | None = None, error: Failure | None = None) -> None:
         """What was typed last has failed, or was ended by Ctrl-C. missing: the name that was not defined. error: what is known of it."""
+        if self.language == "hy" and (missing is not None or error is not None):
+            self._cue = self._cue or other_packages.of_dot(self._text)
         self._cue = self._cue or slips.of_failed_form(self._text, self.language, in_task=self._in_task())
         self._cue = self._cue or mistyped.of_failed_form(self._text, self.language, self.replay.texts)
         if missing is not None:

@@ -31,7 +31,7 @@ from cramhy_runtime.repl.listener import Listener, at_the_prompt
 from cramhy_runtime.session import Image
 from cramhy_runtime.session.session import Interruption
 
-from . import contents, files, guide, slips
+from . import asked, contents, files, guide, slips
 from .checking import hy_evaluator, lisp_evaluator
 from .guide import Failure, Guide
 from .progress import Progress
@@ -147,6 +147,11 @@ class Guided(Listener):
         super().announce(condition, restarts)
         self.tell(self.guide.of_debugger())
         self._answered_there = None
+
+    def dialogue(self, condition: Any, restarts: list[Any]) -> Any:
+        """As of the prompt. A choice that wants a value asks for it in the words of the course."""
+        with asked.by(self, super().read_line):
+            return super().dialogue(condition, restarts)
 
     def choices(self, restarts: list[Any]) -> list[str]:
         """Those of the innermost error. The choices of errors before it were shown with them; they keep their numbers of now."""

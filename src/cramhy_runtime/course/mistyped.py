@@ -19,6 +19,7 @@ _SINGLE = re.compile(r"(?<![^\s(\[])'([^'()\[\]\"\n]*[^'()\[\]\"\s])'(?=[\s)\]]|
 _CURVED = re.compile('[\u201c\u201d\u201e\u00ab\u00bb]([^\u201c\u201d\u201e\u00ab\u00bb"\n]*)[\u201c\u201d\u201e\u00ab\u00bb]')
 _DECIMAL = re.compile(r"(?<![\w.,'])(-?\d+),(\d+)(?![\w.,])")
 _THOUSANDS = re.compile(r"-?[1-9]\d{0,2},\d{3}")
+_ELEMENT = re.compile(r"(?<=[\s(])([A-Za-z][\w.-]*)\[(-?\d+)\](?=[\s)])")
 _GROUP = re.compile(r"[(\[][^()\[\]]*[^\s()\[\],],(?=[\s)\]])[^()\[\]]*[)\]]|[(\[][^()\[\]]*\s,\s[^()\[\]]*[)\]]")
 _COMMA = re.compile(r"[^\s()\[\],],(?=[\s)\]])")
 _EQUALS = re.compile(r"\((?P<head>setv|setf|setq|defvar|defparameter)\s+(?P<name>[^\s()\[\]]+)\s+=\s+(?P<value>[^\s()\[\]]*)")
@@ -63,6 +64,8 @@ def _of_hy(code, text):
         return f"; A colon stands before as: {found['module']} :as {found['name']}"
     if (found := _DECIMAL.search(code)) and not _THOUSANDS.fullmatch(found[0]):
         return f"; A number has a point: {found[1]}.{found[2]}. Hy leaves the comma in {found[0]} out."
+    if found := _ELEMENT.search(code):
+        return f"; {found[0]} is written (get {found[1]} {found[2]}) in Hy."
     if found := _GROUP.search(code):
         group = "".join(" " if sign == "," else old for sign, old in zip(found[0], text[found.start() :]))
         return f"; Between values stand spaces, and no commas: {group[0]}{' '.join(group[1:-1].split())}{group[-1]}"
@@ -121,11 +124,14 @@ def of_error(told: str, text: str, language: str) -> str | None:
     return None
 
 
+_TAKE_TEXTS = ("print", "princ", "prin1", "fail")
+
+
 def of_text(name: str, text: str, forms: Iterable[str]) -> str | None:
     """What to say of ``name``, which means nothing in the form ``text``, if one of ``forms`` has a text in its place; else ``None``."""
-    found = re.search(rf"\(([^\s()]+)\s+{re.escape(name)}[\s)]", text)
-    if found and any(f'({found[1]} "' in form for form in forms):
-        return f'; A text stands in double quotes: ({found[1]} "{name}" ...)'
+    found = re.search(rf"\(([^\s()]+)\s+({re.escape(name).replace('_', '[-_]').replace(chr(92) + '-', '[-_]')})[\s)]", text, re.I)
+    if found and (found[1] in _TAKE_TEXTS or any(f'({found[1]} "' in form for form in forms)):
+        return f'; A text stands in double quotes: ({found[1]} "{found[2]}"{"" if found[1] in _TAKE_TEXTS else " ..."})'
     return None
 
 

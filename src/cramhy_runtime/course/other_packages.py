@@ -6,9 +6,13 @@ function that the next form does not find.
 
 from __future__ import annotations
 
+import re
+
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
 from cramhy_runtime.languages.commonlisp.tools.advice import users_package_with
+from cramhy_runtime.lisp_core.packages import find_package
 
+_DOTTED = re.compile(r"(?<![\w.:-])([a-z][\w-]*)\.([a-z][\w-]*)(?![\w.])")
 _BEGIN = "COMMON-LISP-USER"
 
 
@@ -27,8 +31,17 @@ def of_name(name: str) -> str | None:
     )
 
 
+def of_dot(text: str) -> str | None:
+    """What to say of a form of Hy with a point between a package of CRAM and a name of it, ``cut.force-ll``; else ``None``."""
+    for before, name in _DOTTED.findall(text):
+        package = find_package(before.upper())
+        if package is not None and package.lookup(name.upper())[1] is not None:
+            return f"; A colon stands between a package of CRAM and its name: {before}:{name}"
+    return None
+
+
 def _short(package):
     return min(package.names, key=len)
 
 
-__all__ = ["of_name"]
+__all__ = ["of_dot", "of_name"]

@@ -79,7 +79,8 @@ class Task:
     """A task. ``markdown``: what to do. ``start``: code to begin with, by language. ``hints``: Markdown, from the first to the last.
 
     ``checks``: tables as below ``[[check]]`` of an exercise (docs/how-to/grading.md). A key that ends in ``-hy`` counts in Hy only.
-    ``helpers``: such tables with the ``name`` of a function of an earlier step, which a solution calls: they are tried when a check has failed.
+    ``helpers``: such tables with the ``name`` of a function of an earlier step, which a solution calls. They are tried when a check has
+    failed.
     """
 
     name: str

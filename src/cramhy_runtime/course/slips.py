@@ -23,6 +23,7 @@ _OPERATORS = r"[-+*/]"
 _OPERAND = r"[\w.]+"
 _INFIX = re.compile(rf"{_OPERAND}(?:\s*({_OPERATORS})\s*{_OPERAND})(?:\s*\1\s*{_OPERAND})*")
 _INFIX_CALL = re.compile(rf"\(({_OPERAND})\s+({_OPERATORS})\s+({_OPERAND})((?:\s+\2\s+{_OPERAND})*)\)")
+_GLUED = re.compile(rf"(?<!')\(({_OPERATORS})(\d[\d.]*)((?:\s+{_OPERAND})*)\)")
 _NUMBER_FIRST = re.compile(rf"\(\d[\d.]*\s+({_OPERATORS})\s")
 _INFIX_INSIDE = re.compile(
     rf"\((?P<head>{_OPERATORS})(?P<before>(?:\s+{_OPERAND})+)\s+(?P<operator>{_OPERATORS})(?P<behind>(?:\s+{_OPERAND})+)\)"
@@ -76,7 +77,12 @@ def _assignment(found, language):
     return f"(defvar {name} {value}), and if the variable is there already, (setf {name} {value})"
 
 
+def _element(found, language):
+    return f"({'get' if language == 'hy' else 'elt'} {found['name']} {found['place']})"
+
+
 _LIKE_PYTHON = [
+    (re.compile(r"(?P<name>[A-Za-z][\w.-]*)\[(?P<place>[^\[\]]+)\]"), _element),
     (re.compile(r"(?:from\s+(?P<modules>[\w.]+)\s+)import\s+(?P<names>.+)"), _import),
     (re.compile(r"import\s+(?P<modules>[\w., ]+)(?P<names>)"), _import),
     (re.compile(r"def\s+(?P<name>[\w-]+)\s*\((?P<arguments>[^()]*)\)\s*:?.*"), _def),
@@ -138,6 +144,9 @@ def of_failed_form(text: str, language: str, in_task: bool = False) -> str | Non
 
     in_task: as of `of_line`.
     """
+    if glued := _GLUED.search(text):
+        written = f"({glued[1]} {glued[2]}{glued[3]})" if not in_task else f"behind the {glued[1]}, as in {EXAMPLE.format(glued[1])}"
+        return f"; A space is missing{': ' if not in_task else ' '}{written}"
     if language != "hy":
         return None
     found = _INFIX_CALL.search(text)

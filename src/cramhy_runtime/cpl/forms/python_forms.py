@@ -195,7 +195,7 @@ def _refuse(thing: object, form: str) -> NoReturn:
 def _refuse_in_hy(thing: object, form: str) -> NoReturn:
     if isinstance(thing, bool):
         advice = (
-            f"A comparison of a fluent's value gives {thing} once. "
+            f"{thing} is what a comparison of a fluent's value gives, and what = gives for the fluent itself. "
             f"Write ({form} (< f x)) or ({form} (fl-eql f x)) with the fluent f itself."
         )
     elif callable(thing):

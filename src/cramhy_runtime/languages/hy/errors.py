@@ -224,9 +224,23 @@ def _hint(exception, condition):
     if isinstance(exception, (NameError, SyntaxError)) and (hint := _not_required(exception)):
         return hint
     if isinstance(exception, NameError) and exception.name:
+        if (part := _part_of_argument(exception)) is not None:
+            return part
         return shapes.hint_for_name(exception.name, _names_known(exception), _modules_known(exception))
     hint = condition.hint
     return hint() if callable(hint) else hint
+
+
+def _part_of_argument(exception):
+    """What to say if the name that is missing is a part of an argument of the function that looked for it; else ``None``."""
+    frames = [frame for frame, _ in traceback.walk_tb(exception.__traceback__) if _is_users(frame.f_code.co_filename)]
+    code = frames[-1].f_code if frames else None
+    for argument in code.co_varnames[: code.co_argcount] if code is not None else ():
+        value, part = frames[-1].f_locals.get(argument), exception.name
+        if part in getattr(type(value), "__slots__", ()) or part in getattr(value, "__dict__", ()):
+            function = "fn" if code.co_name == "<lambda>" else hy.unmangle(code.co_name)
+            return f"{hy.unmangle(part)} is a part of what {function} gets: {hy.unmangle(argument)}.{hy.unmangle(part)}"
+    return None
 
 
 def _modules_known(exception):

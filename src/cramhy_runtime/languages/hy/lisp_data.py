@@ -109,6 +109,8 @@ def refuse_code(model):
     """Raise ValueError if a model is read as a list, and looks as if it were evaluated: ``~n`` without a backquote, ``?pose.x``."""
     if is_call_of("unquote", model) or is_call_of("unquote-splice", model):
         raise ValueError(f"{written(model)} is evaluated in a template only, behind a backquote: `(a ~b)")
+    if is_dotted(model) and len(model) == 3 and find_package(str(model[1]).upper()) is not None:
+        raise ValueError(f"{written(model)}: a colon stands between a package of Lisp and a name of it, as in {model[1]}:{model[2]}")
     if is_dotted(model) and str(model[1]) != "None":
         raise ValueError(f"{written(model)} is no Lisp data: attributes are not evaluated in it; give the value a variable first")
 

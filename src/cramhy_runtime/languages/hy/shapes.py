@@ -12,7 +12,7 @@ import sys
 import hy
 
 from cramhy_runtime.lisp_core.data import Symbol, UndefinedFunction
-from cramhy_runtime.lisp_core.packages import COMMON_LISP, all_packages
+from cramhy_runtime.lisp_core.packages import COMMON_LISP, all_packages, find_package
 
 HY = {
     "cond": "(cond test value ...)",
@@ -108,6 +108,8 @@ def hint_for_name(name, known, modules=None):
     written = hy.unmangle(name)
     if written in _INSIDE:
         return _INSIDE[written]
+    if find_package(written.upper()) is not None:
+        return f"{written} is a package of Lisp. A colon stands between it and a name of it, as in ({written}:name ...)."
     if hy.mangle(name) in builtins._hy_macros and not any(map(str.isalnum, written)):
         return f"{written} stands at the head of its form, as in ({written} 1 2)."
     for alias, module in (modules or {}).items():
