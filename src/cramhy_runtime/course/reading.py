@@ -32,6 +32,8 @@ FENCE = re.compile(r"^```(\w*)(?: title=\"(.*?)\")?\n(.*?)^```$", re.M | re.S)
 PROMPT = re.compile(r"^(?:[A-Z][A-Z-]*> |\d+\] |=> )", re.M)
 _APART = re.compile(r"^<!-- installed -->$.*?^<!-- anywhere -->$\n?", re.M | re.S)
 _INSTEAD = re.compile(r"^<!-- in the course\n(.*?)^-->$\n?", re.M | re.S)
+_NUMBERED = re.compile(r"^(## )\d+\. (?=[A-Z])", re.M)
+"""The number of a section: the course leaves some of them out, and numbers its steps."""
 _TABS = re.compile(r"^<!-- tabs -->\s*\Z", re.M)
 _APART_CODE = re.compile(r"^<!-- (?:lisp|hy) -->\s*\Z", re.M)
 TASK = re.compile(
@@ -62,7 +64,7 @@ def page(name: str) -> Page:
 
 def read(name: str, text: str) -> Page:
     """The page of a text. Raises `PageError`."""
-    title, text = _title(name, _INSTEAD.sub(r"\1", _APART.sub("", text)))
+    title, text = _title(name, _NUMBERED.sub(r"\1", _INSTEAD.sub(r"\1", _APART.sub("", text))))
     parts: list[Part] = []
     end = 0
     for match, after in tasks_in(text):
