@@ -161,7 +161,7 @@ def test_files_are_written_and_those_of_the_student_stay(typed, tmp_path, page, 
         number for number, step in enumerate(steps(reading.page(page), language), 1)
         if step.piece and step.piece.number == step.piece.count and getattr(step.part, language)[0] == there
     )  # fmt: skip
-    assert f"Written: {there}" in typed([*[":next"] * number, ":quit"], page, language)
+    assert f"Written: files/lectures/{there}" in typed([*[":next"] * number, ":quit"], page, language)
     written = file.read_text()
     file.write_text("; mine\n")
     shown = typed([*[":next"] * number, ":quit"], page, language)
@@ -506,11 +506,11 @@ def test_an_error_in_a_file_leads_to_the_line_of_the_student(typed, language):
 def test_a_robot_that_was_not_started_is_told(typed, language):
     place = step_of_form(8, language, "(init)")
     shown = words(typed([place, ":next", *LOADING[language], DRIVE.format("driving"), ":quit"], "choosing-a-module", language))
-    assert f"The robot is started by a form that you have not typed: (init) {place} leads back to it." in shown
+    assert f"The robot is started by a form that you have not typed: (init). {place} leads back to it." in shown
     value = "(with-fields (x) (value *turtle-pose*) x)" if language == "lisp" else "(with-fields [x] turtle-pose.value x)"
     more = [] if language == "lisp" else ["(import turtlesim-in-hy.control-turtlesim [turtle-pose])"]
     shown = words(typed([place, ":next", *LOADING[language], *more, value, ":quit"], "choosing-a-module", language))
-    assert "No message is there yet" in shown and f"(init) {place} leads back to it." in shown
+    assert "No message is there yet" in shown and f"(init). {place} leads back to it." in shown
     shown = typed([place, ":next", *LOADING[language], "(init)", DRIVE.format("driving"), ":quit"], "choosing-a-module", language)
     assert "The robot is started" not in shown
 

@@ -76,6 +76,6 @@ def test_a_missing_name_leads_back_to_the_form_that_was_passed_over():
         of_missing("AHEAD", forms, 6, 1, KNOWN)
         == "; ahead is defined by a form of this step that you have not typed yet: (defun ahead (metres) ..."
     )
-    loaded = "; What this page needs is loaded by a form that you have not typed: (in-package :tut) :page 1 4 leads back to it."
+    loaded = "; What this page needs is loaded by a form that you have not typed: (in-package :tut). :page 1 4 leads back to it."
     assert of_missing("INIT", forms, 5, 1, KNOWN) == loaded and of_missing("inti", forms, 5, 1, KNOWN) is None
     assert of_missing("init", forms[1:], 5, 1, KNOWN) is None and of_missing("ahead", [], 5, 1, KNOWN) is None

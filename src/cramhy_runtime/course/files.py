@@ -97,6 +97,12 @@ def _files(page, language):
             yield file
 
 
+def shown(name: str) -> str:
+    """A file of the current folder, with the two folders above, in which a student finds it: ``cramhy-course/turtle/spiral.hy``."""
+    here = Path.cwd()
+    return "/".join([*here.parts[-2:], name]) if len(here.parts) > 2 else name
+
+
 def known_texts(name: str) -> set[str]:
     """All texts that pages give to the file of that name."""
     return {

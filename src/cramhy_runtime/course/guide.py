@@ -5,101 +5,31 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 
 from cramhy_runtime.kernel.typing_names import NamedTuple
 from cramhy_runtime.grading import in_session
-from cramhy_runtime.repl.open_forms import OpenForms
 
 from . import bodies, checking, contents, files, mistyped, other_packages, rules, shown, slips
+from .commands import COMMANDS, WITH_ARGUMENT, command, command_in_form, meant, told_of_open_form
 from .parts import Code, File, Task, Text, Typed, text_in
 from .progress import Progress
 from .reading import PageError, page, pages
 from .replay import Replay
 from .shown import Style
-from .steps import ERROR, Step, file_shown, session_shown, steps, task_shown
+from .steps import ERROR, MOST, Step, file_shown, session_shown, steps, task_shown
 
-COMMANDS = {
-    "next": ("n", "the next step, or the next page"),
-    "type": ("t", "type the next form of this step for you"),
-    "back": ("b", "the step before"),
-    "again": ("a", "this step, shown again"),
-    "hint": ("h", "the next hint for the task"),
-    "check": ("c", "look whether the task is solved"),
-    "write": ("w", "write the file of this step, over one of your own, too"),
-    "pages": ("p", "all pages, and what you have solved"),
-    "page": ("", "go to a page, by its number: :page 3; :page 3 2 goes to its step 2"),
-    "replay": ("r", "type again what you typed on this page in an earlier session"),
-    "help": ("?", "this list"),
-    "quit": ("q", "leave; cramhy learn goes on here"),
-}
-"""The commands: the short name of each, and what it does."""
-_SHORT = {short: name for name, (short, _) in COMMANDS.items() if short}
-WITH_ARGUMENT = ("page",)
-_ATOM = re.compile(r"[^\s()\[\]{}'`\",;:#=]+(?:\s+(?:[^\s()\[\]{}'`\",;:#=]+|\"[^\"]*\"))+")
-"""Words without parentheses."""
 _CALLED = re.compile(r"\(([A-Za-z][^\s()\[\]{}'`\",;:#]*)(?=\s)")
 _OF_DEBUGGER = re.compile(r"\d+\] ")
 _ASKED = re.compile(r"Write a function `([^`]+)`")
 _IN_TEXT = re.compile(r"`([^`]+)`")
 _WORD = re.compile(r"(?:[\w-]+[.:]+)*([^\s()\[\]{}'`\",.:;#]+)")
+_ATOM = re.compile(r"[^\s()\[\]{}'`\",;:#=]+(?:\s+(?:[^\s()\[\]{}'`\",;:#=]+|\"[^\"]*\"))+")
+"""Words without parentheses."""
 CHECK_INTERRUPTED = (
     "; The check has not come to its end. If nothing waits in a loop, the turtle's time stands still there: (sleep 0.1) lets it pass."
 )
 OVER = "; To see the next step, type :next"
-
-
-def command(line: str) -> tuple[str, str] | None:
-    """(name, argument) of the command that a line is, with or without the colon in front; ``None`` if it is none."""
-    first, *arguments = line.strip().lower().split() or [""]
-    word = first.removeprefix(":")
-    name = word if word in COMMANDS else _SHORT.get(word) if first.startswith(":") else None
-    if name not in WITH_ARGUMENT:
-        return (name, "") if name is not None and not arguments else None
-    if 1 <= len(arguments) <= 2:
-        return name, " ".join(arguments)
-    return (name, "") if first.startswith(":") else None
-
-
-def meant(line: str) -> str | None:
-    """What to say of a line with a colon in front that is almost a command; ``None`` for any other line."""
-    first, *arguments = line.strip().lower().split() or [""]
-    if not first.startswith(":"):
-        return None
-    found = command(first)
-    if found is not None and arguments:
-        return f"; :{found[0]} stands alone in its line." if found[0] not in WITH_ARGUMENT else None
-    near = difflib.get_close_matches(first[1:], COMMANDS, 1, 0.65)
-    return f"; There is no command {first}. Did you mean :{near[0]}?" if near and not arguments else None
-
-
-def told_of_open_form(lines: list[str], language: str = "lisp") -> str | None:
-    """What to say when a form is open, and the last of ``lines`` is empty, a command, or was meant for the debugger; else ``None``."""
-    line = lines[-1].strip()
-    found = command_in_form(line)
-    if line and found is None and line.lower() not in ("q", "help", "?", "exit"):
-        return None
-    opened = OpenForms(hy=language == "hy")
-    opened.read("\n".join([*(lines[:-1] if found else lines), ""]))
-    if opened.within == '"':
-        what, close = "A text is open", 'End it by "'
-    else:
-        ends = "".join(")]}"["([{".index(each[0])] for each in reversed(opened.lists))
-        what, close = "A form is open", f"Close it by {ends}" if 0 < len(ends) < 10 and not opened.within else "Close its parentheses"
-    if found is not None:
-        return (
-            f"; {what}, so :{found} has to wait, and what you have typed stays. {close}, or press Ctrl-C to leave it. Then type :{found}."
-        )
-    taken = f", and {line} is taken for a part of it" if line else ""
-    return f"; {what}{taken}. {close}, or press Ctrl-C to begin anew."
-
-
-def command_in_form(line: str) -> str | None:
-    """The name of the command that a further line of a form is, with its colon. It is not a part of the form."""
-    found = command(line) if line.strip().startswith(":") else None
-    return found[0] if found is not None else None
-
 
 _OUTSIDE = "form not inside a plan."
 """In an error that names the form of the student itself."""
@@ -156,6 +86,7 @@ class Guide:
         part = self.step.part
         self._waiting = list(getattr(part, self.language)) if isinstance(part, Code) else []
         self._read = self._cue = None
+        self._had: set[str] = set()  # what was typed of this step
         self._checked = self._begins_anew = False
         self.progress.page, self.progress.language = self.page.name, self.language
         self.progress.steps[self.page.name] = self.place
@@ -196,6 +127,8 @@ class Guide:
                 return "; :next shows the next part of the file."
             return "; :next writes this file and goes on. Or write it yourself, with an editor."
         if self.place + 1 < len(self.steps):
+            if self._is_first():
+                return "; Type what stands behind the prompts, or :type does. :next goes on, :back back; :help shows all commands."
             if part is None:
                 return "; :next shows it." if self.step.texts[-1].rstrip().endswith(":") else "; :next goes on."
             return "; Type what stands behind the prompts, or :type does. :next goes on."
@@ -203,6 +136,9 @@ class Guide:
         if after is None:
             return self._with_unsolved("; This is the end of the course. :pages shows all pages.")
         return self._with_unsolved(f"; This is the end of the page. :next begins the next one: {page(after).title}.")
+
+    def _is_first(self):
+        return self.place == 0 and self.page.name == contents.NAMES[0]
 
     def _is_last_piece(self):
         piece = self.step.piece
@@ -224,8 +160,8 @@ class Guide:
 
     # -------------------------------------------------------------------------------------------------------------- what is typed
 
-    def typed(self, text: str) -> None:
-        """The student has typed ``text``, whole forms."""
+    def typed(self, text: str, behind: str | None = None) -> None:
+        """The student has typed ``text``, whole forms. behind: the prompt, where it says which package is meant."""
         self._cue = self._of_words(text) or mistyped.of_form(text, self.language) or rules.of_form(text, self.language)
         if self._in_task() and "prolog" in text:
             self._cue = self._cue or rules.of_predicates(text, checking.predicates(self.step.part.checks))
@@ -233,10 +169,14 @@ class Guide:
         self._cue = self._cue or bodies.of_form(text, self.language, self._functions() | self._defined, in_task=self._in_task())
         self._by_course, self._coming = self._coming, False
         self._text = text
-        self._added = {form for form in map(_squeezed, self._forms(self.steps)) if form in _squeezed(text)} - self._typed
+        here = [form for form, prompt in self._prompts().items() if behind in (None, prompt)]
+        self._added = {form for form in map(_squeezed, here) if form in _squeezed(text)} - self._typed
         self._typed |= self._added
-        self._defined.update(slips.names(text))
+        if behind is None or here or not self._prompts():
+            self._defined.update(slips.names(text))
         self._read = next((typed for typed in self._waiting if _squeezed(typed.form) == _squeezed(text)), None)
+        if self._read is not None and self._read is not self._waiting[0] and _squeezed(text) in self._had:
+            self._read = None  # a form that stands twice in the step was typed twice before its second turn
 
     def _in_task(self):
         return isinstance(self.step.part, Task)
@@ -255,6 +195,11 @@ class Guide:
         """The names, in lower case, that stand behind a parenthesis in the forms of the page up to here."""
         return {name.lower() for text in self._forms() for name in _CALLED.findall(text)}
 
+    def _prompts(self):
+        """The forms of the page, each with the prompt behind which the page shows it."""
+        parts = [step.part for step in self.steps if isinstance(step.part, Code)]
+        return {typed.text: typed.prompt for part in parts for typed in getattr(part, self.language)}
+
     def _forms(self, among=None):
         """The texts of the forms of this page up to the step that is shown, or of the steps ``among``, each with the number of its step."""
         return {
@@ -267,7 +212,7 @@ class Guide:
 
     def _of_missing(self, name):
         """What to say of a name without a meaning; ``None`` if nothing is known of it, or if this task asks for it."""
-        told = mistyped.of_name(name, self.language) or (other_packages.of_name(name) if self.language == "lisp" else None)
+        told = mistyped.of_name(name, self.language, self._text) or (other_packages.of_name(name) if self.language == "lisp" else None)
         told = told or mistyped.of_text(name if self.language == "hy" else name.lower(), self._text, self._forms())
         if told or (self._in_task() and _asks_for(self.step.part, name)):
             return told
@@ -324,6 +269,7 @@ class Guide:
         some = bool(self._waiting)
         if self._read is not None:
             self._waiting.remove(self._read)
+            self._had.add(_squeezed(self._read.form))
             self._read = None
         while self._waiting and _OF_DEBUGGER.match(self._waiting[0].prompt):  # it was left in another way than the page shows
             self._waiting.pop(0)
@@ -435,7 +381,7 @@ class Guide:
         except OSError as problem:
             return f"; {name} cannot be written: {problem.strerror}."
         return {
-            "written": f"; Written: {name}",
+            "written": f"; Written: {files.shown(name)}",
             "there": f"; {name} is there already, as it is shown.",
             "other": f"; {name} is there already, with a text of your own. It stays. :write replaces it, and keeps yours as {name}.old.",
         }[done]
@@ -506,10 +452,18 @@ class Guide:
         unprepared = self._of_missing(missing) if missing is not None else None
         unprepared = unprepared or _of_error_in_check("\n".join(found["told"][:1]), self.language)
         unprepared = unprepared or slips.of_unprepared(*self._untyped())
-        return "\n".join(["Not yet.", *self._filled(found["told"]), *filter(None, [unprepared]), hint])
+        return "\n".join(["Not yet.", *_short(self._filled(found["told"])), *filter(None, [unprepared]), hint])
 
     def _filled(self, texts):
         return [shown.filled(line, self.style) for text in texts for line in text.split("\n")]
+
+
+def _short(lines):
+    """The lines of a verdict, without their middle if they are so many that the first ones leave the screen."""
+    if len(lines) <= MOST:
+        return lines
+    left = len(lines) - MOST + 1
+    return [*lines[: MOST - 5], f"  [... {left} lines more]", *lines[MOST - 5 + left :]]
 
 
 def _of_error_in_check(told, language):
@@ -553,7 +507,7 @@ def _fails(typed):
 
 def _squeezed(form):
     """The form without what does not matter: its lines, blanks inside of parentheses at their ends, and case."""
-    return re.sub(r"(?<=[(\[]) | (?=[)\]])", "", " ".join(form.split())).lower()
+    return re.sub(r"(?<=[(\[]) | (?=[)\]])|(?<=[^\s'`,#@]) (?=[(\[])|(?<=[)\]]) (?=\S)", "", " ".join(form.split())).lower()
 
 
-__all__ = ["command", "COMMANDS", "Failure", "Guide", "meant", "PageError"]
+__all__ = ["COMMANDS", "Failure", "Guide", "PageError", "command", "command_in_form", "meant", "told_of_open_form"]

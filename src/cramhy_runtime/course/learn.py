@@ -36,7 +36,7 @@ from .checking import hy_evaluator, lisp_evaluator
 from .guide import Failure, Guide
 from .progress import Progress
 from .reading import PageError
-from .shown import Style, filled
+from .shown import Style, filled, fitted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -140,7 +140,11 @@ class Guided(Listener):
             self.guide.replay.was_read(text)
         elif self._answered_there is None:
             self._answered_there = True
-        self.guide.typed(text)
+        self.guide.typed(text, self.behind())
+
+    def behind(self) -> str | None:
+        """The prompt behind which the text was typed, if it says of which package the names in it are."""
+        return None
 
     def announce(self, condition: Any, restarts: list[Any]) -> None:
         self.guide.failed(_name_of(condition), _failure(condition))
@@ -192,7 +196,10 @@ class LispPrompt(Guided, Console):
         return self.guide.over
 
     def explained(self, condition):
-        return slips.in_words_of_lisp(super().explained(condition))
+        return fitted(slips.in_words_of_lisp(super().explained(condition)), self.guide.style)
+
+    def behind(self):
+        return None if self.level else self.session.prompt
 
     def evaluator(self):
         return lisp_evaluator(self.session)
@@ -223,11 +230,11 @@ class HyPrompt(Guided, hy_prompt.HyPrompt):
             raise
 
     def showtraceback(self):
-        with _in_words_of_pages():
+        with _in_words_of_pages(self.guide.style):
             super().showtraceback()
 
     def showsyntaxerror(self, *places, **texts):
-        with _in_words_of_pages():
+        with _in_words_of_pages(self.guide.style):
             super().showsyntaxerror(*places, **texts)
 
     def failed(self):
@@ -239,11 +246,11 @@ class HyPrompt(Guided, hy_prompt.HyPrompt):
 
 
 @contextlib.contextmanager
-def _in_words_of_pages():
-    """What the block prints of an error of Hy is shown in the words of the pages."""
+def _in_words_of_pages(style):
+    """What the block prints of an error of Hy is shown in the words of the pages, in lines that fit the terminal."""
     with contextlib.redirect_stderr(io.StringIO()) as told:
         yield
-    sys.stderr.write(slips.in_words_of_hy(told.getvalue()))
+    sys.stderr.write(fitted(slips.in_words_of_hy(told.getvalue()), style))
     sys.stderr.flush()
 
 
@@ -285,7 +292,7 @@ def run(
     progress, style = progress or Progress.kept(), style or Style.of_terminal()
     language = language or progress.language or "lisp"
     name = page or (progress.page if progress.page in contents.NAMES else None) or contents.NAMES[0]
-    top = (top or Path(FOLDER)).absolute()
+    top = _absolute(top or Path(FOLDER))
     status = 0
     while name is not None and not status:
         way = Guide(name, language, progress, style)
@@ -295,6 +302,13 @@ def run(
             status = _go(way, lambda closings=closings, page=way.page: _session_for(page, make_session(closings)), lines)
         name = way.leaves_for
     return status
+
+
+def _absolute(folder):
+    try:
+        return folder.absolute()
+    except FileNotFoundError:
+        raise PageError("The folder in which you are is not there any more. Go to another one, and begin again: cd") from None
 
 
 @contextlib.contextmanager
@@ -334,7 +348,7 @@ def _go(way, make_session, lines):
 @contextlib.contextmanager
 def _in_work_folder(way, top):
     """Let the current folder be that of the page, with the files of earlier pages. Modules of Python in it are forgotten afterwards."""
-    before = os.getcwd()
+    before = str(_absolute(Path()))
     try:
         place = files.work_folder(way.page, way.language, top)
         if place is not None:

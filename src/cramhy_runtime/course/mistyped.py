@@ -130,17 +130,22 @@ _TAKE_TEXTS = ("print", "princ", "prin1", "fail")
 def of_text(name: str, text: str, forms: Iterable[str]) -> str | None:
     """What to say of ``name``, which means nothing in the form ``text``, if one of ``forms`` has a text in its place; else ``None``."""
     found = re.search(rf"\(([^\s()]+)\s+({re.escape(name).replace('_', '[-_]').replace(chr(92) + '-', '[-_]')})[\s)]", text, re.I)
+    alone = found is not None and any(re.search(rf'\({re.escape(found[1])} "[^"]*"\)', form) for form in forms)
     if found and (found[1] in _TAKE_TEXTS or any(f'({found[1]} "' in form for form in forms)):
-        return f'; A text stands in double quotes: ({found[1]} "{found[2]}"{"" if found[1] in _TAKE_TEXTS else " ..."})'
+        return f'; A text stands in double quotes: ({found[1]} "{found[2]}"{"" if found[1] in _TAKE_TEXTS or alone else " ..."})'
     return None
 
 
-def of_name(name: str, language: str) -> str | None:
-    """What to say of a name of Hy without a value: a minus before another one, or what other languages call true, false or nothing."""
+def of_name(name: str, language: str, text: str = "") -> str | None:
+    """What to say of a name of Hy without a value: a minus before another one, or what other languages call true, false or nothing.
+
+    text: the form in which it stands.
+    """
     if language != "hy":
         return None
     if re.match(r"-[a-zA-Z]", name):
-        return f"; The minus is a function, with parentheses around the call: (- {name[1:]}...)"
+        whole = re.search(rf"(?<![\w)]){re.escape(name)}[\w.-]*", text)
+        return f"; The minus is a function, with parentheses around the call: (- {whole[0][1:] if whole else name[1:]})"
     return f"; Hy writes {VALUES[name]}." if name in VALUES else None
 
 

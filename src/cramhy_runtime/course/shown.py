@@ -62,6 +62,40 @@ def filled(line: str, style: Style) -> str:
     return textwrap.fill(line, style.width, subsequent_indent=lead, break_long_words=False, break_on_hyphens=False)
 
 
+_MARKS_BELOW = re.compile(r"( *)([\^~]+)\s*")
+
+
+def fitted(told: str, style: Style) -> str:
+    """The text of an error in lines that fit the width. Of a long line with a mark below it the piece around the mark is shown."""
+    found, lines = [], told.split("\n")
+    for place, line in enumerate(lines):
+        marks = _MARKS_BELOW.fullmatch(lines[place + 1]) if place + 1 < len(lines) else None
+        if _MARKS_BELOW.fullmatch(line) and place and len(lines[place - 1]) > style.width and line.strip():
+            continue  # it was shown with its line
+        if len(line) <= style.width:
+            found.append(line)
+        elif marks is not None:
+            found += _around(line, len(marks[1]), len(marks[2]), style.width)
+        else:
+            indent = " " * (len(line) - len(line.lstrip()))
+            found.append(textwrap.fill(line, style.width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False))
+    return "\n".join(found)
+
+
+def _around(line, column, count, width):
+    """The piece of a line around what is marked in it, and the marks."""
+    indent = len(line) - len(line.lstrip())
+    inside, room = line[indent:].rstrip(), width - indent - 8
+    start = max(0, min(column - indent - room // 3, len(inside) - room))
+    piece = inside[start : start + room]
+    before, behind = ("... " if start else ""), (" ..." if start + room < len(inside) else "")
+    shift = column - indent - start + len(before)
+    return [
+        f"{' ' * indent}{before}{piece}{behind}",
+        f"{' ' * (indent + shift)}{'^' * max(1, min(count, len(piece) - (column - indent - start)))}",
+    ]
+
+
 def code(block: str, style: Style) -> str:
     """A block of code, indented. A line that is too long goes on below, further in."""
     found, inside = [], False
@@ -168,11 +202,22 @@ def _marks(line, style):
 
 def _filled(paragraph, style, first="", rest=""):
     """A paragraph filled to the width. Code in it is not broken."""
-    plain = _marks(" ".join(paragraph.split()), Style())
+    plain = _marks(_CODE.sub(_unbroken, " ".join(paragraph.split())), Style())
     lines = textwrap.wrap(plain, style.width, initial_indent=first, subsequent_indent=rest, break_long_words=False, break_on_hyphens=False)
+    lines = [line.replace(_KEPT, " ") for line in lines]
     if not style.colours:
         return "\n".join(lines)
     return _coloured("\n".join(lines), paragraph, style)
+
+
+_KEPT = "\0"
+"""Stands for a space at which no line ends."""
+_SHORT = 40
+"""Columns of code in a line of text that is not broken. Longer code is."""
+
+
+def _unbroken(found):
+    return found[0].replace(" ", _KEPT) if len(found[1]) <= _SHORT else found[0]
 
 
 def _coloured(filled, paragraph, style):

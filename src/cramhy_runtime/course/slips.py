@@ -199,18 +199,32 @@ _ARGUMENTS = {
 def in_words_of_lisp(told: str) -> str:
     """The text of an error for those who learn Lisp: in the pages' words, and where it speaks of Hy, only how Lisp writes the same."""
     told = _BRACKET.sub(r"Lisp has no \1 here. It writes \2.", _OF_HY.sub(r"In Lisp, \1 is written \2.", told))
-    return _in_words_of_pages(told)
+    return _in_words_of_pages(_OF_COURSE.sub(r"\1", told))
 
 
 def in_words_of_hy(told: str) -> str:
     """The text of an error for those who learn Hy, as `in_words_of_lisp`."""
     told = _RUNNING.sub(r"(with-process-modules-running [\1] ...)", told)
+    told = re.sub(r"The Lisp function (?:[\w-]+::?)?(\S+) signalled", r"The function \1 signalled", told)
+    told = re.sub(r"\bSB-PCL::NO-(?:PRIMARY|APPLICABLE)-METHOD-ERROR", "NO-METHOD-FOR-THESE-ARGUMENTS", told)
     told = told.replace(_NESTED, "leave top-level away here.")
     told = _TAKES.sub(lambda found: f"{found[1]}{found[2].lower()} takes ", told)
     return _in_words_of_pages(_OF_LISP.sub(r"In Hy, \1 is written \2.", told))
 
 
+_OF_COURSE = re.compile(r"(?<=at )\S*?(cram_my_beginner_tutorial/src/[\w-]+)\.hy(?=:\d)")
+"""A place in the course's own package. It is Lisp, though its files are ones of Hy."""
+_STANDARD = re.compile(r"^ *See also:\n *The ANSI Standard, [^\n]*\n?", re.M)
+_NET = re.compile(r"while the net \S+( over the fluents? [^\n:]*?)? was (made|computed)(: its first value is computed at once)?")
+
+
+def _of_net(found):
+    of = found[1].replace(" over ", " of ") if found[1] else ""
+    return f"while a fluent{of} was {found[2]}"
+
+
 def _in_words_of_pages(told):
+    told = _NET.sub(_of_net, _STANDARD.sub("", told))
     told = plan_places.at_prompt(told)
     for word, wanted in _ARGUMENTS.items():
         told = told.replace(word, wanted)
@@ -314,7 +328,9 @@ def _lack(form, here, page, what):
     shown = first_line(form.text)
     if form.step == here:
         return f"; {what} a form of this step that you have not typed yet: {shown}"
-    return f"; {what} a form that you have not typed: {shown} :page {page} {form.step} leads back to it."
+    return (
+        f"; {what} a form that you have not typed: {shown}{'' if '...' in shown[-4:] else '.'} :page {page} {form.step} leads back to it."
+    )
 
 
 __all__ = [

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING, NamedTuple
 
-from . import shown
+from . import shown, slips
 from .parts import Code, File, Page, Task, Text, Typed, text_in
 
 if TYPE_CHECKING:
@@ -92,7 +92,8 @@ def answer_shown(typed: Typed) -> str:
 
 def session_shown(part: Code, language: str) -> str:
     """The forms of a step, each with its prompt and its answer."""
-    return "".join(f"{each.prompt}{each.form}\n{answer_shown(each)}" for each in getattr(part, language))
+    worded = slips.in_words_of_lisp if language == "lisp" else str
+    return "".join(f"{each.prompt}{each.form}\n{worded(answer_shown(each))}" for each in getattr(part, language))
 
 
 # ------------------------------------------------------------------------------------------------------------------ where cuts are

@@ -46,6 +46,7 @@ _NOT_YET = re.compile(r"There is no (?:function|variable) (\S+) yet\.")
 _SAID = re.compile(rf"^{_NOT_YET.pattern}$|The (?:function|variable) (\S+) is (?:undefined|unbound)|name '([^']+)' is not defined", re.M)
 _TYPED = re.compile(r"\(typed(?:\s+([^\s()]+))?\)")
 """In a form of a check: stands for what the student has typed."""
+_TOO_LONG = "was not over when the turtle's time was."
 _ERROR = "ended with an error:"
 MOST_ANSWERS = 3
 """So many wrong answers of a check are told, and of several errors one: they are mostly the same one."""
@@ -182,6 +183,7 @@ def _tried(exercise: Exercise, check: Check, seed: int, evaluate, language, tell
         return [f"{told.what} cannot be used:\n{told.error['text']}"]
     judge = judging.of_answers if check.kind == "ask" else judging.of_run
     wrong = [_plainer(_worded(sentence, language)) for sentence in said(judge(check, work, values, told), answers=True)]
+    wrong = [sentence.replace(_TOO_LONG, f"did not come to its end in {work['turtle_time']:.0f} seconds.") for sentence in wrong]
     if not wrong or check.kind != "do":
         return wrong[: 1 if _ERROR in "".join(wrong[:1]) else MOST_ANSWERS]
     if tell_call and not _is_missing(wrong) and not any(work["do"] in sentence for sentence in wrong):
