@@ -69,7 +69,12 @@ def check(
     if (name_of := typed.refused()) is not None:
         return {"passed": False, "told": [NOT_TAKEN.format(name_of)]}
     tables = [in_language(table, language) for table in wanted.checks]
+    forbidden = [table.pop("without") for table in tables if "without" in table]
     wrong = _quietly(lambda: in_session.faults(wanted.title, tables, evaluate, language, typed.form))
+    for each in forbidden if not wrong else ():
+        calls = re.compile(rf"\((?:[\w-]+[:.])?{each['form']}[\s)]", re.I)
+        if any(calls.search(form) for table in tables for form in typed.concerned(table["do"])):
+            wrong = [each["say"]]
     if wrong and "ended with an error" not in wrong[0] and (told := _helper(wanted, evaluate, language, typed)) is not None:
         wrong = [told]
     if wrong and (match := _NO_ANSWER.match(wrong[0])) is not None and _PRINTS.search(typed.definition(match["function"]) or ""):

@@ -455,7 +455,7 @@ class Guide:
         return "\n".join(["Not yet.", *_short(self._filled(found["told"])), *filter(None, [unprepared]), hint])
 
     def _filled(self, texts):
-        return [shown.filled(line, self.style) for text in texts for line in text.split("\n")]
+        return [line for text in texts for line in shown.fitted(text, self.style).split("\n")]
 
 
 def _short(lines):

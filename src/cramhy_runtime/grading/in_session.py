@@ -47,6 +47,8 @@ _SAID = re.compile(rf"^{_NOT_YET.pattern}$|The (?:function|variable) (\S+) is (?
 _TYPED = re.compile(r"\(typed(?:\s+([^\s()]+))?\)")
 """In a form of a check: stands for what the student has typed."""
 _TOO_LONG = "was not over when the turtle's time was."
+_COMMANDS = re.compile(r"The plan sent (\d+ commands?)")
+"""One that is sent when the plan ends comes too late to be counted."""
 _ERROR = "ended with an error:"
 MOST_ANSWERS = 3
 """So many wrong answers of a check are told, and of several errors one: they are mostly the same one."""
@@ -184,6 +186,7 @@ def _tried(exercise: Exercise, check: Check, seed: int, evaluate, language, tell
     judge = judging.of_answers if check.kind == "ask" else judging.of_run
     wrong = [_plainer(_worded(sentence, language)) for sentence in said(judge(check, work, values, told), answers=True)]
     wrong = [sentence.replace(_TOO_LONG, f"did not come to its end in {work['turtle_time']:.0f} seconds.") for sentence in wrong]
+    wrong = [_COMMANDS.sub(r"\1 reached the turtle before the plan was over", sentence) for sentence in wrong]
     if not wrong or check.kind != "do":
         return wrong[: 1 if _ERROR in "".join(wrong[:1]) else MOST_ANSWERS]
     if tell_call and not _is_missing(wrong) and not any(work["do"] in sentence for sentence in wrong):

@@ -29,7 +29,7 @@ from cramhy_runtime import kernel
 from cramhy_runtime.lisp_core import conditions
 from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.lisp_core.conses import list_end
-from cramhy_runtime.lisp_core.data import Cons, all_values
+from cramhy_runtime.lisp_core.data import NO_VALUES, Cons, MultipleValues, all_values
 from cramhy_runtime.lisp_core.dynamic import binding
 from cramhy_runtime.lisp_core.packages import sym
 from cramhy_runtime.lisp_core.printing import prin1_to_string, speak
@@ -336,6 +336,8 @@ class HyPrompt(Listener):
         """As the REPL's own, and the errors that Hy does not count among them are shown, too."""
         with self._goes_on(), self.progress.during():
             self.repl.of_hy.runcode(code)
+            if self.repl.last_value == NO_VALUES and type(self.repl.last_value) is MultipleValues:  # a function of Lisp has given none
+                self.repl.print_last_value = False
 
     @contextmanager
     def _goes_on(self):

@@ -195,7 +195,9 @@ def _variable(symbol, position=None):
         return f"There is a variable {starred}, with stars."
     if is_operator(symbol) or special_operator_p(symbol):
         kind = "a special operator" if special_operator_p(symbol) else "a macro" if symbol.macro is not None else "a function"
-        return f"{symbol.name} is {kind}, no variable: a call of it is ({symbol.name.lower()} ...), in parentheses of its own."
+        here = PACKAGE.value.lookup(symbol.name)[0] is symbol or symbol.package is None
+        written = symbol.name.lower() if here else f"{min(symbol.package.names, key=len)}:{symbol.name}".lower()
+        return f"{symbol.name} is {kind}, no variable: a call of it is ({written} ...), in parentheses of its own."
     of_designator = symbol.name.startswith("?")
     near = near_names(symbol.name, variables if of_designator else variables | _parameters_before(position))
     if near:
