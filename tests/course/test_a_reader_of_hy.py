@@ -79,7 +79,7 @@ def test_a_text_without_its_quotes_is_told_from_the_page():
 
 @pytest.mark.soak
 def test_a_minus_before_a_name_is_a_call():
-    assert of_name("-motion", "hy") == "; The minus is a function, with parentheses around the call: (- motion...)"
+    assert of_name("-motion", "hy", "(f -motion.angle)") == "; The minus is a function, with parentheses around the call: (- motion.angle)"
     assert of_name("-", "hy") is None
 
 

@@ -526,7 +526,7 @@ def test_a_package_of_names_that_was_not_chosen_is_told(typed):
     plan = "(top-level (with-process-modules-running [turtlesim-navigation] (sleep 0)))"
     shown = words(typed([place, ":next", *LOADING["hy"], plan, ":quit"], "choosing-a-module", "hy"))
     told = (
-        f"The names of turtlesim-in-hy are there after a form that you have not typed: (lisp-package :turtlesim-in-hy) {place} leads back"
+        f"The names of turtlesim-in-hy are there after a form that you have not typed: (lisp-package :turtlesim-in-hy). {place} leads back"
     )
     assert told in shown
     shown = typed([place, "(lisp-package :turtlesim-in-hy)", *LOADING["hy"], plan, ":quit"], "choosing-a-module", "hy")

@@ -29,6 +29,8 @@ _ATOM = re.compile(r"[^\s()\[\]{}'`\",;:#=]+(?:\s+(?:[^\s()\[\]{}'`\",;:#=]+|\"[
 CHECK_INTERRUPTED = (
     "; The check has not come to its end. If nothing waits in a loop, the turtle's time stands still there: (sleep 0.1) lets it pass."
 )
+HELP = "; :back goes back, :pages shows all pages, and :help all commands."
+"""What is said below the second step of all."""
 OVER = "; To see the next step, type :next"
 
 _OUTSIDE = "form not inside a plan."
@@ -127,8 +129,6 @@ class Guide:
                 return "; :next shows the next part of the file."
             return "; :next writes this file and goes on. Or write it yourself, with an editor."
         if self.place + 1 < len(self.steps):
-            if self._is_first():
-                return "; Type what stands behind the prompts, or :type does. :next goes on, :back back; :help shows all commands."
             if part is None:
                 return "; :next shows it." if self.step.texts[-1].rstrip().endswith(":") else "; :next goes on."
             return "; Type what stands behind the prompts, or :type does. :next goes on."
@@ -136,9 +136,6 @@ class Guide:
         if after is None:
             return self._with_unsolved("; This is the end of the course. :pages shows all pages.")
         return self._with_unsolved(f"; This is the end of the page. :next begins the next one: {page(after).title}.")
-
-    def _is_first(self):
-        return self.place == 0 and self.page.name == contents.NAMES[0]
 
     def _is_last_piece(self):
         piece = self.step.piece
@@ -304,7 +301,7 @@ class Guide:
         if self.place + 1 < len(self.steps):
             self.place += 1
             self._arrived()
-            return "\n".join([*said, self.show()])
+            return "\n".join([*said, self.show(), *([HELP] if self.place == 1 and self.page.name == contents.NAMES[0] else [])])
         after = self._after()
         if after is None:
             return "\n".join([*said, self._foot()])

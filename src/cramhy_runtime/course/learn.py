@@ -140,9 +140,9 @@ class Guided(Listener):
             self.guide.replay.was_read(text)
         elif self._answered_there is None:
             self._answered_there = True
-        self.guide.typed(text, self.behind())
+        self.guide.typed(text, self.prompt_of_text())
 
-    def behind(self) -> str | None:
+    def prompt_of_text(self) -> str | None:
         """The prompt behind which the text was typed, if it says of which package the names in it are."""
         return None
 
@@ -198,8 +198,8 @@ class LispPrompt(Guided, Console):
     def explained(self, condition):
         return fitted(slips.in_words_of_lisp(super().explained(condition)), self.guide.style)
 
-    def behind(self):
-        return None if self.level else self.session.prompt
+    def prompt_of_text(self):
+        return None if self.level else self.session.prompt()
 
     def evaluator(self):
         return lisp_evaluator(self.session)

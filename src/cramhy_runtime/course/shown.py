@@ -202,7 +202,9 @@ def _marks(line, style):
 
 def _filled(paragraph, style, first="", rest=""):
     """A paragraph filled to the width. Code in it is not broken."""
-    plain = _marks(_CODE.sub(_unbroken, " ".join(paragraph.split())), Style())
+    most = style.width // 2
+    unbroken = _CODE.sub(lambda code: code[0].replace(" ", _KEPT) if len(code[1]) <= most else code[0], " ".join(paragraph.split()))
+    plain = _marks(unbroken, Style())
     lines = textwrap.wrap(plain, style.width, initial_indent=first, subsequent_indent=rest, break_long_words=False, break_on_hyphens=False)
     lines = [line.replace(_KEPT, " ") for line in lines]
     if not style.colours:
@@ -211,13 +213,7 @@ def _filled(paragraph, style, first="", rest=""):
 
 
 _KEPT = "\0"
-"""Stands for a space at which no line ends."""
-_SHORT = 40
-"""Columns of code in a line of text that is not broken. Longer code is."""
-
-
-def _unbroken(found):
-    return found[0].replace(" ", _KEPT) if len(found[1]) <= _SHORT else found[0]
+"""Stands for a space at which no line ends: in code that has not more than half a line."""
 
 
 def _coloured(filled, paragraph, style):
