@@ -61,6 +61,27 @@ def test_what_is_said_in_a_task_has_no_numbers_of_the_solution(language):
     assert told(bare, language, True).endswith("as in (ahead 7)")
 
 
+@pytest.mark.parametrize(
+    "form",
+    [
+        "(defun f (left) (when (> left 1) left))",
+        "(defn f [ahead] (do ahead))",
+        "(let ((left 1)) (progn left))",
+        "(let [left 1] (do left))",
+        "(dotimes (i 4) (mapcar 'left *x*) nil)",
+        "(reduce + [1 2])",
+        "(apply max + 1)",
+        "(defn f [] (defn g [] 1) (g))",
+        "(wait-for (> *x* 1.5))",
+        "(print '(ahead 2 turn-left))",
+        '(defun f () "(defun g" (ahead 1))',
+    ],
+)
+def test_of_other_bodies_nothing_is_said(form):
+    assert told(form, "hy") is None or form.startswith("(defun")
+    assert told(form, "lisp") is None or "[" in form
+
+
 OUTSIDE = (
     "(go-home) ended with an error:\n  'PURSUE' form not inside a plan.\n  Plan forms run inside of a plan: write (top-level (pursue ...))."
 )

@@ -10,10 +10,10 @@ import re
 
 from cramhy_runtime.kernel.typing_names import TYPE_CHECKING
 
-from .trees import Listed, bare, lists, read, shown
+from .trees import Listed, atoms, bare, lists, read, shown
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Set
 
 _DEFINES = {"lisp": ("defun", "def-cram-function"), "hy": ("defn",)}
 _BODIES = {
@@ -27,15 +27,16 @@ _OF_FUNCTIONS = ("lisp-fun", "apply", "funcall", "reduce", "map", "mapcar", "fl-
 NO_RETURN = "needs no return here: the last form of a function is its value."
 
 
-def of_form(text: str, language: str, functions: Collection[str] = (), in_task: bool = False) -> str | None:
+def of_form(text: str, language: str, functions: Set[str] = frozenset(), in_task: bool = False) -> str | None:
     """What to say of a form in which parentheses are missing; ``None`` if nothing in it is a slip.
 
     functions: the names, in lower case, of the functions that the student knows. in_task: whether a task is shown, so that what is said has
     other numbers than the form.
     """
     tree = read(text)
+    own = functions - {name for form in lists(tree) for name in _bound(form)}
     for form in lists(tree):
-        told = _of_exact(form) or _of_definition(form, language) or _of_body(form, language, functions) or _of_operator(form, in_task)
+        told = _of_exact(form) or _of_definition(form, language) or _of_body(form, language, own) or _of_operator(form, in_task)
         if told is not None:
             return f"; {told}"
     return None
@@ -59,17 +60,22 @@ def _of_exact(form):
     return None
 
 
+def _bound(form):
+    """The names, in lower case, that a form gives to arguments and values."""
+    parts = form[1 : _BODIES.get(form.head, 1)]
+    return {atom.lower() for part in parts if isinstance(part, Listed) for atom in atoms(part)}
+
+
 def _of_body(form, language, functions):
     begin = _BODIES.get(form.head)
     if begin is None or form.quote:
         return None
-    known = {each.lower() for part in form[1:begin] if isinstance(part, Listed) for each in map(str, part)}
     for place, each in enumerate(form[begin:], begin):
         if not isinstance(each, str):
             continue
         if each.lower() == "return":
             return f"{'Lisp' if language == 'lisp' else 'Hy'} {NO_RETURN}"
-        if bare(each).rpartition(".")[2] not in functions or each.lower() in known or each.startswith((":", "'", "#", '"')):
+        if bare(each).rpartition(".")[2] not in functions or each.startswith((":", "'", "#", '"')):
             continue
         behind = form[place + 1] if place + 1 < len(form) else None
         with_argument = isinstance(behind, Listed) or (isinstance(behind, str) and re.match(r"-?[\d.]", behind))

@@ -35,6 +35,7 @@ OVER = "; To see the next step, type :next"
 
 _OUTSIDE = "form not inside a plan."
 """In an error that names the form of the student itself."""
+_A_COLON = "a colon stands between a package"
 _NOT_STARTED = re.compile(r"No message is there yet|No ROS node runs here")
 
 
@@ -239,8 +240,8 @@ class Guide:
 
     def failed(self, missing: str | None = None, error: Failure | None = None) -> None:
         """What was typed last has failed, or was ended by Ctrl-C. missing: the name that was not defined. error: what is known of it."""
-        if self.language == "hy" and (missing is not None or error is not None):
-            self._cue = self._cue or other_packages.of_dot(self._text)
+        if self.language == "hy" and (missing is not None or (error is not None and _A_COLON in error.told)):
+            self._cue = self._cue or other_packages.of_dot(self._text, missing)
         self._cue = self._cue or slips.of_failed_form(self._text, self.language, in_task=self._in_task())
         self._cue = self._cue or mistyped.of_failed_form(self._text, self.language, self.replay.texts)
         if missing is not None:

@@ -31,10 +31,13 @@ def of_name(name: str) -> str | None:
     )
 
 
-def of_dot(text: str) -> str | None:
-    """What to say of a form of Hy with a point between a package of CRAM and a name of it, ``cut.force-ll``; else ``None``."""
+def of_dot(text: str, missing: str | None) -> str | None:
+    """What to say of a form of Hy with a point between a package of CRAM and a name of it, ``cut.force-ll``; else ``None``.
+
+    missing: the name without a meaning with which the form has failed. ``None``: all packages count, in data, where nothing is evaluated.
+    """
     for before, name in _DOTTED.findall(text):
-        package = find_package(before.upper())
+        package = find_package(before.upper()) if missing in (None, before) else None
         if package is not None and package.lookup(name.upper())[1] is not None:
             return f"; A colon stands between a package of CRAM and its name: {before}:{name}"
     return None

@@ -205,6 +205,7 @@ def in_words_of_lisp(told: str) -> str:
 def in_words_of_hy(told: str) -> str:
     """The text of an error for those who learn Hy, as `in_words_of_lisp`."""
     told = _RUNNING.sub(r"(with-process-modules-running [\1] ...)", told)
+    told = _OWN.sub("", told)
     told = re.sub(r"The Lisp function (?:[\w-]+::?)?(\S+) signalled", r"The function \1 signalled", told)
     told = re.sub(r"\bSB-PCL::NO-(?:PRIMARY|APPLICABLE)-METHOD-ERROR", "NO-METHOD-FOR-THESE-ARGUMENTS", told)
     told = told.replace(_NESTED, "leave top-level away here.")
@@ -214,6 +215,8 @@ def in_words_of_hy(told: str) -> str:
 
 _OF_COURSE = re.compile(r"(?<=at )\S*?(cram_my_beginner_tutorial/src/[\w-]+)\.hy(?=:\d)")
 """A place in the course's own package. It is Lisp, though its files are ones of Hy."""
+_OWN = re.compile(r"\b(?:my-turtle|turtlesim-in-hy|hy-user)::", re.I)
+"""Where Lisp says of which package a name of the student's own files is."""
 _STANDARD = re.compile(r"^ *See also:\n *The ANSI Standard, [^\n]*\n?", re.M)
 _NET = re.compile(r"while the net \S+( over the fluents? [^\n:]*?)? was (made|computed)(: its first value is computed at once)?")
 

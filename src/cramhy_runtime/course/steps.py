@@ -92,7 +92,7 @@ def answer_shown(typed: Typed) -> str:
 
 def session_shown(part: Code, language: str) -> str:
     """The forms of a step, each with its prompt and its answer."""
-    worded = slips.in_words_of_lisp if language == "lisp" else str
+    worded = slips.in_words_of_lisp if language == "lisp" else slips.in_words_of_hy
     return "".join(f"{each.prompt}{each.form}\n{worded(answer_shown(each))}" for each in getattr(part, language))
 
 
