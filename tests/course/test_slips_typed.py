@@ -82,6 +82,20 @@ def test_of_other_bodies_nothing_is_said(form):
     assert told(form, "lisp") is None or "[" in form
 
 
+SIBLINGS = {
+    "(setv around side * 4)": "Each * has parentheses of its own: (setv around (* side 4))",
+    "(defun f () (setf *around* *side* * 4))": "Each * has parentheses of its own: (setf *around* (* *side* 4))",
+    "(def-fact-group g () (<- (p ?x ?y) (q ?x) (setv ?y (- ?x))))": "A rule computes by lisp-fun, as in (lisp-fun max 2 7 ?most).",
+    "(def-fact-group g () (<- (p ?x) (q ?x) (lisp-fun - ?x ?y)))": "?y is computed, and nothing uses it.",
+}
+
+
+@pytest.mark.parametrize("form", SIBLINGS)
+def test_siblings_that_a_second_look_has_found(form):
+    said = [told(form, language, checked) or "" for language in ("lisp", "hy") for checked in (False, True)]
+    assert any(SIBLINGS[form] in each for each in said), said
+
+
 OUTSIDE = (
     "(go-home) ended with an error:\n  'PURSUE' form not inside a plan.\n  Plan forms run inside of a plan: write (top-level (pursue ...))."
 )

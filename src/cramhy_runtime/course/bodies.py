@@ -23,7 +23,8 @@ _BODIES = {
 }
 """Where the forms of a body begin."""
 _ARITHMETIC = ("+", "-", "*", "/")
-_OF_FUNCTIONS = ("lisp-fun", "apply", "funcall", "reduce", "map", "mapcar", "fl-funcall", "function", "setv", "defvar", "setf", "import")
+_OF_FUNCTIONS = ("lisp-fun", "apply", "funcall", "reduce", "map", "mapcar", "fl-funcall", "function", "import")
+_SETTERS = ("setv", "setf", "setq", "defvar", "defparameter")
 NO_RETURN = "needs no return here: the last form of a function is its value."
 
 
@@ -93,7 +94,8 @@ def _of_operator(form, in_task):
     place = places[0]
     operator = form[place]
     if in_task:
-        return f"Each {operator} has parentheses of its own, as in ({form[0]} ({operator} 7 9))"
+        name = f"{shown(form[1])} " if form.head in _SETTERS else ""
+        return f"Each {operator} has parentheses of its own, as in ({form[0]} {name}({operator} 7 9))"
     before, behind = form[1 : place - 1], form[place + 2 :]
     inside = f"({operator} {shown(form[place - 1])} {shown(form[place + 1])})"
     return f"Each {operator} has parentheses of its own: ({' '.join([str(form[0]), *map(shown, before), inside, *map(shown, behind)])})"

@@ -21,6 +21,7 @@ COLONS = "In a rule a property stands with colons, as in (:seconds 3) or (:type 
 NAMES = "A property is described by names without quotes, as in (type waiting)."
 """How they are written in Hy."""
 _EXAMPLE = {"lisp": "(wait ?seconds)", "hy": '["wait" ?seconds]'}
+_SETTERS = ("setv", "setf", "setq", "let", "is")
 _FUNCTIONS_OF_FUNCTIONS = ("apply", "funcall", "mapcar", "reduce", "map", "filter")
 
 
@@ -70,6 +71,9 @@ def _slips(rule: Listed, language: str, checked: bool) -> Iterator[str]:
             yield f"{name} without a question mark is a name, and not the variable ?{name}."
     if conditions and not variables and all(each.head == head.head for each in conditions):
         yield "A second fact behind the same <- is a condition of the first one. Each fact has a <- of its own."
+    for each in conditions:
+        if each.head in _SETTERS:
+            yield f"{each.head} is no predicate. A rule computes by lisp-fun, as in (lisp-fun max 2 7 ?most)."
     yield from _of_functions(head, conditions, checked)
 
 
@@ -111,6 +115,10 @@ def _of_functions(head, conditions, checked):
         if each.head == "lisp-fun" and len(each) > 1:
             yield from _of_call(each, known, conditions[place + 1 :])
         known.update(atom for atom in atoms(each) if atom.startswith("?"))
+    parts = [part for each in (head, *conditions) for part in atoms(each)]
+    for variable in sorted(filter(None, computed)) if checked else ():
+        if parts.count(variable) == 1:
+            yield f"{variable} is computed, and nothing uses it."
     if checked and head.head == "motion-grounding" and len(head) > 2:
         for variable in atoms(head[2]):
             if variable.startswith("?") and len(variable) > 1 and variable not in known | computed:

@@ -54,12 +54,17 @@ def text(markdown: str, style: Style) -> str:
     return "\n\n".join([*found, *_paragraphs(markdown[end:], style)])
 
 
+_CALL = re.compile(r"\([^()\s]{1,30}(?: [^()\s]{1,20}){1,3}\)")
+"""A short call in a sentence."""
+
+
 def filled(line: str, style: Style) -> str:
     """A line of ours, filled to the width. A remark stays one: its further lines begin with a semicolon, too. Code stays as it is."""
     if len(line) <= style.width or line.startswith(" "):
         return line
     lead = "; " if line.startswith("; ") else ""
-    return textwrap.fill(line, style.width, subsequent_indent=lead, break_long_words=False, break_on_hyphens=False)
+    kept = _CALL.sub(lambda call: call[0].replace(" ", _KEPT), line)
+    return textwrap.fill(kept, style.width, subsequent_indent=lead, break_long_words=False, break_on_hyphens=False).replace(_KEPT, " ")
 
 
 _MARKS_BELOW = re.compile(r"( *)([\^~]+)\s*")

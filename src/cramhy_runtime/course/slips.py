@@ -23,7 +23,7 @@ _OPERATORS = r"[-+*/]"
 _OPERAND = r"[\w.]+"
 _INFIX = re.compile(rf"{_OPERAND}(?:\s*({_OPERATORS})\s*{_OPERAND})(?:\s*\1\s*{_OPERAND})*")
 _INFIX_CALL = re.compile(rf"\(({_OPERAND})\s+({_OPERATORS})\s+({_OPERAND})((?:\s+\2\s+{_OPERAND})*)\)")
-_GLUED = re.compile(rf"(?<!')\(({_OPERATORS})(\d[\d.]*)((?:\s+{_OPERAND})*)\)")
+_GLUED = re.compile(rf"(?<!')\(({_OPERATORS})(\d[\d.]*)(?:((?:\s+{_OPERAND})*)\)|\s)")
 _NUMBER_FIRST = re.compile(rf"\(\d[\d.]*\s+({_OPERATORS})\s")
 _INFIX_INSIDE = re.compile(
     rf"\((?P<head>{_OPERATORS})(?P<before>(?:\s+{_OPERAND})+)\s+(?P<operator>{_OPERATORS})(?P<behind>(?:\s+{_OPERAND})+)\)"
@@ -145,7 +145,11 @@ def of_failed_form(text: str, language: str, in_task: bool = False) -> str | Non
     in_task: as of `of_line`.
     """
     if glued := _GLUED.search(text):
-        written = f"({glued[1]} {glued[2]}{glued[3]})" if not in_task else f"behind the {glued[1]}, as in {EXAMPLE.format(glued[1])}"
+        written = (
+            f"({glued[1]} {glued[2]}{' ...' if glued[3] is None else glued[3]})"
+            if not in_task
+            else f"behind the {glued[1]}, as in {EXAMPLE.format(glued[1])}"
+        )
         return f"; A space is missing{': ' if not in_task else ' '}{written}"
     if language != "hy":
         return None
