@@ -229,3 +229,10 @@ def test_two_classes_that_have_a_common_subclass_are_not_disjoint(session):
     assert session.evaluate_text(f"(equal {asked} '(nil nil))") == [True]
     session.evaluate_text("(defclass both-parts (left-part right-part) ())")
     assert session.evaluate_text(f"(equal {asked} '(nil t))") == [True]
+
+
+def test_a_declaration_means_the_class_that_its_name_has_now(session):
+    """As SBCL: a class that took the place of another one, whose name it has."""
+    text = "(defclass held () ()) (defun hold{0} (x) (declare (type held x)) x) (type-of (hold{0} (make-instance 'held)))"
+    assert session.evaluate_text(text.format(1))[0].name == "HELD"
+    assert session.evaluate_text("(setf (find-class 'held) nil)" + text.format(2))[0].name == "HELD"

@@ -7,6 +7,7 @@ are not defined, and types of several values.
 
 from __future__ import annotations
 
+from cramhy_runtime.lisp_core.classes import when_classes_change
 from cramhy_runtime.lisp_core.numbers import FIXNUM_LIMIT
 from cramhy_runtime.lisp_core.ports import PORTS
 from cramhy_runtime.lisp_core.conditions import type_error
@@ -86,6 +87,7 @@ def is_between(value, limits):
 
 
 _predicates: dict = {}
+when_classes_change(_predicates.clear)
 
 
 def checked(value, specifier, place=None):
