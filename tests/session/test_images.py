@@ -63,6 +63,39 @@ def test_what_is_defined_in_an_image_is_not_known_outside():
     assert find_package("SECRET") is None
 
 
+def test_a_package_of_ours_that_a_program_makes_anew_is_in_other_images_as_it_was():
+    """As checkouts of CRAM's libraries do, which use packages of theirs in it."""
+    text = """
+    (defpackage :their-utilities (:use :cl) (:export #:helper #:other))
+    (defpackage :cl-transforms (:use :cl :their-utilities) (:nicknames :anew) (:import-from :their-utilities #:other) (:export #:other))
+    (list (eq 'cl-transforms::helper 'their-utilities:helper) (eq 'anew:other 'their-utilities:other) (helper-of-theirs))
+    """
+    uses = "(package-use-list :cl-transforms)"
+    with Image():
+        before = evaluate(uses)[0]
+        for value in (1, 2):
+            with Image():
+                evaluate(f"(defun helper-of-theirs () {value})")
+                assert list(evaluate(text)[0]) == [True, True, value]
+                assert "THEIR-UTILITIES" in str(evaluate(uses)[0])
+            assert list(evaluate(uses)[0]) == list(before)
+            assert list(evaluate('(list (find-symbol "OTHER" :cl-transforms) (package-nicknames :cl-transforms))')[0]) == [None, None]
+
+
+def test_a_class_of_ours_that_a_program_makes_anew_is_in_other_images_as_it_was():
+    vector, check = "(cl-transforms:make-3d-vector 1 2 3)", "(typep (cl-transforms:make-3d-vector 1 2 3) 'cl-transforms:3d-vector)"
+    with Image():
+        ours = evaluate("(find-class 'cl-transforms:3d-vector)")[0]
+        for value in (1, 2):
+            with Image():
+                evaluate(f"(defclass cl-transforms:3d-vector () ((a :initform {value} :accessor a-of)))")
+                assert evaluate("(a-of (make-instance 'cl-transforms:3d-vector))") == [value]
+                evaluate("(defclass cl-transforms::of-theirs () ())")
+            assert evaluate("(find-class 'cl-transforms:3d-vector)") == [ours]
+            assert evaluate(check) == [True] and evaluate(f"(class-of {vector})") == [ours]
+            assert evaluate("(find-class 'cl-transforms::of-theirs nil)") == [None]
+
+
 def test_a_new_image_knows_nothing_of_what_was_defined_before():
     with Image(as_now=True):
         evaluate(

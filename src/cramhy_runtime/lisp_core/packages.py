@@ -491,7 +491,12 @@ _redefined: dict[Symbol, tuple] = {}  # symbols of ours that users redefined -> 
 def common(symbol):
     """Whether all images share ``symbol``: it is of a package of ours, or nil or t."""
     package = symbol_package(symbol)
-    return package is not None and _ours.get(package.name) is package and package.name not in USERS
+    return package is not None and is_ours(package)
+
+
+def is_ours(package):
+    """Whether all images share ``package``: it is one of our own code, and its contents are not the user's."""
+    return _ours.get(package.name) is package and package.name not in USERS
 
 
 class _OurOwn:

@@ -9,12 +9,13 @@ A symbol's class is one object from the first definition on, also when it is def
 
 from __future__ import annotations
 
+from cramhy_runtime.kernel.images import part
 from cramhy_runtime.lisp_core.condition_types import shown, shown_with
 from cramhy_runtime.lisp_core.conditions import CellError, Condition, SimpleProgramError, SimpleTypeError, TypeError_, error, type_error
 from cramhy_runtime.lisp_core.data import Symbol
 from cramhy_runtime.lisp_core.dispatch.generic_functions import FunctionObject, no_method_for
 from cramhy_runtime.lisp_core.dispatch.methods import ConditionClass
-from cramhy_runtime.lisp_core.packages import ensure_package, find_package, is_symbol, sym
+from cramhy_runtime.lisp_core.packages import common, ensure_package, find_package, is_symbol, our_own, sym
 from cramhy_runtime.lisp_core.plain_answers import registered as _classes
 from .builtin_classes import CLASSES, STRUCTURES, BuiltInClass, lisp_mro, system_class
 from .class_objects import StandardClass, StandardObject, touch_classes
@@ -40,6 +41,8 @@ def qualified(symbol):
 
 def register_class(symbol, cls):
     """Make ``cls`` the class that ``symbol`` names. Other symbols may name it too."""
+    if isinstance(symbol, Symbol) and common(symbol) and "lisp_name" not in vars(cls) and cls.__module__ != "builtins":
+        _keep_ours(symbol)
     old = _classes.get(symbol)
     _classes[symbol] = cls
     if isinstance(cls, type) and "lisp_symbol" not in vars(cls) and "lisp_name" not in vars(cls) and not cls.__module__ == "builtins":
@@ -61,8 +64,48 @@ def registered_class(symbol):
 
 def forget_class(symbol):
     """``(setf (find-class symbol) nil)``"""
+    _keep_ours(symbol)
     if _classes.pop(symbol, None) is not None:
         touch_classes()
+
+
+_ours: dict = {}  # symbols of our packages to which a program gave another class -> the one that they name by themselves
+
+
+def _keep_ours(symbol):
+    """A program is about to give ``symbol`` another class. Of a symbol that all images share, the others keep the old one."""
+    if isinstance(symbol, Symbol) and symbol not in _ours and not our_own.depth and common(symbol):
+        _ours[symbol] = symbol_class(symbol)
+
+
+@part
+class _ClassesOfOurSymbols:
+    """Which classes users gave to the symbols that all images share."""
+
+    @staticmethod
+    def take():
+        return {symbol: _classes.get(symbol) for symbol in _ours}
+
+    @staticmethod
+    def put(state):
+        changed = False
+        for symbol, own in _ours.items():
+            cls = state.get(symbol, own)
+            changed = changed or _classes.get(symbol) is not cls
+            if cls is None:
+                _classes.pop(symbol, None)
+            else:
+                _classes[symbol] = cls
+        if changed:
+            touch_classes()
+
+    @staticmethod
+    def copy(state):
+        return dict(state)
+
+    @staticmethod
+    def new(state):
+        return {}
 
 
 def defined_class(symbol):

@@ -25,7 +25,7 @@ from cramhy_runtime.lisp_core.packages import (
 from cramhy_runtime.lisp_core.printing import prin1_to_string
 from cramhy_runtime.storage.dependency_tracing import is_library
 from .package_errors import PACKAGE, SimplePackageError, unlocked
-from .package_functions import add_nicknames, add_package_local_nickname, export, import_, shadow, shadowing_import, use_package
+from .package_functions import add_nicknames, add_package_local_nickname, changes, export, import_, shadow, shadowing_import, use_package
 
 OPTIONS = """NICKNAMES USE SHADOW SHADOWING-IMPORT-FROM IMPORT-FROM EXPORT INTERN SIZE DOCUMENTATION LOCAL-NICKNAMES LOCK
 IMPLEMENT""".split()
@@ -109,6 +109,7 @@ def define_package(name, options):
         _warn_of_differences(package, definition, uses)
     else:
         _warn_of_other_place(package)
+    changes(package)
     with unlocked([package]):
         _fill(package, definition, uses)
     package.defined, package.file = True, _file_of_load()

@@ -6,16 +6,20 @@ goes on. Where SBCL's restart TAKE-NEW leaves the old symbol visible (both are i
 
 from __future__ import annotations
 
+from cramhy_runtime.kernel.images import part
 from cramhy_runtime.lisp_core import packages
 from cramhy_runtime.lisp_core.condition_types import Condition, PackageError
 from cramhy_runtime.lisp_core.conditions import cerror, error, restart_case, type_error, with_simple_restart
-from cramhy_runtime.lisp_core.data import Cons, LispString, MultipleValues, list_from, python_list
+from cramhy_runtime.lisp_core.data import Cons, LispString, MultipleValues, Symbol, list_from, python_list
 from cramhy_runtime.lisp_core.packages import (
     Package,
+    common,
     find_package_or_error,
+    is_ours,
     is_string_designator,
     is_symbol,
     keyword,
+    our_own,
     printed,
     string_designator,
     sym,
@@ -195,6 +199,7 @@ def import_(symbols, package=None):
         if home.present(name) and found is symbol:
             continue
         check_package(home, "importing symbol ~A", symbol)
+        changes(home)
         if not status or found is symbol:
             home.import_symbol(symbol)
             continue
@@ -232,6 +237,7 @@ def shadowing_import(symbols, package=None):
     home = package_of(package)
     for symbol in _symbols(symbols):
         check_package(home, "shadowing-importing symbol ~A", symbol)
+        changes(home)
         home.shadowing_import(symbol)
     return True
 
@@ -253,6 +259,7 @@ def use_package(used, package=None):
         other = find_package_or_error(designator)
         if other is not home and other not in home.use:
             check_package(home, "using package ~A", other)
+            changes(home)
             other.complete()
             _settle_use(home, other)
             home.use_package(other)
@@ -297,8 +304,66 @@ def unuse_package(used, package=None):
     for other in [find_package_or_error(designator) for designator in _items(used)]:
         if other in home.use:
             check_package(home, "unusing package ~A", other)
+            changes(home)
         home.unuse_package(other)
     return True
+
+
+# ------------------------------------------------------------------------------------------------- our packages made anew
+
+_changed: dict = {}  # packages of ours that a program changed -> what was in them before
+
+
+def changes(package):
+    """A program is about to change what ``package`` uses or contains. Of one of ours the other images keep what was before."""
+    if package not in _changed and not our_own.depth and is_ours(package):
+        _changed[package] = _copied(_state(package))
+
+
+def _state(package):
+    foreign = {
+        name: (symbol, table is package.external)
+        for table in (package.internal, package.external)
+        for name, symbol in table.items()
+        if isinstance(symbol, Symbol) and not common(symbol)
+    }
+    return package.use, package.nicknames, package.shadowing, foreign, package.defined, package.file
+
+
+def _copied(state):
+    *tables, defined, file = state
+    return (*(table.copy() for table in tables), defined, file)
+
+
+@part
+class _PackagesMadeAnew:
+    """What programs made of our packages, as a checkout of CL-TRANSFORMS does that is loaded in the place of ours.
+
+    All images share these packages. In the others each uses what it used before, and contains nothing of that program.
+    """
+
+    @staticmethod
+    def take():
+        return {package: _state(package) for package in _changed}
+
+    @staticmethod
+    def put(state):
+        for package, own in _changed.items():
+            for name in _state(package)[3]:
+                package.internal.pop(name, None)
+                package.external.pop(name, None)
+            use, nicknames, shadowing, foreign, package.defined, package.file = state.get(package) or _copied(own)
+            package.use, package.nicknames, package.shadowing = use, nicknames, shadowing
+            for name, (symbol, external) in foreign.items():
+                (package.external if external else package.internal)[name] = symbol
+
+    @staticmethod
+    def copy(state):
+        return {package: _copied(contents) for package, contents in state.items()}
+
+    @staticmethod
+    def new(state):
+        return {}
 
 
 # ----------------------------------------------------------------------------------------------------- packages themselves
