@@ -112,13 +112,13 @@ def test_kinds_of_conditions(lisp):
     for name in "connectivity-error lookup-error extrapolation-error invalid-argument-error timeout-error".split():
         assert (
             lisp(
-                f'(handler-case (error \'{name} :error-description "two~%lines")'
+                f'(handler-case (error \'{name} :description "two~%lines")'
                 " (transform-stamped-error (problem) (list (error-description problem) (princ-to-string problem)"
                 " (typep problem 'error))))"
             )
             == '("two~%lines" "two\nlines" T)'
         )
-    assert lisp('(princ-to-string (make-condition \'timeout-error :error-description "a frame ~q"))') == '"a frame ~q"'
+    assert lisp('(princ-to-string (make-condition \'timeout-error :description "a frame ~q"))') == '"a frame ~q"'
 
 
 def test_what_is_stamped_is_plain_too(lisp):

@@ -11,6 +11,7 @@ from .. import kernel
 from ..actionlib.client import ActionClient
 from ..ros.messages import message_class_exact
 from . import errors
+from .frames import unslash_frame
 from .stamped_messages import from_msg
 
 ACTION = "tf2_msgs/LookupTransformAction"
@@ -44,14 +45,14 @@ class BufferClient:
             )
 
     def lookup(self, target, source, *, time=None, timeout=0.0, target_time=None, fixed_frame=None):
-        """The transform as the server knows it after waiting up to ``timeout`` seconds."""
+        """The transform as the server knows it after waiting up to ``timeout`` seconds. The names of frames reach it without slashes."""
         goal = message_class_exact("tf2_msgs/LookupTransformGoal")(
-            target_frame=target,
-            source_frame=source,
+            target_frame=unslash_frame(target),
+            source_frame=unslash_frame(source),
             source_time=time or 0,
             timeout=timeout or 0,
             target_time=target_time or 0,
-            fixed_frame=fixed_frame or "",
+            fixed_frame=unslash_frame(fixed_frame) or "",
             advanced=True if fixed_frame is not None else None,
         )
         client = self.idle.pop() if self.idle else ActionClient(self.server, ACTION)  # each follows one goal at a time

@@ -1,6 +1,6 @@
 """The conditions of tf: why a transform is not to be had. Source: cl-transforms.md 5.2.
 
-All are kinds of ``transform-stamped-error``. The text is in the slot ``error-description`` and is a format control itself, as in the
+All are kinds of ``transform-stamped-error``. The text is in the slot ``description`` and is a format control itself, as in the
 original; one that cannot be read as such, because a frame is called ``a~b``, is shown as it stands, where the original fails.
 """
 
@@ -15,7 +15,7 @@ class TransformStampedError(Error):
     """A transform cannot be given."""
 
     lisp_name = "CL-TRANSFORMS-STAMPED::TRANSFORM-STAMPED-ERROR"
-    initargs = {"ERROR-DESCRIPTION": "error_description"}
+    initargs = {"DESCRIPTION": "error_description"}
 
     def __init__(self, error_description=UNBOUND, **slots):
         super().__init__(**slots)

@@ -27,7 +27,8 @@ def make_header_msg(stamp, frame_id):
 
 
 def make_point_msg(_3d_vector):
-    """The ``geometry_msgs/Point`` of a vector."""
+    """The ``geometry_msgs/Point`` of a 3d-vector; anything else is a type-error."""
+    instance(_3d_vector, Vector3, "DATA")
     return _message("geometry_msgs/Point", x=x(_3d_vector), y=y(_3d_vector), z=z(_3d_vector))
 
 

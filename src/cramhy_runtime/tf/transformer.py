@@ -221,29 +221,30 @@ def transform_pose_stamped(transformer, *, target_frame=None, pose=None, timeout
     """``pose``, a pose-stamped, as seen from ``target_frame`` at its own time, or now if ``use_current_ros_time``."""
     check_type(pose, PoseStamped, "POSE")
     found = lookup_transform(transformer, target_frame, pose.frame_id, time=_time(pose, use_current_ros_time), timeout=timeout)
-    return _pose_after(found, pose)
+    return _pose_after(found, pose, unslash_frame(target_frame))
 
 
 def transform_point_stamped(transformer, *, target_frame=None, point=None, timeout=NOW, use_current_ros_time=None):
     """``point``, a point-stamped, as seen from ``target_frame`` at its own time, or now if ``use_current_ros_time``."""
     check_type(point, PointStamped, "POINT")
     found = lookup_transform(transformer, target_frame, point.frame_id, time=_time(point, use_current_ros_time), timeout=timeout)
-    return make_point_stamped(found.frame_id, found.stamp, transform_point(found, point))
+    return make_point_stamped(unslash_frame(target_frame), found.stamp, transform_point(found, point))
 
 
 def _time(thing, current):
     return ros_time() if truth(current) else thing.stamp
 
 
-def _pose_after(transform, pose):
+def _pose_after(transform, pose, frame_id):
     moved = transform_pose(transform, pose)
-    return PoseStamped(transform.frame_id, transform.stamp, moved.origin, moved.orientation)
+    return PoseStamped(frame_id, transform.stamp, moved.origin, moved.orientation)
 
 
 def old_transform_pose(tf, *, target_frame=None, pose=None):
     """``cl-tf:transform-pose``, the older `transform_pose_stamped`, which does not wait."""
     check_type(pose, PoseStamped, "POSE")
-    return _pose_after(lookup_cached_transform(tf, target_frame=target_frame, source_frame=pose.frame_id, time=pose.stamp), pose)
+    found = lookup_cached_transform(tf, target_frame=target_frame, source_frame=pose.frame_id, time=pose.stamp)
+    return _pose_after(found, pose, found.frame_id)
 
 
 def old_transform_point(tf, *, target_frame=None, point=None):
