@@ -16,8 +16,11 @@ loaded when those packages are made."
   (build 'actionlib::build-goal client body))
 
 (defoperator def-exec-callback [name bindings #* body]
-  (setv goal (gensym "GOAL"))
-  `(defun ~name [~goal] (catch (quote actionlib::exec-callback-tag) (roslisp::with-fields ~bindings ~goal ~@body))))
+  (setv goal (gensym "GOAL") #(documentation declarations forms) (documentation-and-body body))
+  `(defun ~name [~goal]
+     ~@documentation
+     (catch (quote actionlib::exec-callback-tag)
+       (roslisp::with-fields ~bindings ~goal ~@declarations ~@forms (actionlib::check-left (quote ~name))))))
 
 (defn message-arguments [arguments]
   "What a macro's arguments hand on for a message: nothing, one form that gives it, or field paths and values."

@@ -2,10 +2,11 @@
 
 import pytest
 
-EXPORTS = """send-goal-and-wait simple-state connected-to-server make-action-client action-client wait-for-server call-goal send-goal wait-for-result make-action-goal cancel-goal cancel-all-goals
-cancel-at-before-time is-connected goal-handle goal-id goal-status comm-state terminal-state result goal feedback feedback-signal
-server-lost abort-goal start-action-server def-exec-callback succeed-current abort-current preempt-current publish-feedback
-cancel-request-received""".split()
+EXPORTS = """*status-publish-interval* *gc-interval* start-action-server publish-feedback succeed-current preempt-current abort-current
+cancel-request-received def-exec-callback exec-callback-tag *action-server-timeout* server-lost simple-state result goal-id
+make-action-client send-goal send-goal-and-wait cancel-goal wait-for-server connected-to-server wait-for-result call-goal feedback-signal
+abort-goal feedback goal make-action-goal""".split()
+TAGS = "exec-callback-tag", "abort-goal"
 
 
 @pytest.fixture
@@ -17,29 +18,31 @@ def client(lisp):
     return lisp
 
 
-def test_everything_is_exported_and_defined(lisp):
+def test_all_names_of_the_original_and_no_others_are_exported_and_defined(lisp):
+    """A package that uses ACTIONLIB may have names of its own for all else, such as a class ACTION-CLIENT."""
     for name in EXPORTS:
         assert lisp(f'(nth-value 1 (find-symbol "{name.upper()}" :actionlib))') == ":EXTERNAL", name
-        kinds = f"(fboundp 'actionlib:{name}) (macro-function 'actionlib:{name}) (find-class 'actionlib:{name} nil)"
-        assert name == "abort-goal" or lisp(f"(and (or {kinds}) t)") == "T", name
+        kinds = "(fboundp 'actionlib:{0}) (macro-function 'actionlib:{0}) (find-class 'actionlib:{0} nil) (boundp 'actionlib:{0})"
+        assert name in TAGS or lisp(f"(and (or {kinds.format(name)}) t)") == "T", name
+    assert lisp("(loop for name being the external-symbols of :actionlib count t)") == str(len(EXPORTS))
 
 
 def test_a_goal_is_sent_and_followed(client):
-    assert client("(defvar *h* (send 2)) (list (typep *h* 'actionlib:goal-handle) (stringp (actionlib:goal-id *h*)))") == "(T T)"
-    assert client("(list (actionlib:terminal-state *h*) (actionlib:result *h*))") == "(NIL NIL)"
-    assert client("(wait-duration 0.5) (list (actionlib:comm-state *h*) (actionlib:goal-status *h*))") == "(:ACTIVE :ACTIVE)"
+    assert client("(defvar *h* (send 2)) (list (typep *h* 'actionlib::client-goal-handle) (stringp (actionlib:goal-id *h*)))") == "(T T)"
+    assert client("(list (actionlib::terminal-state *h*) (actionlib:result *h*))") == "(NIL NIL)"
+    assert client("(wait-duration 0.5) (list (actionlib::comm-state *h*) (actionlib::goal-status *h*))") == "(:ACTIVE :ACTIVE)"
     assert client("(multiple-value-list (actionlib:wait-for-result *h* 0.5))") == "(NIL :TIMEOUT)"
     assert client("(multiple-value-list (actionlib:wait-for-result *h* 0))") == "(NIL :TIMEOUT)"
     assert client("(multiple-value-bind (result state) (actionlib:wait-for-result *h*) (list (sequence-of result) state))") == (
         "(#(2 2) :SUCCEEDED)"
     )
-    assert client("(list (actionlib:comm-state *h*) (actionlib:terminal-state *h*) (sequence-of (actionlib:result *h*)))") == (
+    assert client("(list (actionlib::comm-state *h*) (actionlib::terminal-state *h*) (sequence-of (actionlib:result *h*)))") == (
         "(:DONE :SUCCEEDED #(2 2))"
     )
 
 
 def test_a_goal_waits_for_the_server_s_word(client):
-    assert client("(actionlib:comm-state (send 2))") == ":WAITING-FOR-GOAL-ACK"
+    assert client("(actionlib::comm-state (send 2))") == ":WAITING-FOR-GOAL-ACK"
 
 
 def test_callbacks(client):
@@ -52,8 +55,8 @@ def test_two_goals_are_tracked_side_by_side(client):
     """The server preempts the first for the second, and each handle knows of its own."""
     client("(defvar *one* (send 9)) (wait-duration 1.5) (defvar *two* (send 1))")
     assert (
-        client("""(list (nth-value 1 (actionlib:wait-for-result *one*)) (actionlib:terminal-state *one*)
-                           (nth-value 1 (actionlib:wait-for-result *two*)) (actionlib:terminal-state *two*))""")
+        client("""(list (nth-value 1 (actionlib:wait-for-result *one*)) (actionlib::terminal-state *one*)
+                           (nth-value 1 (actionlib:wait-for-result *two*)) (actionlib::terminal-state *two*))""")
         == "(:PREEMPTED :PREEMPTED :SUCCEEDED :SUCCEEDED)"
     )
     assert client("(list (sequence-of (actionlib:result *one*)) (sequence-of (actionlib:result *two*)))") == "(#(3) #(1 1))"
@@ -62,7 +65,7 @@ def test_two_goals_are_tracked_side_by_side(client):
 def test_a_call_beside_a_goal_that_was_sent_loses_none_of_them(client):
     client("(defvar *one* (send 9)) (wait-duration 1.5)")
     assert client("(nth-value 1 (actionlib:call-goal *client* (goal 1)))") == ":SUCCEEDED"
-    assert client("(actionlib:terminal-state *one*)") == ":PREEMPTED"
+    assert client("(actionlib::terminal-state *one*)") == ":PREEMPTED"
 
 
 def test_calls_of_two_branches_of_a_plan_on_one_client(client):
@@ -77,36 +80,48 @@ def test_calls_of_two_branches_of_a_plan_on_one_client(client):
 
 def test_one_goal_is_cancelled_by_its_handle(client):
     client("(defvar *h* (send 9)) (wait-duration 1.5) (actionlib:cancel-goal *h*)")
-    assert client("(list (nth-value 1 (actionlib:wait-for-result *h* 5)) (actionlib:terminal-state *h*))") == "(:PREEMPTED :PREEMPTED)"
+    assert client("(list (nth-value 1 (actionlib:wait-for-result *h* 5)) (actionlib::terminal-state *h*))") == "(:PREEMPTED :PREEMPTED)"
 
 
 def test_goals_up_to_a_time_are_cancelled(client):
-    client("(defvar *early* (send 9)) (wait-duration 1.5) (actionlib:cancel-at-before-time *client* (- (ros-time) 1)) (wait-duration 1)")
+    client("(defvar *early* (send 9)) (wait-duration 1.5) (actionlib::cancel-at-before-time *client* (- (ros-time) 1)) (wait-duration 1)")
     client("(defvar *late* (send 1))")
     assert client(
-        """(list (nth-value 1 (actionlib:wait-for-result *late*)) (actionlib:terminal-state *early*) (actionlib:terminal-state *late*))"""
+        """(list (nth-value 1 (actionlib:wait-for-result *late*)) (actionlib::terminal-state *early*) (actionlib::terminal-state *late*))"""
     ) == ("(:SUCCEEDED :PREEMPTED :SUCCEEDED)")
-    assert client.error('(actionlib:cancel-at-before-time *client* "now")', "type-error")
+    assert client.error('(actionlib::cancel-at-before-time *client* "now")', "type-error")
 
 
 def test_all_goals_are_cancelled(client):
-    client("(defvar *h* (send 9)) (wait-duration 1.5) (actionlib:cancel-all-goals *client*)")
-    assert client("(list (nth-value 1 (actionlib:wait-for-result *h* 5)) (actionlib:terminal-state *h*))") == "(:PREEMPTED :PREEMPTED)"
+    client("(defvar *h* (send 9)) (wait-duration 1.5) (actionlib::cancel-all-goals *client*)")
+    assert client("(list (nth-value 1 (actionlib:wait-for-result *h* 5)) (actionlib::terminal-state *h*))") == "(:PREEMPTED :PREEMPTED)"
 
 
 def test_the_client_stands_for_its_newest_goal(client):
     client("(send 1)")
-    assert client("(list (sequence-of (actionlib:wait-for-result *client*)) (actionlib:terminal-state *client*))") == "(#(1 1) :SUCCEEDED)"
+    assert client("(list (sequence-of (actionlib:wait-for-result *client*)) (actionlib::terminal-state *client*))") == "(#(1 1) :SUCCEEDED)"
     assert client("(stringp (actionlib:goal-id *client*))") == "T"
 
 
-def test_a_handle_whose_server_falls_silent_is_lost(lisp):
-    lisp("""(setf *client* (actionlib:make-action-client "nobody" "actionlib_tutorials/FibonacciAction"))
-            (defvar *h* (actionlib:send-goal *client* (goal 1)))""")
+def test_a_handle_whose_server_falls_silent_is_lost(client):
+    from cramhy_runtime.ros import graph
+
+    client("(defvar *h* (send 9)) (wait-duration 0.5)")
+    for name in ("/count/status", "/count/feedback", "/count/result"):
+        graph.active().lisp_node.unadvertise(name)
     assert (
-        lisp("""(list (multiple-value-list (actionlib:wait-for-result *h*)) (actionlib:terminal-state *h*)
-                      (actionlib:is-connected *client*))""")
-        == "((NIL :LOST) :LOST NIL)"
+        client("""(list (multiple-value-list (actionlib:wait-for-result *h*)) (actionlib::terminal-state *h*)
+                        (actionlib::goal-status *h*) (actionlib:connected-to-server *client*))""")
+        == "((NIL :LOST) :LOST :LOST NIL)"
+    )
+
+
+@pytest.mark.parametrize("function", ["send-goal", "call-goal", "send-goal-and-wait"])
+def test_a_goal_is_sent_only_to_a_server_that_is_there(lisp, function):
+    lisp("""(setf *client* (actionlib:make-action-client "nobody" "actionlib_tutorials/FibonacciAction"))""")
+    assert lisp.error(f"(actionlib:{function} *client* (goal 1))") == "Not connected to an action server. Cannot send goal."
+    assert lisp.condition(f"(actionlib:{function} *client* (goal 1))").hint == (
+        "Wait for the server of the action nobody first: (actionlib:wait-for-server client)."
     )
 
 
@@ -137,7 +152,7 @@ def test_the_simple_state_of_a_goal(client):
     assert client("(progn (defvar *h* (send 2)) (actionlib:simple-state *h*))") == ":WAITING-FOR-ACK"
     assert client("(wait-duration 0.5) (actionlib:simple-state *h*)") == ":ACTIVE"
     assert client("(wait-duration 5) (actionlib:simple-state *h*)") == ":DONE"
-    assert " ".join(client.error("(actionlib:simple-state 5)").split()) == "The value 5 is not of type ACTIONLIB:GOAL-HANDLE"
+    assert " ".join(client.error("(actionlib:simple-state 5)").split()) == "The value 5 is not of type ACTIONLIB::CLIENT-GOAL-HANDLE"
 
 
 def test_send_goal_and_wait_is_call_goal(client):
@@ -164,3 +179,24 @@ def test_how_long_a_server_may_be_silent_is_a_variable(client):
 def test_a_callback_may_leave_by_its_tag(lisp):
     lisp("(actionlib:def-exec-callback leaves (order) (throw 'actionlib:exec-callback-tag (* 2 order)) (note :never))")
     assert lisp('(leaves (make-message "actionlib_tutorials/FibonacciGoal" :order 4))') == "8"
+
+
+def test_a_feedback_signal_has_the_handle_of_the_goal(client):
+    assert client("""(let (seen)
+                       (handler-bind ((actionlib:feedback-signal (lambda (s) (push (type-of (actionlib:goal s)) seen)
+                                                                             (actionlib:cancel-goal (actionlib:goal s)))))
+                         (list (nth-value 1 (actionlib:call-goal *client* (goal 9))) (remove-duplicates seen))))""") == (
+        "(:PREEMPTED (ACTIONLIB::CLIENT-GOAL-HANDLE))"
+    )
+
+
+def test_an_exec_callback_has_documentation_and_declarations(lisp):
+    lisp("""(actionlib:def-exec-callback documented (order) "What it does." (declare (ignorable order)) (actionlib:succeed-current))""")
+    assert lisp("(documentation 'documented 'function)") == '"What it does."'
+
+
+def test_an_exec_callback_that_is_called_and_ends_no_goal_is_an_error(lisp):
+    lisp("(actionlib:def-exec-callback idle (order) (* 2 order))")
+    assert lisp.error('(idle (make-message "actionlib_tutorials/FibonacciGoal" :order 4))') == (
+        "Reached the end of exec callback IDLE without succeeding, aborting, or preempting"
+    )

@@ -39,9 +39,18 @@ def test_a_handler_of_feedback_may_abort_the_goal(call):
         call("""(handler-bind ((actionlib:feedback-signal
                                     (lambda (s) (when (equalp (sequence-of (actionlib:feedback s)) #(2))
                                                   (invoke-restart 'actionlib:abort-goal)))))
-                     (call 10 :result-timeout 5))""")
-        == "(#(4) :PREEMPTED)"
-    )  # the server looks once a second
+                     (call 10))""")
+        == "(NIL :ABORTED)"
+    )
+    assert call("(wait-duration 2) (actionlib-lisp:state *client*)") == ":PREEMPTED"
+
+
+def test_the_restart_takes_what_the_call_returns(call):
+    assert (
+        call("""(handler-bind ((actionlib:feedback-signal (lambda (s) (declare (ignore s)) (invoke-restart 'actionlib:abort-goal :enough))))
+                  (actionlib:call-goal *client* (goal 10)))""")
+        == ":ENOUGH :ABORTED"
+    )
 
 
 def test_a_silent_server_is_an_error(call):
@@ -102,9 +111,9 @@ def test_the_server_reports_four_times_a_second_and_forgets_after_ten_seconds(ca
 
 
 def test_what_belongs_into_a_callback_is_an_error_elsewhere(lisp):
-    assert lisp.error("(succeed-current)") == "There is no current goal to end."
-    assert lisp.error("(publish-feedback :sequence #(1))") == "There is no current goal to give feedback on."
-    assert lisp.error("(cancel-request-received)") == "There is no current goal to ask about."
+    text = "This operation can only be called while in a callback thread"
+    for form in ("(succeed-current)", "(publish-feedback :sequence #(1))", "(cancel-request-received)"):
+        assert lisp.error(form) == text
     assert lisp.condition("(abort-current)").hint == "This belongs into the exec callback of an action server (def-exec-callback)."
 
 
@@ -199,7 +208,10 @@ def test_a_file_that_was_compiled_before_makes_the_packages_too(tmp_path):
     )
     for _ in range(2):
         run = [sys.executable, "-m", "cramhy_runtime.cli", "run", str(tmp_path / "acts.lisp"), "--time", "virtual"]
-        assert subprocess.run(run, capture_output=True, text=True, timeout=120).stdout == "There is no current goal to end.\n"
+        assert (
+            subprocess.run(run, capture_output=True, text=True, timeout=120).stdout
+            == "This operation can only be called while in a callback thread\n"
+        )
 
 
 @pytest.mark.soak

@@ -36,6 +36,7 @@ class Goal:
     def __init__(self, goal_id, done, active, feedback):
         self.id, self.done_callback, self.active_callback, self.feedback_callback = goal_id, done, active, feedback
         self.change_callback = self.told = None  # who hears of changes of the simple state, and the last one that was told
+        self.transition_callback = None  # who hears of changes of `communication`
         self.communication = "WAITING-FOR-GOAL-ACK"
         self.status, self.terminal, self.result = PENDING, None, None
         self.was_active = False
@@ -62,6 +63,13 @@ class Goal:
             return "ACTIVE"
         return "WAITING-FOR-ACK" if self.communication == "WAITING-FOR-GOAL-ACK" else "PENDING"
 
+    def move(self, communication):
+        """Be in the state ``communication`` on the way, and call the callback for transitions if it is another one than before."""
+        if communication != self.communication:
+            self.communication = communication
+            if self.transition_callback is not None:
+                self.transition_callback()
+
     def tell_change(self):
         """Call the callback for changes, if the simple state is another one than it told last."""
         state = self.simple_state
@@ -71,9 +79,9 @@ class Goal:
 
 
 class ActionClient:
-    """A client of the action that is called ``name``; it belongs to the Lisp program's node."""
+    """A client of the action that is called ``name``; it belongs to the Lisp program's node. It may follow several goals at a time."""
 
-    lisp_name = "ACTIONLIB-LISP::SIMPLE-ACTION-CLIENT"
+    lisp_name = "ACTIONLIB-LISP::ACTION-CLIENT"
 
     def __init__(self, name, action_type):
         self.name, self.action = goals.check_name(name), Action(action_type)
@@ -89,7 +97,7 @@ class ActionClient:
         ]
 
     def __repr__(self):
-        return f"#<SIMPLE-ACTION-CLIENT {self.name} {self.action.name}>"
+        return f"#<{self.lisp_name.rpartition('::')[2]} {self.name} {self.action.name}>"
 
     @property
     def connected(self):
@@ -127,7 +135,7 @@ class ActionClient:
         """Ask the server to give up ``goal``; not when it is over."""
         if not goal.done and goal.communication != "WAITING-FOR-RESULT":
             if goal.communication not in ("PREEMPTING", "RECALLING"):
-                goal.communication = "WAITING-FOR-CANCEL-ACK"
+                goal.move("WAITING-FOR-CANCEL-ACK")
             self._cancel(goal.id)
 
     def cancel_all(self):
@@ -144,7 +152,7 @@ class ActionClient:
     def _await_cancelling(self, asked):
         for goal in asked:
             if goal.communication in ("WAITING-FOR-GOAL-ACK", "PENDING", "ACTIVE"):
-                goal.communication = "WAITING-FOR-CANCEL-ACK"
+                goal.move("WAITING-FOR-CANCEL-ACK")
 
     def _cancel(self, goal_id, stamp=0.0):
         if self.node.alive:
@@ -195,11 +203,9 @@ class ActionClient:
             if goal.done:
                 return
         if status in TERMINAL:
-            goal.communication = "WAITING-FOR-RESULT"
-        elif status in (PREEMPTING, RECALLING):
-            goal.communication = goals.NAMES[status]
-        elif goal.communication != "WAITING-FOR-CANCEL-ACK":
-            goal.communication = goals.NAMES[status]
+            goal.move("WAITING-FOR-RESULT")
+        elif status in (PREEMPTING, RECALLING) or goal.communication != "WAITING-FOR-CANCEL-ACK":
+            goal.move(goals.NAMES[status])
         goal.tell_change()
         self.waiting.changed()
 
@@ -222,8 +228,11 @@ class ActionClient:
     def _finish(self, goal, terminal):
         if goal.done:
             return
-        goal.communication, goal.terminal = "DONE", terminal
+        goal.terminal = terminal
+        if terminal == LOST:
+            goal.status = LOST
         self._let_go(goal)
+        goal.move("DONE")
         self.waiting.changed()
         goal.tell_change()
         if goal.done_callback is not None:

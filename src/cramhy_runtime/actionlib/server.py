@@ -81,11 +81,7 @@ class ActionServer(GoalServer):
         finally:
             del _at_work[task]
         if goal.state not in TERMINAL:
-            conditions.error(
-                "Reached the end of exec callback ~a without succeeding, aborting, or preempting",
-                self._callback_name(),
-                hint="Its last form must be (succeed-current ...), (abort-current ...) or (preempt-current ...).",
-            )
+            fell_off_the_end(self._callback_name())
 
     def _callback_name(self):
         return getattr(self.callback, "__lisp_name__", None) or princ_to_string(self.callback)
@@ -118,21 +114,30 @@ def start_action_server(action_name, action_type, exec_callback, *, separate_thr
     return None
 
 
-def _current(what):
+def fell_off_the_end(name):
+    """Signal the error that the exec callback ``name``, a string, reached its end without ending its goal."""
+    conditions.error(
+        "Reached the end of exec callback ~a without succeeding, aborting, or preempting",
+        name,
+        hint="Its last form must be (succeed-current ...), (abort-current ...) or (preempt-current ...).",
+    )
+
+
+def _current():
     task = kernel.current()
     while task is not None:
         if task in _at_work:
             return _at_work[task]
         task = task.parent
     return conditions.error(
-        SimpleError("There is no current goal to ~a.", what),
+        SimpleError("This operation can only be called while in a callback thread"),
         hint="This belongs into the exec callback of an action server (def-exec-callback).",
     )
 
 
 def end_current(state, result=None):
     """End the goal that the exec callback works on, and leave the callback. What `succeed-current` and its kin expand into."""
-    server, goal = _current("end")
+    server, goal = _current()
     if kernel.current() not in _at_work:
         return conditions.error(
             SimpleError("A branch of a plan cannot end the goal that the exec callback around it works on."),
@@ -144,15 +149,15 @@ def end_current(state, result=None):
 
 def publish_feedback(feedback=None):
     """Tell the client how far the goal is; the number of subscribers that were reached."""
-    server, goal = _current("give feedback on")
+    server, goal = _current()
     return server.tell(goal, feedback)
 
 
 def cancel_request_received():
     """Whether somebody wants the goal to be given up that the exec callback works on."""
-    return True if _current("ask about")[1].cancelled else None
+    return True if _current()[1].cancelled else None
 
 
 def current_class(part):
     """The class of the ``"result"`` or the ``"feedback"`` of the goal that is worked on."""
-    return getattr(_current("end" if part == "result" else "give feedback on")[0].action, part)
+    return getattr(_current()[0].action, part)

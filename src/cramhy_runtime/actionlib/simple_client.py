@@ -1,6 +1,7 @@
 """The functions of the package ACTIONLIB-LISP: an action client that sends a goal and goes on, or waits for its end.
 
-Where a function is about one goal, it takes the client, for its newest goal, or a handle of ACTIONLIB (`calls.send_goal`).
+A simple client follows one goal. One that `make_action_client` makes follows several: each goal that it sends has a handle. Where a
+function is about one goal, it takes the client, for its newest goal, or a handle, also one of ACTIONLIB (`calls.send_goal`).
 
 Repaired: a goal that was aborted, rejected or recalled is finished for `wait_for_result` and `send_goal_and_wait`; the original
 waits on. A plan that is evaporated while it waits in `send_goal_and_wait` cancels its goal. Source: roslisp.md 13.1.
@@ -22,8 +23,25 @@ from .client import ActionClient, send_with_callbacks
 LOG_TOPIC = ("ACTIONLIB",)
 
 
+class SimpleActionClient(ActionClient):
+    """A client that follows one goal at a time."""
+
+    lisp_name = "ACTIONLIB-LISP::SIMPLE-ACTION-CLIENT"
+
+
+class ClientGoalHandle(GoalHandle):
+    """A goal of a client that follows several."""
+
+    lisp_name = "ACTIONLIB-LISP::CLIENT-GOAL-HANDLE"
+
+
 def make_simple_action_client(action_name, action_type):
-    """A client of the action ``action_name`` (a string) of ``action_type``, ``"package/NameAction"``."""
+    """A client of the action ``action_name`` (a string) of ``action_type``, ``"package/NameAction"``, that follows one goal at a time."""
+    return SimpleActionClient(action_name, action_type)
+
+
+def make_action_client(action_name, action_type):
+    """A client of the action ``action_name`` of ``action_type``, as above, whose goals are followed by their handles, several at a time."""
     return ActionClient(action_name, action_type)
 
 
@@ -37,11 +55,26 @@ def is_connected(client):
     return True if _client(client).connected else None
 
 
-def send_goal(client, goal, *, done_cb=None, active_cb=None, feedback_cb=None):
-    """Send ``goal``, forgetting the one before; T. The callbacks: done-cb gets state and result, active-cb nothing, feedback-cb
-    the feedback."""
+def send_goal(client, goal, *, done_cb=None, active_cb=None, feedback_cb=None, transition_cb=None):
+    """Send ``goal`` and go on.
+
+    A simple client forgets the goal before; T. done-cb gets state and result at the end, active-cb nothing when the work begins,
+    feedback-cb the feedback. A client of `make_action_client` gives a handle of the goal; transition-cb gets that handle whenever its
+    `comm_state` changes, and feedback-cb the handle and the feedback.
+    """
+    if type(client) is ActionClient:
+        return _send_with_handle(client, goal, transition_cb, feedback_cb)
     send_with_callbacks(_client(client), goal, done_cb, active_cb, feedback_cb, alone=True)
     return True
+
+
+def _send_with_handle(client, goal, transition_cb, feedback_cb):
+    moved, heard = goals.function_or_none(transition_cb), goals.function_or_none(feedback_cb)
+    handle = ClientGoalHandle(client, None)
+    handle.goal = sent = client.send(goal, feedback=None if heard is None else lambda message: heard(handle, message), alone=False)
+    if moved is not None:
+        sent.transition_callback = lambda: moved(handle)
+    return handle
 
 
 def send_goal_and_wait(client, goal, execute_timeout, preempt_timeout):

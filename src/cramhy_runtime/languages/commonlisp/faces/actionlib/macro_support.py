@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..ros.macro_support import build_message
 from cramhy_runtime.actionlib import server, simple_client
+from cramhy_runtime.lisp_core.printing import princ_to_string
 
 
 def build_goal(client, paths, *values):
@@ -19,6 +20,11 @@ def end_goal(state, *result):
 def tell_feedback(*feedback):
     """Send feedback: nothing, a message, or field paths and values."""
     return server.publish_feedback(_message("feedback", feedback))
+
+
+def check_left(name):
+    """Called at the end of the exec callback ``name``, which has told nobody how its goal ended: an error."""
+    server.fell_off_the_end(princ_to_string(name))
 
 
 def _message(part, arguments):

@@ -11,7 +11,6 @@ import importlib
 from ...packages.face_definition import define_face
 from ...syntax.operator_macros import export
 from ....operators import ACTIONLIB
-from ...objects.classes import alias_class
 from cramhy_runtime.lisp_core.floats import literal_float
 from cramhy_runtime.lisp_core.classes import register_class
 from cramhy_runtime.lisp_core.packages import ensure_package, on_demand, sym
@@ -28,17 +27,17 @@ def define_faces():
         ensure_package(name)
     from cramhy_runtime.actionlib import calls, client, goal_server, server, simple_client
     from . import macro_support
-    from cramhy_runtime.actionlib.client import ActionClient
 
     define_face(
         "ACTIONLIB-LISP",
         functions={
             simple_client: "cancel-all-goals cancel-goal comm-state goal-id goal-status is-connected make-simple-action-client result "
-            "send-goal send-goal-and-wait state stop-tracking-goal terminal-state wait-for-result wait-for-server",
+            "make-action-client send-goal send-goal-and-wait state stop-tracking-goal terminal-state wait-for-result wait-for-server",
             "cancel": simple_client.cancel_goal,
             "cancel-at-before-time": simple_client.cancel_at_before_time,
         },
         export="simple-action-client",
+        internal="make-action-client",
     )
     define_face(
         "ACTIONLIB",
@@ -47,7 +46,7 @@ def define_faces():
             simple_client: "wait-for-server cancel-goal cancel-all-goals cancel-at-before-time is-connected goal-id "
             "goal-status comm-state terminal-state result",
             server: "start-action-server cancel-request-received",
-            macro_support: "build-goal end-goal tell-feedback",
+            macro_support: "build-goal end-goal tell-feedback check-left",
             "connected-to-server": simple_client.is_connected,
             "wait-for-result": simple_client.wait_for_the_result,
         },
@@ -56,12 +55,20 @@ def define_faces():
             "*status-publish-interval*": literal_float(goal_server.PERIOD),
             "*gc-interval*": literal_float(goal_server.MEMORY),
         },
-        export="exec-callback-tag abort-goal action-client feedback-signal goal-handle server-lost",
-        internal="build-goal end-goal tell-feedback",  # macros expand into them: a kept file names them, and so makes the packages
+        export="exec-callback-tag abort-goal feedback-signal server-lost",
+        # macros expand into the first ones: a kept file names them, and so makes the packages
+        internal="build-goal end-goal tell-feedback check-left cancel-all-goals cancel-at-before-time is-connected goal-status comm-state "
+        "terminal-state",
     )
-    register_class(sym("ACTIONLIB-LISP::SIMPLE-ACTION-CLIENT"), ActionClient)
-    alias_class(sym("ACTIONLIB::ACTION-CLIENT"), ActionClient)
-    for cls in (calls.ServerLost, calls.FeedbackSignal, calls.GoalHandle):
+    for cls in (
+        client.ActionClient,
+        simple_client.SimpleActionClient,
+        simple_client.ClientGoalHandle,
+        calls.HandlingClient,
+        calls.GoalHandle,
+        calls.ServerLost,
+        calls.FeedbackSignal,
+    ):
         register_class(sym(cls.lisp_name), cls)
     export(ACTIONLIB)
     importlib.import_module("cramhy.actionlib")
