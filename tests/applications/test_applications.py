@@ -1,7 +1,6 @@
 """CRAM's applications run past loading: what their readers type, and what must come.
 
-A file in ``typed`` has the forms, with a blank line between two; ``;=> REGULAR EXPRESSION`` below a form is what its printed value matches
-as a whole, white space being one blank. ``(lies 'name)`` is where an object lies, in centimetres as metres; ``(stands-in 'name "link")`` is
+The forms and their answers are in ``typed`` (`typed_lists`). ``(lies 'name)`` is where an object lies, in centimetres as metres; ``(stands-in 'name "link")`` is
 true if its middle is over a link of the furniture, and its lowest point within the heights of that link, or on top of it.
 
 ``cram_cup_demo`` is a package of our own with the habits of CRAM's, in ``workspace``. The others are CRAM's, which are not ours to ship:
@@ -22,6 +21,7 @@ from cramhy_runtime.lisp_core.conditions import Condition
 from cramhy_runtime.languages.commonlisp.printer.printer import prin1_to_string
 from cramhy_runtime.repl.session import Session
 from cramhy_runtime.session import Image
+from typed_lists import run
 
 pytest.importorskip("mujoco", reason="needs MuJoCo (mujoco-core)")
 
@@ -61,26 +61,6 @@ def begin(monkeypatch):
 
     with Image():
         yield session
-
-
-def typed(application):
-    """The forms that are typed, with what comes."""
-    for block in (HERE / "typed" / f"{application}.lisp").read_text(encoding="utf-8").strip().split("\n\n"):
-        form, _, answer = block.partition("\n;=> ")
-        yield re.sub(r"\((lies|stands-in) ", r"(cl-user::\1 ", form), answer
-
-
-def run(session, application):
-    """Type all forms; those whose answers do not match, with what came."""
-    wrong = []
-    for form, answer in typed(application):
-        try:
-            value = " ".join(prin1_to_string(session.evaluate_text(form)[0]).split())
-        except Condition as problem:
-            value = f"{type(problem).__name__}: {problem}"
-        if not re.fullmatch(answer, value):
-            wrong.append(f"{form}\n;=> {value}\nwanted {answer}")
-    return wrong
 
 
 def test_a_package_with_the_habits_of_crams_demos_runs(begin, capsys):
@@ -155,36 +135,6 @@ def test_the_tutorials_of_roslisp_run(begin, capsys):
     """Its programs are typed at one prompt, the talker in a thread, since each waits for another terminal."""
     assert run(begin(Path(CHECKOUTS) / "roslisp_tutorials"), "roslisp_tutorials") == []
     assert "Param ~foo value is now 43" in capsys.readouterr().out
-
-
-def test_cl_transforms_gives_what_that_of_roslisp_common_gives_on_sbcl():
-    """SBCL wrote the answers, with the library of a checkout. Ours stands in its place, so this runs without one."""
-    with Image():
-        assert run(Session(time="virtual", turtlesim=False), "roslisp_common") == []
-
-
-def test_cl_urdf_gives_what_that_of_roslisp_common_gives_on_sbcl():
-    """As above, with the library s-xml. On SBCL a number of the file without a point is an integer; here all are floats."""
-    with Image():
-        assert run(Session(time="virtual", turtlesim=False), "cl_urdf") == []
-
-
-def test_roslisp_utilities_gives_what_that_of_roslisp_common_gives_on_sbcl():
-    """As above. There a node was a function that only notes that it runs; here it is one."""
-    with Image():
-        assert run(Session(time="virtual", turtlesim=False), "roslisp_utilities") == []
-
-
-def test_cl_tf_gives_what_that_of_roslisp_common_gives_on_sbcl():
-    """As above: its transformer and cache, without messages, listener and broadcaster, and with stand-ins for roslisp's names."""
-    with Image():
-        assert run(Session(time="virtual", turtlesim=False), "cl_tf") == []
-
-
-@foreign
-def test_cl_utils_of_roslisp_common_gives_what_it_gives_on_sbcl(begin):
-    """Its systems cl-utils, extended-reals, data-structures, cl-graph and cl-probability are loaded from the checkout."""
-    assert run(begin(Path(CHECKOUTS) / "roslisp_common"), "cl_utils") == []
 
 
 LESSONS = {
