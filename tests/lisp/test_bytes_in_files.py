@@ -30,7 +30,7 @@ WRITTEN = [
     ("(signed-byte 8)", "(write-sequence #(-1 2) s)", "(255 2)"),
     ("(unsigned-byte 16)", "(write-sequence #(1 258) s)", "(1 0 2 1)"),
 ]
-REFUSED = ["#(1 256)", "#(1 :a)", "#(1 -1)", "#(1 1.0)"]
+REFUSED = ["#(1 256)", "#(1 :a)", "#(1 -1)", "#(1 1.0)", "#(1 t)"]
 READ = [
     (
         "(unsigned-byte 8)",

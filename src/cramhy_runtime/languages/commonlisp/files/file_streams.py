@@ -160,14 +160,14 @@ class FileStream(FdStream, FileStreamClass):
         if not (self.is_output and self.bytes):
             return misused(self, "binary output")
         try:
-            octets = number.to_bytes(self.size, "little", signed=self.signed)
-        except (OverflowError, AttributeError):
+            octets = int.to_bytes(None if number is True else number, self.size, "little", signed=self.signed)  # T is no number
+        except (TypeError, OverflowError, AttributeError):
             return type_error(number, self.element_type())
         return self._put(octets)
 
     def write_bytes(self, numbers):
         """Write ``numbers``, a list, at once. Returns whether that was possible: each must be an element of the file, of one byte."""
-        if self.closed or not (self.is_output and self.bytes and self.size == 1) or self.signed:
+        if self.closed or not (self.is_output and self.bytes and self.size == 1) or self.signed or bool in map(type, numbers):
             return False
         try:
             octets = bytes(numbers)
