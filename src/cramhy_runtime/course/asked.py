@@ -19,15 +19,13 @@ from . import guide
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from cramhy_runtime.repl.listener import Listener
-
 LEFT = "; No value was given. The debugger is left."
 
 
 class _Asking:
     """The port ``user`` as it was, but for the forms that the student is asked for."""
 
-    def __init__(self, before: Any, listener: Listener, read_line: Any):
+    def __init__(self, before: Any, listener: Any, read_line: Any):
         self.before, self.listener, self.read_line = before, listener, read_line
 
     def __getattr__(self, name):
@@ -44,21 +42,21 @@ class _Asking:
             if line is None or line is BROKEN_OFF or (not text and prompt_words.word(line, prompt_words.OUT)):
                 self._leave()
             elif word is not None:
-                self.listener.say(f"; A value is wanted here, so :{word} has to wait. Type a form, or q to leave the debugger.")
+                self.listener.tell(f"; A value is wanted here, so :{word} has to wait. Type a form, or q to leave the debugger.")
             else:
                 text = f"{text}{line}\n"
         values = self.listener.session.evaluate_text(text, typed=False)
         return values[0] if values else None
 
     def _leave(self):
-        self.listener.say(LEFT)
+        self.listener.tell(LEFT)
         aborts = [restart for restart in conditions.compute_restarts() if symbol_name(restart.name) == "ABORT"]
         conditions.invoke_restart(aborts[-1])
 
 
 @contextlib.contextmanager
-def by(listener: Listener, read_line: Any) -> Iterator[None]:
-    """In the block ``listener`` asks for the values of choices. read_line: gives a line of the student's for a prompt."""
+def by(listener: Any, read_line: Any) -> Iterator[None]:
+    """In the block ``listener``, a `Guided`, asks for the values of choices. read_line: gives a line of the student's for a prompt."""
     before = PORTS.user
     PORTS.install(user=_Asking(before.before if isinstance(before, _Asking) else before, listener, read_line))
     try:

@@ -209,7 +209,7 @@ def in_words_of_lisp(told: str) -> str:
 def in_words_of_hy(told: str) -> str:
     """The text of an error for those who learn Hy, as `in_words_of_lisp`."""
     told = _RUNNING.sub(r"(with-process-modules-running [\1] ...)", told)
-    told = _OWN.sub("", told)
+    told = _OF_COURSE.sub(r"\1.hy", _OWN.sub("", told))
     told = re.sub(r"The Lisp function (?:[\w-]+::?)?(\S+) signalled", r"The function \1 signalled", told)
     told = re.sub(r"\bSB-PCL::NO-(?:PRIMARY|APPLICABLE)-METHOD-ERROR", "NO-METHOD-FOR-THESE-ARGUMENTS", told)
     told = told.replace(_NESTED, "leave top-level away here.")
