@@ -249,8 +249,9 @@ PORT_INSTALLERS = {
     "lisp_core.conditions": {"signals"},
     "lisp_core.plain_answers": {"printer", "classes", "types", "output", "user", "systems", "definitions"},
     "languages.commonlisp.answers": {"printer", "classes", "types", "output", "user", "systems", "definitions"},
+    "course.asked": {"user"},
 }
-"""Who installs which ports of the core: the plain answers, and those of the one language that is started."""
+"""Who installs which ports of the core: the plain answers, those of the one language that is started, and the course, which asks students."""
 SERVICE_INSTALLERS = {
     "prolog.compiler.compiler": {"compile_clauses"},
     "prolog.explanations.undefined": {"warn_undefined"},

@@ -98,7 +98,7 @@ def _files(page, language):
 
 
 def shown(name: str) -> str:
-    """A file of the current folder, with the two folders above, in which a student finds it: ``cramhy-course/turtle/spiral.hy``."""
+    """A file of the current folder, with the two folders above, in which a student finds it."""
     here = Path.cwd()
     return "/".join([*here.parts[-2:], name]) if len(here.parts) > 2 else name
 

@@ -443,17 +443,18 @@ class Guide:
         if found["passed"]:
             self.progress.solved.add(part.name)
             self.progress.keep()
-            return "\n".join([*self._filled(found["told"]), OVER])
+            return "\n".join([*_filled(found["told"], self.style), OVER])
         more = self._hints.get(self.place, 0) < len(part.hints)
         hint = "; :hint gives a hint." if more else "; :hint shows the hints again."
         missing = in_session.missing_name(found["told"])
         unprepared = self._of_missing(missing) if missing is not None else None
         unprepared = unprepared or _of_error_in_check("\n".join(found["told"][:1]), self.language)
         unprepared = unprepared or slips.of_unprepared(*self._untyped())
-        return "\n".join(["Not yet.", *_short(self._filled(found["told"])), *filter(None, [unprepared]), hint])
+        return "\n".join(["Not yet.", *_short(_filled(found["told"], self.style)), *filter(None, [unprepared]), hint])
 
-    def _filled(self, texts):
-        return [line for text in texts for line in shown.fitted(text, self.style).split("\n")]
+
+def _filled(texts, style):
+    return [line for text in texts for line in shown.fitted(text, style).split("\n")]
 
 
 def _short(lines):
