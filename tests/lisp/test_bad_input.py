@@ -116,7 +116,6 @@ def named(form):
     return form if len(form) < 80 else f"{form[:30]}...{form[-30:]}"
 
 
-@pytest.mark.soak(all_but=2)
 @pytest.mark.parametrize("form", ERRORS, ids=named)
 def test_it_is_an_error_with_a_place_and_the_session_goes_on(session, form):
     start = time.perf_counter()
@@ -133,7 +132,6 @@ def test_it_is_an_error_with_a_place_and_the_session_goes_on(session, form):
     assert session.evaluate_text("(+ 1 2)") == [3]
 
 
-@pytest.mark.soak(all_but=4)
 @pytest.mark.parametrize("form", ANSWERS, ids=named)
 def test_what_is_merely_large_or_circular_has_its_value(session, form):
     start = time.perf_counter()

@@ -35,7 +35,6 @@ def answer():
     kernel.stop()
 
 
-@pytest.mark.soak(all_but=20)
 @pytest.mark.parametrize(("program", "wanted"), PROGRAMS, ids=[str(number) for number in range(len(PROGRAMS))])
 def test_the_answer_is_that_of_sbcl(answer, program, wanted):
     assert answer(program) == wanted

@@ -395,6 +395,20 @@ def test_whatever_is_defined_the_image_outside_stays_as_it_was(definitions):
         assert _changes(before) == []
 
 
+def test_a_name_that_a_program_exports_from_a_package_of_ours_is_external_in_its_image_alone():
+    with Image():
+        session = Session(time="virtual", turtlesim=False)
+        for package in ("roslisp", "cram-utilities"):
+            session.evaluate_text(f"(sb-ext:without-package-locks (defpackage :{package} (:export #:mine-alone)))")
+        with Image():
+            text = '(defpackage :both (:use :roslisp :cram-utilities)) (nth-value 1 (find-symbol "MINE-ALONE" :roslisp))'
+            inside = Session(time="virtual", turtlesim=False).evaluate_text(text)
+            kernel.stop()
+        assert str(inside[-1]) != ":EXTERNAL"
+        assert str(session.evaluate_text('(nth-value 1 (find-symbol "MINE-ALONE" :roslisp))')[-1]) == ":EXTERNAL"
+        kernel.stop()
+
+
 def test_a_new_image_begins_without_the_fluents_and_designators_of_the_first():
     first_fluent, first_designator = cpl.make_fluent(name="first"), Motion(type=kw.driving)
     for as_now in (False, True):

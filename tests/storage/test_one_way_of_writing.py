@@ -56,6 +56,8 @@ EXCEPT = {
     ("turtlesim/stills.py", "save"): "into the file that storage gave",
     ("languages/commonlisp/faces/turtlesim/package.py", "save"): "pictures.save, of this room",
     ("cli/servers.py", "save"): "pictures.save",
+    ("actionlib/client.py", "move"): "the state of a goal",
+    ("languages/commonlisp/streams/stream_functions.py", "write_bytes"): "into a stream of Lisp's, which has opened its file",
     ("chronicle/chronicler.py", "move"): "a thing in a robot's world",
     ("swank/calls/compiling.py", "mkdtemp"): "a folder for what Emacs compiles, which goes with the connection",
     ("repl/answer_streams.py", "TemporaryFile"): "what a form prints, until its answer is sent",

@@ -143,6 +143,8 @@ def export(symbols, package=None):
         if name not in home.external:
             for user in home.used_by:
                 _settle_export(symbol, name, home, user)
+            if is_ours(home) and not our_own.depth:
+                _exported.setdefault(home, set()).add(name)
             home.export(symbol)
     return True
 
@@ -360,6 +362,35 @@ class _PackagesMadeAnew:
     @staticmethod
     def copy(state):
         return {package: _copied(contents) for package, contents in state.items()}
+
+    @staticmethod
+    def new(state):
+        return {}
+
+
+_exported: dict = {}  # packages of ours -> the names that programs exported from them, in any image
+
+
+@part
+class _Exports:
+    """The names that programs exported from our packages. In other images they are internal: two of them would be a conflict."""
+
+    @staticmethod
+    def take():
+        return {package: {name for name in names if name in package.external} for package, names in _exported.items()}
+
+    @staticmethod
+    def put(state):
+        for package, names in _exported.items():
+            wanted = state.get(package, ())
+            for name in names:
+                source, target = (package.internal, package.external) if name in wanted else (package.external, package.internal)
+                if name in source:
+                    target[name] = source.pop(name)
+
+    @staticmethod
+    def copy(state):
+        return {package: set(names) for package, names in state.items()}
 
     @staticmethod
     def new(state):
