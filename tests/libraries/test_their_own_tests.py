@@ -54,3 +54,16 @@ def test_split_sequence_passes_the_tests_of_the_real_one(load):
 @pytest.mark.parametrize("part", ["alexandria-1", "alexandria-2"])
 def test_alexandria_passes_the_tests_of_the_real_one(load, part):
     assert load("alexandria", f"alexandria/{part}/tests.lisp", "(progn (sb-rt:do-tests) (sb-rt:pending-tests))", RT) == [None]
+
+
+def test_debians_own_alexandria_is_loaded_and_passes_its_tests(session, monkeypatch):
+    """Not ours: the sources of the package, which are found where ROS packages are."""
+    folder = SOURCES / "alexandria"
+    if not (folder / "alexandria-tests.asd").is_file():
+        pytest.skip(f"Debian's package with {folder} is not installed")
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(folder))
+    session.evaluate_text("(asdf:load-system :alexandria-tests)")
+    (found,) = session.evaluate_text("(namestring (asdf:system-source-file (asdf:find-system :alexandria)))")
+    assert found == f"{folder}/alexandria.asd"
+    assert session.evaluate_text("(length (sb-rt:pending-tests))") == [249]
+    assert session.evaluate_text("(progn (sb-rt:do-tests) (sb-rt:pending-tests))") == [None]
