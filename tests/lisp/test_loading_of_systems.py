@@ -155,6 +155,17 @@ PERFORMED = {
         '(defsystem "performed" :components ((:module "m" :pathname "" :around-compile "cl-user::hook" :components ((:file "p-a")))))',
         "(:HOOK :A)",
     ),
+    "around compiling, by a hook that checks": (
+        "(defun cl-user::checked (file &rest keys) (push (list (pathname-name file) (first keys)) cl-user::*log*))"
+        "(defun cl-user::hook (next) (funcall next :compile-check 'cl-user::checked))"
+        '(defsystem "performed" :around-compile "cl-user::hook" :components ((:file "p-a")))',
+        '(:A ("p-a" :OUTPUT-FILE))',
+    ),
+    "around compiling, by a hook whose check refuses": (
+        "(defun cl-user::hook (next) (handler-case (funcall next :compile-check (constantly nil)) (error () (push :refused cl-user::*log*))))"
+        '(defsystem "performed" :around-compile "cl-user::hook" :components ((:file "p-a")))',
+        "(:A :REFUSED)",
+    ),
 }
 
 

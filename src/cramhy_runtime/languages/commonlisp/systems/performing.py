@@ -10,6 +10,7 @@ from __future__ import annotations
 from contextlib import nullcontext
 from pathlib import Path
 
+from cramhy_runtime.lisp_core.conditions import CompileError, error
 from cramhy_runtime.lisp_core.data import one
 from cramhy_runtime.lisp_core.dispatch.generic_functions import EqlSpecializer
 from cramhy_runtime.lisp_core.functions import function_of
@@ -20,6 +21,7 @@ from cramhy_runtime.storage.dependencies import file_state, unchanged
 from cramhy_runtime.storage.dependency_tracing import is_library
 
 from ..streams.streams import ERROR_OUTPUT, output_stream
+from ..files.files import lisp_path
 from . import loader
 from .component_order import components_of
 from .for_sbcl import lacking, read_for_sbcl
@@ -125,13 +127,23 @@ def _perform(loading: _Loading) -> None:
 
 def _around_compile(component: Component, load: Any) -> None:
     """Call ``load``; if the component or a module around it says ``:around-compile``, that function calls it."""
-    hook = None
-    while component is not None and hook is None:
-        hook, component = component.around_compile, component.parent
+    hook, outer = None, component
+    while outer is not None and hook is None:
+        hook, outer = outer.around_compile, outer.parent
     if hook is None:
         load()
-    else:
-        function_of(one(sym("UIOP::ENSURE-FUNCTION").function(hook)))(load)
+        return
+
+    def load_and_check(*keywords: Any) -> Any:
+        """What the hook calls, with the keywords for the compilation: ``:compile-check`` is a function that says whether it went well."""
+        loaded = load()
+        check = dict(zip(keywords[::2], keywords[1::2])).get(keyword("COMPILE-CHECK"))
+        file = lisp_path(path_of(component))
+        if check is not None and one(function_of(check)(file, keyword("OUTPUT-FILE"), file)) is None:
+            error(CompileError("~S was compiled, but the function ~S, which its system gave as :COMPILE-CHECK, refuses it.", file, check))
+        return loaded
+
+    function_of(one(sym("UIOP::ENSURE-FUNCTION").function(hook)))(load_and_check)
 
 
 @PERFORM.method(CompileOp, SourceFile)
