@@ -158,6 +158,13 @@ def test_a_function_behind_another_prompt_is_to_be_typed_again(typed):
     assert "in another package" not in words(typed([*LOAD, polygon, task, ":check", ":quit"], "names-and-functions"))
 
 
+def test_a_function_that_both_packages_have_is_not_said_to_be_in_another_one(typed):
+    turn, square = "(defun turn-left () 1)", "(defun drive-square () (dotimes (i 4) (list turn-left)))"
+    said = words(typed([turn, *LOAD, turn, square, step_with(1, "lisp", "first-square"), ":check", "(drive-square)", "q", ":quit"]))
+    assert "The variable TURN-LEFT is unbound" in said
+    assert "in another package" not in said
+
+
 def test_a_function_of_the_courses_package_is_reached_by_its_way(typed):
     lines = [*LOAD, "(defun ahead (metres) metres)", "(in-package :cl-user)", "(ahead 1)", "q", ":quit"]
     told = "ahead is a function of another package: after (in-package :tut) the prompt is TUT> and knows it."

@@ -57,7 +57,7 @@ def _of_exact(form):
     for each in lists(form) if form.head == "wait-for" else ():
         number = next((part for part in each if isinstance(part, str) and re.fullmatch(r"-?\d+\.\d+", part)), None)
         if number is not None and each.head in ("=", "eql", "equal", "fl-eql", "fl-="):
-            return f"What changes passes {number} and is hardly ever exactly that: use > or <."
+            return f"A value that changes passes {number}, and is hardly ever exactly that: use > or <."
     return None
 
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 import re
 
 from cramhy_runtime.languages.commonlisp.printer.print_controls import PACKAGE
-from cramhy_runtime.languages.commonlisp.tools.advice import users_package_with
+from cramhy_runtime.languages.commonlisp.tools.advice import is_operator, users_package_with
+from cramhy_runtime.lisp_core.data import Symbol
 from cramhy_runtime.lisp_core.packages import find_package
 
 _DOTTED = re.compile(r"(?<![\w.:-])([a-z][\w-]*)\.([a-z][\w-]*)(?![\w.])")
@@ -19,8 +20,8 @@ _BEGIN = "COMMON-LISP-USER"
 def of_name(name: str) -> str | None:
     """What to say of ``name``, which is not a function where the prompt is, if another package of the user's has one; else ``None``."""
     here = PACKAGE.value
-    other = users_package_with(name.upper())
-    if other is None or other is here:
+    other, known = users_package_with(name.upper()), here.lookup(name.upper())[0]
+    if other is None or other is here or (isinstance(known, Symbol) and is_operator(known)):
         return None
     there, shown = _short(other), name.lower()
     if here.name == _BEGIN:
