@@ -159,9 +159,11 @@ class FileStream(FdStream, FileStreamClass):
             return complain_closed(self)
         if not (self.is_output and self.bytes):
             return misused(self, "binary output")
+        if number.__class__ is not int:  # T, which is a number for Python
+            return type_error(number, self.element_type())
         try:
-            octets = int.to_bytes(None if number is True else number, self.size, "little", signed=self.signed)  # T is no number
-        except (TypeError, OverflowError, AttributeError):
+            octets = number.to_bytes(self.size, "little", signed=self.signed)
+        except OverflowError:
             return type_error(number, self.element_type())
         return self._put(octets)
 
