@@ -71,8 +71,8 @@ def define_meanings(table, *modules, adapters=None):
 
     adapters: a module all of whose public functions are entered. They turn Lisp's lists into what a room's function takes.
     """
-    names = dict.fromkeys(name for operator in table.values() for name in operator.meanings)
-    found = {name: vars(module)[function] for name in names for module in modules if (function := python_name(name)) in vars(module)}
+    names = {name: python_name(name) for operator in table.values() for name in operator.meanings}
+    found = {name: vars(module)[function] for module in modules for name, function in names.items() if function in vars(module)}
     for name, value in vars(adapters).items() if adapters is not None else ():
         if value.__class__ is FunctionType and value.__module__ == adapters.__name__ and name[0] != "_" and name != "define":
             found[name.replace("_", "-")] = value
