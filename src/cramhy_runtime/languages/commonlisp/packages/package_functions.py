@@ -143,7 +143,7 @@ def export(symbols, package=None):
         if name not in home.external:
             for user in home.used_by:
                 _settle_export(symbol, name, home, user)
-            if is_ours(home) and not our_own.depth:
+            if changes(home):
                 _exported.setdefault(home, set()).add(name)
             home.export(symbol)
     return True
@@ -314,12 +314,19 @@ def unuse_package(used, package=None):
 # ------------------------------------------------------------------------------------------------- our packages made anew
 
 _changed: dict = {}  # packages of ours that a program changed -> what was in them before
+_exported: dict = {}  # those of them -> the names that programs exported, in any image
 
 
 def changes(package):
-    """A program is about to change what ``package`` uses or contains. Of one of ours the other images keep what was before."""
-    if package not in _changed and not our_own.depth and is_ours(package):
+    """A program is about to change what ``package`` uses or contains. Of one of ours the other images keep what was before.
+
+    Returns whether it is one of ours.
+    """
+    if our_own.depth or not is_ours(package):
+        return False
+    if package not in _changed:
         _changed[package] = _copied(_state(package))
+    return True
 
 
 def _state(package):
@@ -329,7 +336,8 @@ def _state(package):
         for name, symbol in table.items()
         if isinstance(symbol, Symbol) and not common(symbol)
     }
-    return package.use, package.nicknames, package.shadowing, foreign, package.defined, package.file
+    exported = _exported.get(package, set()) & package.external.keys()
+    return package.use, package.nicknames, package.shadowing, foreign, exported, package.defined, package.file
 
 
 def _copied(state):
@@ -341,7 +349,8 @@ def _copied(state):
 class _PackagesMadeAnew:
     """What programs made of our packages, as a checkout of CL-TRANSFORMS does that is loaded in the place of ours.
 
-    All images share these packages. In the others each uses what it used before, and contains nothing of that program.
+    All images share these packages. In the others each uses what it used before, contains nothing of that program, and exports
+    nothing for it.
     """
 
     @staticmethod
@@ -354,43 +363,18 @@ class _PackagesMadeAnew:
             for name in _state(package)[3]:
                 package.internal.pop(name, None)
                 package.external.pop(name, None)
-            use, nicknames, shadowing, foreign, package.defined, package.file = state.get(package) or _copied(own)
+            use, nicknames, shadowing, foreign, exported, package.defined, package.file = state.get(package) or _copied(own)
             package.use, package.nicknames, package.shadowing = use, nicknames, shadowing
             for name, (symbol, external) in foreign.items():
                 (package.external if external else package.internal)[name] = symbol
-
-    @staticmethod
-    def copy(state):
-        return {package: _copied(contents) for package, contents in state.items()}
-
-    @staticmethod
-    def new(state):
-        return {}
-
-
-_exported: dict = {}  # packages of ours -> the names that programs exported from them, in any image
-
-
-@part
-class _Exports:
-    """The names that programs exported from our packages. In other images they are internal: two of them would be a conflict."""
-
-    @staticmethod
-    def take():
-        return {package: {name for name in names if name in package.external} for package, names in _exported.items()}
-
-    @staticmethod
-    def put(state):
-        for package, names in _exported.items():
-            wanted = state.get(package, ())
-            for name in names:
-                source, target = (package.internal, package.external) if name in wanted else (package.external, package.internal)
+            for name in _exported.get(package, ()):
+                source, target = (package.internal, package.external) if name in exported else (package.external, package.internal)
                 if name in source:
                     target[name] = source.pop(name)
 
     @staticmethod
     def copy(state):
-        return {package: set(names) for package, names in state.items()}
+        return {package: _copied(contents) for package, contents in state.items()}
 
     @staticmethod
     def new(state):
